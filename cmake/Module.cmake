@@ -1,0 +1,18 @@
+# osculate_module(NAME LINKS public... PRIVATE_LINKS private...): static library of src/NAME with headers in
+# include/osculate/NAME. A module without sources becomes an interface library.
+function(osculate_module name)
+  cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  set(target osculate_${name})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
+    target_link_libraries(${target} PUBLIC ${ARG_LINKS} PRIVATE osculate_options ${ARG_PRIVATE_LINKS})
+    target_compile_features(${target} PUBLIC cxx_std_20)
+  else()
+    add_library(${target} INTERFACE)
+    target_include_directories(${target} INTERFACE ${PROJECT_SOURCE_DIR}/include)
+    target_link_libraries(${target} INTERFACE ${ARG_LINKS})
+    target_compile_features(${target} INTERFACE cxx_std_20)
+  endif()
+endfunction()

@@ -1,0 +1,62 @@
+#pragma once
+/// The volume mesh of one body: nodes, element blocks, named node sets and named surfaces.
+
+#include "osculate/core/types.hpp"
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace osculate::mesh {
+
+/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON).
+enum class CellType { tet4, wedge6, hex8 };
+
+[[nodiscard]] constexpr int nodes_per_cell(CellType type) {
+    switch (type) {
+    case CellType::tet4: return 4;
+    case CellType::wedge6: return 6;
+    case CellType::hex8: return 8;
+    }
+    return 0;
+}
+
+/// Elements of one shape, stored contiguously.
+struct ElementBlock {
+    CellType type = CellType::hex8;
+    std::vector<Index> connectivity; ///< nodes_per_cell(type) node numbers per element
+
+    [[nodiscard]] Index size() const { return static_cast<Index>(connectivity.size()) / nodes_per_cell(type); }
+};
+
+/// A triangle or quadrilateral of a surface, corners counter-clockwise seen from outside the body.
+struct Facet {
+    std::array<Index, 4> nodes{-1, -1, -1, -1}; ///< nodes[3] is -1 for a triangle
+    int count = 0;                              ///< 3 or 4
+    Index block = -1;                           ///< element block and element the facet belongs to
+    Index element = -1;
+
+    [[nodiscard]] auto begin() const { return nodes.begin(); }
+    [[nodiscard]] auto end() const { return nodes.begin() + count; }
+};
+
+struct Mesh {
+    std::vector<Vec3> nodes; ///< reference positions, metres
+    std::vector<ElementBlock> blocks;
+    std::map<std::string, std::vector<Index>> node_sets;
+    std::map<std::string, std::vector<Facet>> surfaces; ///< named parts of the exterior
+
+    [[nodiscard]] Index node_count() const { return static_cast<Index>(nodes.size()); }
+    [[nodiscard]] Index element_count() const;
+};
+
+/// Facets that belong to exactly one element, oriented outward, in order of block, element and local face.
+/// O(n log n) in the number of element faces.
+[[nodiscard]] std::vector<Facet> exterior_facets(const Mesh& mesh);
+
+/// Centroid and outward unit normal of a facet at given nodal positions (bilinear centre for a quadrilateral).
+[[nodiscard]] Vec3 facet_centroid(const Facet& facet, const std::vector<Vec3>& positions);
+[[nodiscard]] Vec3 facet_normal(const Facet& facet, const std::vector<Vec3>& positions);
+
+} // namespace osculate::mesh

@@ -1,0 +1,197 @@
+#pragma once
+/// A validated scene in SI units: what the user asked for, every default filled in, nothing else.
+
+#include "osculate/core/types.hpp"
+#include "osculate/mesh/mesh.hpp"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace osculate::scene {
+
+/// Insertion-ordered name -> value map: the order of a scene file is kept.
+template <class T> using Named = std::vector<std::pair<std::string, T>>;
+
+// ---- meshes --------------------------------------------------------------------------------------------------------
+
+/// How the top (and, extruded, every horizontal layer) of a block is divided.
+enum class BlockPattern { quad, triangle, hybrid };
+
+struct BlockMesh {
+    Vec3 origin = Vec3::Zero(); ///< lower corner, m
+    Vec3 size = Vec3::Ones();   ///< m
+    std::array<int, 3> divisions{1, 1, 1};
+    mesh::CellType element = mesh::CellType::hex8;
+    BlockPattern pattern = BlockPattern::quad; ///< triangle: wedge6; hybrid: hex8 and wedge6 side by side
+};
+
+/// Lower half of a tube with its axis along y, open towards +z; z = -(inner_radius + thickness) is its lowest line.
+struct HalfTubeMesh {
+    double inner_radius = 3, thickness = 1, length = 12; ///< m
+    std::array<int, 3> divisions{13, 12, 3};             ///< around, along, through the thickness
+    mesh::CellType element = mesh::CellType::hex8;
+};
+
+/// Block with a cylindrical underside (axis along y through the origin's x, radius `radius`) and a flat top.
+struct ContactorMesh {
+    double radius = 3, width = 4, length = 4, height = 1; ///< m; height is measured at the centre line
+    double rear = 0.5;                                    ///< y of the rear face, m
+    std::array<int, 3> divisions{12, 16, 3};              ///< across, along, through the height
+    mesh::CellType element = mesh::CellType::hex8;
+};
+
+struct FileMesh {
+    std::string path; ///< VTU file, absolute or beside the scene
+};
+
+/// Rigid placement applied after generation: x = scale * (rotation * X) + translation.
+struct Placement {
+    Vec3 axis = Vec3::UnitZ();
+    double angle = 0; ///< rad
+    Vec3 translation = Vec3::Zero();
+    double scale = 1;
+};
+
+struct MeshSpec {
+    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, FileMesh> source;
+    Placement placement;
+};
+
+// ---- bodies --------------------------------------------------------------------------------------------------------
+
+struct LinearElastic {
+    double E = 0;  ///< Young's modulus, Pa
+    double nu = 0; ///< Poisson's ratio
+};
+
+enum class HexFormulation { full, b_bar, incompatible_modes };
+
+struct Body {
+    MeshSpec mesh;
+    std::variant<LinearElastic> material;
+    HexFormulation hex_formulation = HexFormulation::full;
+};
+
+// ---- sets: parts of a body's exterior, or of its nodes ---------------------------------------------------------------
+
+struct SelectNamed {
+    std::string name; ///< a surface or node set that the mesh brings along
+};
+struct SelectPlane {
+    Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
+};
+struct SelectCylinder {
+    Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
+    double radius = 1;
+};
+struct SelectBox {
+    Vec3 min = Vec3::Zero(), max = Vec3::Ones();
+};
+struct SelectNormal {
+    Vec3 direction = Vec3::UnitZ();
+    double angle = 0.5; ///< largest angle between facet normal and direction, rad
+};
+
+struct SetSpec {
+    std::string body;
+    std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal> select;
+};
+
+// ---- supports: constraints that hold for the whole run ---------------------------------------------------------------
+
+/// Displacement components of a set held at zero or driven by the stages.
+struct Support {
+    std::array<bool, 3> fixed{false, false, false}; ///< held at zero along axes[0..2]
+    Mat3 axes = Mat3::Identity();                   ///< columns: the directions that "x", "y", "z" mean for this set
+    bool symmetry =
+        false; ///< mirror plane through the set: only the displacement along its normal (axes column 0) is held
+};
+
+// ---- contact ---------------------------------------------------------------------------------------------------------
+
+struct FacetsSurface {
+    double hysteresis = 0.03; ///< a facet is left only for one closer by this fraction of its size
+};
+
+enum class PatchCoordinates { tangential, equal_length };
+
+struct RpimSurface {
+    int ring = 2;
+    double R = 1.42, q = 1.03;
+    int m = 6; ///< terms of the polynomial basis, 3 or 6
+    PatchCoordinates coordinates = PatchCoordinates::equal_length;
+    double hysteresis = 0.03;
+};
+
+struct MasterSpec {
+    std::string set;
+    std::variant<FacetsSurface, RpimSurface> surface;
+};
+
+struct Pair {
+    std::string slave; ///< set
+    MasterSpec master;
+    double friction = 0;                ///< Coulomb's coefficient mu
+    double closing_tolerance = 0.02;    ///< of the facet size: a first solve closes nodes with a smaller gap
+    double initial_overlap_limit = 0.1; ///< of the facet size: a deeper initial overlap is a fault
+    double stiffness_scale =
+        1; ///< c of the complementarity function over its local estimate; the result is independent of it
+};
+
+// ---- stages ------------------------------------------------------------------------------------------------------------
+
+/// Static stage. Every value is reached at the end of the stage; values not named keep theirs.
+struct Stage {
+    double duration = 1; ///< s
+    int steps = 1;
+    bool ramp = true; ///< linear from the last value; false: the full value from the first step on
+    Named<std::array<std::optional<double>, 3>> displacement; ///< set -> components along the support's axes, m
+    Named<double> pressure; ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
+    Named<Vec3> body_force; ///< body -> N/m^3
+};
+
+struct Solver {
+    double tolerance = 1e-9;     ///< largest residual over the step's reference force
+    int max_iterations = 30;     ///< Newton iterations of one attempt
+    double smallest_step = 1e-3; ///< of the stage's step: a smaller one is given up
+    bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
+};
+
+// ---- output --------------------------------------------------------------------------------------------------------------
+
+struct Output {
+    std::string template_name = "contact";
+    std::vector<std::string> body_fields;   ///< displacement stress von_mises reaction
+    std::vector<std::string> slave_fields;  ///< gap contact_force normal_stress slip status normal
+    std::vector<std::string> master_fields; ///< contact_force
+    bool history_pairs = true;
+    bool history_reactions = true;
+    bool iterations = false; ///< write iterations.csv
+    int frame_every = 1;     ///< accepted steps between frames; 0 writes none
+};
+
+struct Scene {
+    std::string name;
+    std::string directory; ///< of the scene file, for relative paths
+    Named<Body> bodies;
+    Named<SetSpec> sets;
+    Named<Support> supports; ///< keyed by set
+    Named<Pair> contact;
+    Named<Stage> stages;
+    Solver solver;
+    Output output;
+};
+
+/// The value called `name`, or nullptr.
+template <class T> [[nodiscard]] const T* find(const Named<T>& named, const std::string& name) {
+    for (const auto& [key, value] : named)
+        if (key == name) return &value;
+    return nullptr;
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,43 @@
+#pragma once
+/// Kernels of one block of equal volume elements, behind one virtual interface per block.
+
+#include "osculate/core/types.hpp"
+#include "osculate/material/linear_elastic.hpp"
+#include "osculate/mesh/mesh.hpp"
+
+#include <memory>
+
+namespace osculate::fe {
+
+/// How a hexahedron keeps from locking: not at all, by a mean dilatation, or by internal bending modes.
+enum class HexFormulation { full, b_bar, incompatible_modes };
+
+/// Small-strain kernels of one block of equal elements; the formulation is chosen once, at construction.
+/// X holds the reference positions (3 x n, metres), u the displacements (3 x n, metres), n = nodes(), node order VTK's.
+/// Every kernel throws std::runtime_error where the Jacobian of the reference map is not positive. No allocation.
+class ElementKernel {
+public:
+    virtual ~ElementKernel() = default;
+
+    [[nodiscard]] virtual int nodes() const = 0;
+
+    /// Stiffness (3n x 3n), N/m, exactly symmetric; degrees of freedom node by node, x y z.
+    virtual void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const = 0;
+
+    /// Stress (6 x n), Pa, Voigt xx yy zz xy yz zx, carried from the quadrature points to the nodes.
+    virtual void nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
+                              Eigen::Ref<Matrix> stress) const = 0;
+
+    /// Consistent nodal forces (3 x n), N, of a constant body force b, N/m^3.
+    virtual void body_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Vec3& b,
+                            Eigen::Ref<Eigen::Matrix3Xd> f) const = 0;
+
+    /// Volume, m^3.
+    [[nodiscard]] virtual double volume(const Eigen::Ref<const Eigen::Matrix3Xd>& X) const = 0;
+};
+
+/// The kernel of a cell type; the formulation matters to hexahedra only.
+[[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                                         const material::LinearElastic& material);
+
+} // namespace osculate::fe

@@ -1,0 +1,138 @@
+#pragma once
+/// Reference elements: shape functions, their gradients and a quadrature rule. Node order is VTK's.
+
+#include "osculate/core/types.hpp"
+
+#include <array>
+#include <cmath>
+#include <concepts>
+
+namespace osculate::fe {
+
+struct QuadraturePoint {
+    Vec3 xi;       ///< natural coordinates
+    double weight; ///< the weights of a rule sum to the volume of the reference element
+};
+
+/// What a volume element must offer: counts, natural coordinates of its nodes, N(xi), dN/dxi and a quadrature rule.
+template <class E>
+concept ReferenceElement = requires(const Vec3& xi) {
+    requires E::nodes >
+    0 && E::points > 0;
+    { E::node_positions() } -> std::same_as<Eigen::Matrix<double, 3, E::nodes>>;
+    { E::shape(xi) } -> std::same_as<Eigen::Matrix<double, E::nodes, 1>>;
+    { E::gradient(xi) } -> std::same_as<Eigen::Matrix<double, E::nodes, 3>>;
+    { E::quadrature() } -> std::same_as<std::array<QuadraturePoint, E::points>>;
+};
+
+/// Trilinear hexahedron on [-1, 1]^3, 2 x 2 x 2 Gauss points in the order of the nodes.
+struct Hex8 {
+    static constexpr int nodes = 8;
+    static constexpr int points = 8;
+    using Shape = Eigen::Matrix<double, nodes, 1>;
+    using Gradient = Eigen::Matrix<double, nodes, 3>;
+    using Positions = Eigen::Matrix<double, 3, nodes>;
+
+    static Positions node_positions() {
+        Positions c;
+        c.row(0) << -1, 1, 1, -1, -1, 1, 1, -1;
+        c.row(1) << -1, -1, 1, 1, -1, -1, 1, 1;
+        c.row(2) << -1, -1, -1, -1, 1, 1, 1, 1;
+        return c;
+    }
+
+    /// N_a = (1 + xi_a xi) (1 + eta_a eta) (1 + zeta_a zeta) / 8
+    static Shape shape(const Vec3& xi) {
+        const Positions c = node_positions();
+        Shape N;
+        for (int a = 0; a < nodes; ++a) N[a] = (Vec3::Ones() + c.col(a).cwiseProduct(xi)).prod() / 8;
+        return N;
+    }
+
+    static Gradient gradient(const Vec3& xi) {
+        const Positions c = node_positions();
+        Gradient dN;
+        for (int a = 0; a < nodes; ++a) {
+            const Vec3 f = Vec3::Ones() + c.col(a).cwiseProduct(xi);
+            dN.row(a) << c(0, a) * f[1] * f[2], f[0] * c(1, a) * f[2], f[0] * f[1] * c(2, a);
+        }
+        return dN / 8;
+    }
+
+    static std::array<QuadraturePoint, points> quadrature() {
+        const Positions c = node_positions() / std::sqrt(3.0);
+        std::array<QuadraturePoint, points> rule;
+        for (int q = 0; q < points; ++q) rule[static_cast<std::size_t>(q)] = {c.col(q), 1.0};
+        return rule;
+    }
+};
+
+/// Linear tetrahedron on 0 <= r, s, t, r + s + t <= 1; one point, exact for its constant strain.
+struct Tet4 {
+    static constexpr int nodes = 4;
+    static constexpr int points = 1;
+    using Shape = Eigen::Matrix<double, nodes, 1>;
+    using Gradient = Eigen::Matrix<double, nodes, 3>;
+    using Positions = Eigen::Matrix<double, 3, nodes>;
+
+    static Positions node_positions() {
+        Positions c = Positions::Zero();
+        c.rightCols<3>().setIdentity();
+        return c;
+    }
+
+    static Shape shape(const Vec3& xi) { return {1 - xi.sum(), xi[0], xi[1], xi[2]}; }
+
+    static Gradient gradient(const Vec3&) {
+        Gradient dN;
+        dN.row(0).setConstant(-1);
+        dN.bottomRows<3>().setIdentity();
+        return dN;
+    }
+
+    static std::array<QuadraturePoint, points> quadrature() { return {{{Vec3::Constant(0.25), 1.0 / 6}}}; }
+};
+
+/// Linear wedge: triangle (r, s) times line t in [-1, 1]; 3 x 2 points, exact for its volume and its body forces.
+/// In VTK's order the triangle (0, 1, 2) has its normal out of the element, so node 1 lies on the s axis and 2 on r.
+struct Wedge6 {
+    static constexpr int nodes = 6;
+    static constexpr int points = 6;
+    using Shape = Eigen::Matrix<double, nodes, 1>;
+    using Gradient = Eigen::Matrix<double, nodes, 3>;
+    using Positions = Eigen::Matrix<double, 3, nodes>;
+
+    static Positions node_positions() {
+        Positions c;
+        c.row(0) << 0, 0, 1, 0, 0, 1;
+        c.row(1) << 0, 1, 0, 0, 1, 0;
+        c.row(2) << -1, -1, -1, 1, 1, 1;
+        return c;
+    }
+
+    static Shape shape(const Vec3& xi) {
+        const Vec3 L(1 - xi[0] - xi[1], xi[1], xi[0]);
+        Shape N;
+        N << L * (1 - xi[2]) / 2, L * (1 + xi[2]) / 2;
+        return N;
+    }
+
+    static Gradient gradient(const Vec3& xi) {
+        const Vec3 L(1 - xi[0] - xi[1], xi[1], xi[0]);
+        Eigen::Matrix<double, 3, 2> dL;
+        dL << -1, -1, 0, 1, 1, 0;
+        Gradient dN;
+        dN << dL * (1 - xi[2]) / 2, -L / 2, dL * (1 + xi[2]) / 2, L / 2;
+        return dN;
+    }
+
+    static std::array<QuadraturePoint, points> quadrature() {
+        const double g = 1 / std::sqrt(3.0);
+        const double a = 1.0 / 6, b = 2.0 / 3, w = 1.0 / 6;
+        return {{{{a, a, -g}, w}, {{a, b, -g}, w}, {{b, a, -g}, w}, {{a, a, g}, w}, {{a, b, g}, w}, {{b, a, g}, w}}};
+    }
+};
+
+static_assert(ReferenceElement<Hex8> && ReferenceElement<Tet4> && ReferenceElement<Wedge6>);
+
+} // namespace osculate::fe

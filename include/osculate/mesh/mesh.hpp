@@ -10,7 +10,8 @@
 
 namespace osculate::mesh {
 
-/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON).
+/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON). Mind the wedge: its triangle
+/// (0, 1, 2) has its right-handed normal out of the element, away from (3, 4, 5).
 enum class CellType { tet4, wedge6, hex8 };
 
 [[nodiscard]] constexpr int nodes_per_cell(CellType type) {
@@ -54,6 +55,10 @@ struct Mesh {
 /// Facets that belong to exactly one element, oriented outward, in order of block, element and local face.
 /// O(n log n) in the number of element faces.
 [[nodiscard]] std::vector<Facet> exterior_facets(const Mesh& mesh);
+
+/// Outward vector area of a facet at given nodal positions, square metres: the integral of n dA (exact for a bilinear
+/// quadrilateral too).
+[[nodiscard]] Vec3 facet_area_vector(const Facet& facet, const std::vector<Vec3>& positions);
 
 /// Centroid and outward unit normal of a facet at given nodal positions (bilinear centre for a quadrilateral).
 [[nodiscard]] Vec3 facet_centroid(const Facet& facet, const std::vector<Vec3>& positions);

@@ -1,0 +1,37 @@
+#pragma once
+/// Meshes of simple bodies from a few numbers. Every generator throws std::invalid_argument for impossible arguments.
+
+#include "osculate/mesh/block_pattern.hpp"
+#include "osculate/mesh/mesh.hpp"
+
+namespace osculate::mesh {
+
+/// Axis-parallel block. Surfaces x_min x_max y_min y_max z_min z_max.
+///
+/// The pattern divides the columns along z: triangle cuts every column into two wedges, with alternating diagonals;
+/// hybrid cuts half of the columns, in an irregular arrangement that is always the same. Element wedge6 is the pattern
+/// triangle; tet4 cuts every hexahedron into six; neither has a hybrid pattern.
+/// @param origin     lower corner, metres
+/// @param size       edge lengths, metres
+/// @param divisions  elements along x, y, z
+[[nodiscard]] Mesh make_block(const Vec3& origin, const Vec3& size, const std::array<int, 3>& divisions,
+                              CellType element = CellType::hex8, BlockPattern pattern = BlockPattern::quad);
+
+/// Lower half (z <= 0) of a tube with its axis along y, from y = 0 to `length`; equal angles around.
+/// Surfaces inner outer y_min y_max rim_left (x < 0) rim_right (x > 0).
+/// @param divisions  elements around, along y, through the thickness
+[[nodiscard]] Mesh make_half_tube(double inner_radius, double thickness, double length,
+                                  const std::array<int, 3>& divisions, CellType element = CellType::hex8);
+
+/// Block with a cylindrical underside z = -sqrt(radius^2 - x^2) and a flat top z = height - radius, for x in
+/// [-width/2, width/2] and y in [rear, rear + length]. Surfaces bottom top rear (y_min) front left (x_min) right.
+/// @param height     metres, measured at the centre line
+/// @param divisions  elements across x, along y, through z
+[[nodiscard]] Mesh make_contactor(double radius, double width, double length, double height, double rear,
+                                  const std::array<int, 3>& divisions, CellType element = CellType::hex8);
+
+/// Moves every node to x = scale * (R X) + translation, R the rotation by `angle` (rad) about `axis`.
+/// @pre  scale > 0 and axis is not zero; std::invalid_argument otherwise
+void place(Mesh& mesh, const Vec3& axis, double angle, const Vec3& translation, double scale);
+
+} // namespace osculate::mesh

@@ -1,0 +1,38 @@
+#include "mesh/cell_faces.hpp"
+
+namespace osculate::mesh {
+namespace {
+
+constexpr LocalFace tet_faces[] = {{{0, 1, 3, -1}, 3}, {{1, 2, 3, -1}, 3}, {{2, 0, 3, -1}, 3}, {{0, 2, 1, -1}, 3}};
+// VTK numbers a wedge so that triangle (0, 1, 2) looks out of the element.
+constexpr LocalFace wedge_faces[] = {
+    {{0, 1, 2, -1}, 3}, {{3, 5, 4, -1}, 3}, {{0, 3, 4, 1}, 4}, {{1, 4, 5, 2}, 4}, {{2, 5, 3, 0}, 4}};
+constexpr LocalFace hex_faces[] = {{{0, 4, 7, 3}, 4}, {{1, 2, 6, 5}, 4}, {{0, 1, 5, 4}, 4},
+                                   {{3, 7, 6, 2}, 4}, {{0, 3, 2, 1}, 4}, {{4, 5, 6, 7}, 4}};
+
+constexpr std::array<int, 3> tet_corners[] = {{1, 2, 3}};
+constexpr std::array<int, 3> wedge_corners[] = {{2, 1, 3}, {0, 2, 4}, {1, 0, 5}, {4, 5, 0}, {5, 3, 1}, {3, 4, 2}};
+constexpr std::array<int, 3> hex_corners[] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
+                                              {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+
+} // namespace
+
+std::span<const LocalFace> cell_faces(CellType type) {
+    switch (type) {
+    case CellType::tet4: return tet_faces;
+    case CellType::wedge6: return wedge_faces;
+    case CellType::hex8: return hex_faces;
+    }
+    return {};
+}
+
+std::span<const std::array<int, 3>> corner_neighbours(CellType type) {
+    switch (type) {
+    case CellType::tet4: return tet_corners;
+    case CellType::wedge6: return wedge_corners;
+    case CellType::hex8: return hex_corners;
+    }
+    return {};
+}
+
+} // namespace osculate::mesh

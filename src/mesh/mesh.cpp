@@ -1,0 +1,71 @@
+#include "osculate/mesh/mesh.hpp"
+
+#include "mesh/cell_faces.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <utility>
+
+namespace osculate::mesh {
+
+Index Mesh::element_count() const {
+    Index count = 0;
+    for (const ElementBlock& block : blocks) count += block.size();
+    return count;
+}
+
+std::vector<Facet> exterior_facets(const Mesh& mesh) {
+    std::vector<Facet> faces;
+    for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+        const ElementBlock& block = mesh.blocks[b];
+        const int stride = nodes_per_cell(block.type);
+        const auto local_faces = cell_faces(block.type);
+        for (Index e = 0; e < block.size(); ++e) {
+            const Index* nodes = block.connectivity.data() + static_cast<std::ptrdiff_t>(e) * stride;
+            for (const LocalFace& local : local_faces) {
+                Facet facet{{-1, -1, -1, -1}, local.count, static_cast<Index>(b), e};
+                for (int i = 0; i < local.count; ++i) facet.nodes[i] = nodes[local.nodes[i]];
+                faces.push_back(facet);
+            }
+        }
+    }
+
+    // Faces of the same nodes are neighbours once sorted; the place in `faces` restores the order afterwards.
+    std::vector<std::pair<std::array<Index, 4>, std::size_t>> keys(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        keys[f] = {faces[f].nodes, f};
+        std::sort(keys[f].first.begin(), keys[f].first.end());
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::size_t> single;
+    for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
+        while (last < keys.size() && keys[last].first == keys[first].first) ++last;
+        if (last - first == 1) single.push_back(keys[first].second);
+    }
+    std::sort(single.begin(), single.end());
+
+    std::vector<Facet> exterior;
+    exterior.reserve(single.size());
+    for (const std::size_t f : single) exterior.push_back(faces[f]);
+    return exterior;
+}
+
+Vec3 facet_centroid(const Facet& facet, const std::vector<Vec3>& positions) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index node : facet) sum += positions[node];
+    return sum / facet.count;
+}
+
+Vec3 facet_area_vector(const Facet& facet, const std::vector<Vec3>& positions) {
+    const Vec3& first = positions[facet.nodes[0]];
+    const Vec3& second = positions[facet.nodes[1]];
+    const Vec3& third = positions[facet.nodes[2]];
+    if (facet.count == 3) return 0.5 * (second - first).cross(third - first);
+    return 0.5 * (third - first).cross(positions[facet.nodes[3]] - second);
+}
+
+Vec3 facet_normal(const Facet& facet, const std::vector<Vec3>& positions) {
+    return facet_area_vector(facet, positions).normalized();
+}
+
+} // namespace osculate::mesh

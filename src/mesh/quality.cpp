@@ -1,0 +1,101 @@
+#include "osculate/mesh/quality.hpp"
+
+#include "mesh/cell_faces.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
+
+namespace osculate::mesh {
+namespace {
+
+double triple(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return a.cross(b).dot(c);
+}
+
+class FaultList {
+public:
+    explicit FaultList(std::size_t limit) : limit_(limit) {}
+
+    void add(std::string fault) {
+        if (faults_.size() < limit_) faults_.push_back(std::move(fault));
+        ++count_;
+    }
+
+    [[nodiscard]] std::vector<std::string> finish() {
+        if (count_ > faults_.size()) faults_.push_back("and " + std::to_string(count_ - faults_.size()) + " more");
+        return std::move(faults_);
+    }
+
+private:
+    std::size_t limit_, count_ = 0;
+    std::vector<std::string> faults_;
+};
+
+const char* cell_name(CellType type) {
+    switch (type) {
+    case CellType::tet4: return "tet4";
+    case CellType::wedge6: return "wedge6";
+    case CellType::hex8: return "hex8";
+    }
+    return "";
+}
+
+/// First corner with a Jacobian that is not positive (NaN included), or -1.
+int bad_corner(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions) {
+    const auto corners = corner_neighbours(type);
+    for (int c = 0; c < static_cast<int>(corners.size()); ++c) {
+        const auto edge = [&](int i) -> Vec3 { return positions[nodes[corners[c][i]]] - positions[nodes[c]]; };
+        if (!(triple(edge(0), edge(1), edge(2)) > 0)) return c;
+    }
+    return -1;
+}
+
+} // namespace
+
+double cell_volume(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions) {
+    // Divergence theorem about the first node. A bilinear face encloses the mean of its two splits into triangles.
+    const Vec3& origin = positions[nodes[0]];
+    double sixfold = 0;
+    for (const LocalFace& face : cell_faces(type)) {
+        const auto at = [&](int i) -> Vec3 { return positions[nodes[face.nodes[i]]] - origin; };
+        if (face.count == 3)
+            sixfold += triple(at(0), at(1), at(2));
+        else
+            sixfold += 0.5 * (triple(at(0), at(1), at(2)) + triple(at(0), at(2), at(3)) + triple(at(0), at(1), at(3)) +
+                              triple(at(1), at(2), at(3)));
+    }
+    return sixfold / 6;
+}
+
+std::vector<std::string> faults(const Mesh& mesh, std::size_t limit) {
+    FaultList list(limit);
+    for (Index n = 0; n < mesh.node_count(); ++n)
+        if (!mesh.nodes[n].allFinite()) list.add("node " + std::to_string(n) + ": position is not finite");
+
+    std::vector<char> used(mesh.nodes.size(), 0);
+    for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+        const ElementBlock& block = mesh.blocks[b];
+        const auto stride = static_cast<std::size_t>(nodes_per_cell(block.type));
+        for (Index e = 0; e < block.size(); ++e) {
+            const std::span<const Index> nodes(block.connectivity.data() + e * stride, stride);
+            const auto name = [&] {
+                return std::string(cell_name(block.type)) + " element " + std::to_string(e) + " of block " +
+                       std::to_string(b);
+            };
+            if (std::any_of(nodes.begin(), nodes.end(), [&](Index n) { return n < 0 || n >= mesh.node_count(); })) {
+                list.add(name() + ": a node number is out of range");
+                continue;
+            }
+            for (const Index n : nodes) used[n] = 1;
+            if (!std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return mesh.nodes[n].allFinite(); })) continue;
+            if (const int corner = bad_corner(block.type, nodes, mesh.nodes); corner >= 0)
+                list.add(name() + ": Jacobian is not positive at node " + std::to_string(nodes[corner]));
+        }
+    }
+    for (Index n = 0; n < mesh.node_count(); ++n)
+        if (!used[n]) list.add("node " + std::to_string(n) + ": no element uses it");
+    return list.finish();
+}
+
+} // namespace osculate::mesh

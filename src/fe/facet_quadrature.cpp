@@ -1,5 +1,6 @@
 #include "osculate/fe/facet_quadrature.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace osculate::fe {

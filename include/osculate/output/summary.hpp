@@ -1,0 +1,46 @@
+#pragma once
+/// What a run was and what it cost: summary.json.
+
+#include "osculate/core/timing.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace osculate::output {
+
+/// Members carry the names they have in the file; see write_summary for the two that differ.
+struct Summary {
+    struct Body {
+        std::string name;
+        long nodes = 0, elements = 0;
+    };
+    struct Pair {
+        std::string name;
+        long slave_nodes = 0, master_facets = 0;
+        std::string surface; ///< kind of the master surface, "facets" or "rpim"
+    };
+    struct Steps {
+        long accepted = 0, rejected = 0;
+    };
+
+    std::string version, scene;
+    std::string status;  ///< how the run stands or ended
+    std::string failure; ///< why it gave up; left out of the file when empty
+    long dofs = 0;
+    std::vector<Body> bodies;
+    std::vector<Pair> pairs;
+    Steps steps;
+    long iterations = 0, factorisations = 0;
+    double total_seconds = 0, cpu_seconds = 0; ///< wall and processor time of the whole run
+    Timings timings;                           ///< wall time by part
+    long peak_memory_bytes = 0;
+    int threads = 1;
+    std::vector<std::string> plan;
+};
+
+/// Writes summary.json, whole or not at all; total_seconds, cpu_seconds and timings together are its `seconds`.
+/// @throws std::runtime_error with path and reason
+void write_summary(const std::filesystem::path& path, const Summary& summary);
+
+} // namespace osculate::output

@@ -1,0 +1,32 @@
+#pragma once
+/// VTK XML files: a volume mesh (.vtu) or a surface (.vtp) with arrays on its points.
+
+#include "osculate/core/types.hpp"
+#include "osculate/mesh/mesh.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace osculate::output {
+
+/// Values on the points of a file, point by point.
+struct Array {
+    std::string name;
+    int components = 1;         ///< 1, 3, or 6: a symmetric tensor in Voigt order xx, yy, zz, xy, yz, zx
+    std::vector<double> values; ///< (points * components), SI
+    bool integer = false;       ///< values are whole numbers and are written as Int32
+};
+
+/// Writes a volume mesh, appended raw data with LZ4; `time` (s) becomes the field array TimeValue.
+/// A reader sees the file of before or the whole new one, never a part; the file's folder is made when missing.
+/// @throws std::runtime_error with path and reason when the file cannot be written
+/// @throws InternalError for an array that does not fit the points
+void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& points,
+               const std::vector<mesh::ElementBlock>& blocks, const std::vector<Array>& point_data, double time);
+
+/// The same for a surface; the facets' node numbers index `points`.
+void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,
+               const std::vector<mesh::Facet>& facets, const std::vector<Array>& point_data, double time);
+
+} // namespace osculate::output

@@ -1,0 +1,65 @@
+#include "osculate/output/progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace osculate::output {
+
+namespace {
+
+/// Characters of a line on the terminal behind `stream`; one that wraps could not be overwritten.
+std::size_t terminal_width(std::FILE* stream) {
+    winsize size{};
+    const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+    return known ? size.ws_col - 1U : 79U;
+}
+
+std::string clock_text(double seconds) {
+    const auto whole = static_cast<long>(std::ceil(seconds));
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+} // namespace
+
+std::string progress_line(const ProgressStep& step, double start, double end, double elapsed) {
+    std::string line = fmt::format("t {:.6g}/{:.6g} s, step {}, dt {:.3g} s, Newton {}, contacts {}", step.time, end,
+                                   step.step, step.dt, step.iterations, step.contacts);
+    const double rest = elapsed * (end - step.time) / (step.time - start);
+    constexpr double longest = 1e9; // s; beyond it, and at the very start, an estimate says nothing
+    if (rest >= 0 && rest < longest) line += ", ETA " + clock_text(rest);
+    return line;
+}
+
+Progress::Style Progress::style_of(std::FILE* stream) {
+    return isatty(fileno(stream)) == 1 ? Style::live : Style::plain;
+}
+
+Progress::Progress(double start, double end, Style style, std::FILE* stream)
+    : start_(start), end_(end), style_(style), stream_(stream) {}
+
+void Progress::update(const ProgressStep& step) {
+    if (style_ == Style::quiet) return;
+    const double elapsed = std::chrono::duration<double>(clock::now() - begun_).count();
+    std::string line = progress_line(step, start_, end_, elapsed);
+    if (style_ == Style::live) {
+        line.resize(std::min(line.size(), terminal_width(stream_)));
+        line = "\r" + line + "\x1b[K"; // erases what a longer line before left behind
+        open_ = true;
+    } else {
+        line += '\n';
+    }
+    std::fputs(line.c_str(), stream_); // a reader gone away is no reason to end a run: failure is ignored
+    std::fflush(stream_);
+}
+
+void Progress::finish() {
+    if (!open_) return;
+    std::fputc('\n', stream_);
+    std::fflush(stream_);
+    open_ = false;
+}
+
+} // namespace osculate::output

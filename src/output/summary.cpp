@@ -1,0 +1,40 @@
+#include "osculate/output/summary.hpp"
+
+#include "output/json_file.hpp"
+
+namespace osculate::output {
+
+void write_summary(const std::filesystem::path& path, const Summary& summary) {
+    using Json = nlohmann::ordered_json;
+    Json bodies = Json::array(), pairs = Json::array();
+    for (const Summary::Body& body : summary.bodies)
+        bodies.push_back({{"name", body.name}, {"nodes", body.nodes}, {"elements", body.elements}});
+    for (const Summary::Pair& pair : summary.pairs)
+        pairs.push_back({{"name", pair.name},
+                         {"slave_nodes", pair.slave_nodes},
+                         {"master_facets", pair.master_facets},
+                         {"surface", pair.surface}});
+
+    Json json;
+    json["version"] = summary.version;
+    json["scene"] = summary.scene;
+    json["status"] = summary.status;
+    if (!summary.failure.empty()) json["failure"] = summary.failure;
+    json["dofs"] = summary.dofs;
+    json["bodies"] = bodies;
+    json["pairs"] = pairs;
+    json["steps"] = {{"accepted", summary.steps.accepted}, {"rejected", summary.steps.rejected}};
+    json["iterations"] = summary.iterations;
+    json["factorisations"] = summary.factorisations;
+    const Timings& timings = summary.timings;
+    json["seconds"] = {
+        {"total", summary.total_seconds},    {"cpu", summary.cpu_seconds},        {"search", timings[Part::search]},
+        {"patches", timings[Part::patches]}, {"contact", timings[Part::contact]}, {"assembly", timings[Part::assembly]},
+        {"factor", timings[Part::factor]},   {"solve", timings[Part::solve]},     {"output", timings[Part::output]}};
+    json["peak_memory_bytes"] = summary.peak_memory_bytes;
+    json["threads"] = summary.threads;
+    json["plan"] = summary.plan;
+    write_json_atomic(path, json);
+}
+
+} // namespace osculate::output

@@ -1,0 +1,101 @@
+#include "osculate/output/progress.hpp"
+#include "output/temporary_folder.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <memory>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace osculate::output {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+class ProgressLine : public InTemporaryFolder {
+protected:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    using File = std::unique_ptr<std::FILE, Close>;
+
+    File file() const { return File(std::fopen((folder / "log").c_str(), "wb")); }
+    std::string log() const { return content(folder / "log"); }
+};
+
+const ProgressStep first{1, 1, 1, 7, 221}, second{2, 2, 1, 2, 5};
+
+TEST_F(ProgressLine, TellsTimeStepIterationsContactsAndEta) {
+    const double elapsed = 60; // for a tenth of the scene, so the rest takes nine times as long
+    EXPECT_EQ(progress_line({3, 4, 0.5, 2, 221}, 1, 31, elapsed),
+              "t 4/31 s, step 3, dt 0.5 s, Newton 2, contacts 221, ETA 0:09:00");
+    EXPECT_THAT(progress_line({3, 2, 1, 2, 0}, 0, 4, 7384), EndsWith("ETA 2:03:04"));
+    EXPECT_THAT(progress_line({3, 4, 1, 2, 0}, 0, 4, 100), EndsWith("ETA 0:00:00"));
+}
+
+TEST_F(ProgressLine, GivesNoEtaWhereNoneIsKnown) {
+    EXPECT_THAT(progress_line({0, 0, 1, 2, 0}, 0, 4, 100), Not(HasSubstr("ETA"))); // at the start: 100 * 4 / 0
+    EXPECT_THAT(progress_line({0, 0, 1, 2, 0}, 0, 0, 0), Not(HasSubstr("ETA")));
+    EXPECT_THAT(progress_line({0, 1e-12, 1, 2, 0}, 0, 4, 100), Not(HasSubstr("ETA")));
+}
+
+TEST_F(ProgressLine, IsALinePerStepWhenPiped) {
+    const File stream = file();
+    EXPECT_EQ(Progress::style_of(stream.get()), Progress::Style::plain);
+    {
+        Progress progress(0, 2, Progress::style_of(stream.get()), stream.get());
+        progress.update(first);
+        EXPECT_THAT(log(), EndsWith("\n")) << "a reader has to wait for the line";
+        progress.update(second);
+    }
+    EXPECT_THAT(log(), AllOf(HasSubstr("step 1,"), HasSubstr("step 2,"), Not(HasSubstr("\r")), Not(HasSubstr("\x1b"))));
+    EXPECT_EQ(std::ranges::count(log(), '\n'), 2);
+}
+
+TEST_F(ProgressLine, IsOneLineOnATerminal) {
+    const File stream = file();
+    {
+        Progress progress(0, 2, Progress::Style::live, stream.get());
+        progress.update(first);
+        progress.update(second);
+        EXPECT_EQ(std::ranges::count(log(), '\n'), 0);
+        EXPECT_EQ(std::ranges::count(log(), '\r'), 2);
+        progress.finish();
+        EXPECT_THAT(log(), EndsWith("\n"));
+    }
+    EXPECT_EQ(std::ranges::count(log(), '\n'), 1) << "finish() and the destructor both ended the line";
+}
+
+TEST_F(ProgressLine, SaysNothingWhenQuiet) {
+    const File stream = file();
+    {
+        Progress progress(0, 2, Progress::Style::quiet, stream.get());
+        progress.update(first);
+    }
+    EXPECT_EQ(log(), "");
+}
+
+TEST_F(ProgressLine, NeverWrapsOnANarrowTerminal) {
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0) GTEST_SKIP() << "no pseudo-terminal here";
+    const File terminal(std::fopen(ptsname(master), "r+b"));
+    ASSERT_NE(terminal, nullptr);
+    constexpr unsigned short columns = 30;
+    const winsize size{24, columns, 0, 0};
+    ASSERT_EQ(ioctl(master, TIOCSWINSZ, &size), 0);
+    EXPECT_EQ(Progress::style_of(terminal.get()), Progress::Style::live);
+    Progress progress(0, 2, Progress::Style::live, terminal.get());
+    progress.update(first);
+    std::string seen(4096, '\0');
+    seen.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(master, seen.data(), seen.size()))));
+    progress.finish();
+    close(master);
+    EXPECT_THAT(seen, HasSubstr("step 1"));
+    EXPECT_LT(seen.size(), columns + std::string("\r\x1b[K").size());
+}
+
+} // namespace
+} // namespace osculate::output

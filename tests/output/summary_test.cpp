@@ -1,0 +1,91 @@
+#include "osculate/output/summary.hpp"
+#include "output/temporary_folder.hpp"
+
+#include <cmath>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace osculate::output {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class SummaryFile : public InTemporaryFolder {};
+
+Summary example() {
+    Summary summary;
+    summary.version = "0.1.0";
+    summary.scene = "half_tube";
+    summary.status = "done";
+    summary.dofs = 4680;
+    summary.bodies = {{"tube", 728, 468}, {"contactor", 884, 576}};
+    summary.pairs = {{"sliding", 221, 156, "rpim"}};
+    summary.steps = {31, 2};
+    summary.iterations = 77;
+    summary.factorisations = 70;
+    summary.total_seconds = 2.5;
+    summary.cpu_seconds = 2.25;
+    for (const auto& [part, seconds] : {std::pair{Part::search, 0.1},
+                                        {Part::patches, 0.2},
+                                        {Part::contact, 0.3},
+                                        {Part::assembly, 0.4},
+                                        {Part::factor, 0.5},
+                                        {Part::solve, 0.6},
+                                        {Part::output, 0.7}})
+        summary.timings.add(part, seconds);
+    summary.peak_memory_bytes = 5'000'000'000;
+    summary.threads = 2;
+    summary.plan = {"bodies: tube, contactor", "no inertia: \"static\" stages only"};
+    return summary;
+}
+
+TEST_F(SummaryFile, HoldsEveryMemberUnderItsName) {
+    write_summary(folder / "summary.json", example());
+    const json expected = json::parse(R"({
+        "version": "0.1.0", "scene": "half_tube", "status": "done", "dofs": 4680,
+        "bodies": [{"name": "tube", "nodes": 728, "elements": 468}, {"name": "contactor", "nodes": 884, "elements": 576}],
+        "pairs": [{"name": "sliding", "slave_nodes": 221, "master_facets": 156, "surface": "rpim"}],
+        "steps": {"accepted": 31, "rejected": 2}, "iterations": 77, "factorisations": 70,
+        "seconds": {"total": 2.5, "cpu": 2.25, "search": 0.1, "patches": 0.2, "contact": 0.3, "assembly": 0.4,
+                    "factor": 0.5, "solve": 0.6, "output": 0.7},
+        "peak_memory_bytes": 5000000000, "threads": 2,
+        "plan": ["bodies: tube, contactor", "no inertia: \"static\" stages only"]})");
+    EXPECT_EQ(json::parse(content(folder / "summary.json")), expected);
+}
+
+TEST_F(SummaryFile, NamesAFailureWhenThereIsOne) {
+    Summary summary = example();
+    summary.status = "gave_up";
+    summary.failure = "the solver \xff did not converge"; // not UTF-8
+    summary.total_seconds = std::nan("");
+    write_summary(folder / "summary.json", summary);
+    const json read = json::parse(content(folder / "summary.json"));
+    EXPECT_EQ(read["status"], "gave_up");
+    EXPECT_THAT(read["failure"].get<std::string>(), AllOf(HasSubstr("the solver"), HasSubstr("did not converge")));
+    EXPECT_TRUE(read["seconds"]["total"].is_null());
+}
+
+TEST_F(SummaryFile, ListsStayListsWhenEmpty) {
+    write_summary(folder / "summary.json", {});
+    const json read = json::parse(content(folder / "summary.json"));
+    for (const char* key : {"bodies", "pairs", "plan"}) EXPECT_EQ(read[key], json::array()) << key;
+}
+
+TEST_F(SummaryFile, FullDiskLeavesTheSummaryOfBefore) {
+    const auto path = folder / "summary.json";
+    write_summary(path, example());
+    const std::string before = content(path);
+    std::string message;
+    {
+        const FullDisk full(64);
+        message = runtime_error_of([&] { write_summary(path, {}); });
+    }
+    EXPECT_THAT(message, AllOf(HasSubstr(path.string()), HasSubstr("File too large")));
+    EXPECT_EQ(content(path), before);
+    EXPECT_EQ(files_in(folder), 1U);
+}
+
+} // namespace
+} // namespace osculate::output

@@ -9,7 +9,9 @@
 
 namespace osculate::fe {
 
-/// How a hexahedron keeps from locking: not at all, by a mean dilatation, or by internal bending modes.
+/// How a hexahedron keeps from locking. `full`: not at all. `b_bar`: a mean dilatation, against near incompressibility;
+/// too soft in bending with a single element through the thickness. `incompatible_modes`: internal bending modes, against
+/// locking in bending, and in near incompressibility too as long as elements are not badly distorted.
 enum class HexFormulation { full, b_bar, incompatible_modes };
 
 /// Small-strain kernels of one block of equal elements; the formulation is chosen once, at construction.

@@ -1,0 +1,177 @@
+#include "element_cases.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+
+namespace osculate::fe::testing {
+namespace {
+
+const material::LinearElastic material{1.0, 0.3}; // stiffnesses and stresses of order one
+constexpr double round_off = 1e-12;               // relative to them; a few hundred products each
+constexpr double zero_energy = 1e-12;             // eigenvalues of rigid motions, relative to the largest
+constexpr double resisting = 1e-3;                // the smallest other eigenvalue of these elements is above this
+
+class Kernel : public ::testing::TestWithParam<ElementCase> {
+protected:
+    const Eigen::Matrix3Xd X = distorted_element(GetParam().type);
+    const int n = static_cast<int>(X.cols());
+    const std::unique_ptr<ElementKernel> kernel = GetParam().kernel(material);
+
+    [[nodiscard]] Matrix stiffness(const Eigen::Matrix3Xd& at) const {
+        Matrix K(3 * n, 3 * n);
+        kernel->stiffness(at, K);
+        return K;
+    }
+};
+
+/// A displacement gradient with no symmetry, and the strain it stands for.
+Mat3 displacement_gradient() {
+    Mat3 H;
+    H << 0.3, -0.2, 0.5, 0.7, -0.4, 0.1, 0.25, 0.6, 0.35;
+    return H;
+}
+Vec6 strain_of(const Mat3& H) {
+    Vec6 e;
+    e << H(0, 0), H(1, 1), H(2, 2), H(0, 1) + H(1, 0), H(1, 2) + H(2, 1), H(2, 0) + H(0, 2);
+    return e;
+}
+
+TEST_P(Kernel, KnowsItsNodes) {
+    EXPECT_EQ(kernel->nodes(), mesh::nodes_per_cell(GetParam().type));
+}
+
+TEST_P(Kernel, RigidMotionsGiveNoForce) {
+    const Matrix K = stiffness(X);
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Matrix3Xd shift = Vec3::Unit(k).replicate(1, n);
+        const Eigen::Matrix3Xd turn = X.colwise().cross(Vec3::Unit(k));
+        EXPECT_LT((K * shift.reshaped()).norm(), round_off) << "translation " << k;
+        EXPECT_LT((K * turn.reshaped()).norm(), round_off) << "rotation " << k;
+    }
+}
+
+TEST_P(Kernel, HasExactlySixZeroEnergyModes) {
+    const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>(stiffness(X)).eigenvalues();
+    EXPECT_LT(values.head(6).cwiseAbs().maxCoeff(), zero_energy * values.maxCoeff());
+    EXPECT_GT(values[6], resisting * values.maxCoeff());
+}
+
+TEST_P(Kernel, StiffnessIsSymmetric) {
+    const Matrix K = stiffness(X);
+    EXPECT_EQ((K - K.transpose()).norm(), 0);
+}
+
+TEST_P(Kernel, EnergyOfALinearFieldIsExact) {
+    const Mat3 H = displacement_gradient();
+    const Vector u = (H * X).reshaped();
+    const Vec6 strain = strain_of(H);
+    const double energy = 0.5 * strain.dot(material.stress(strain)) * kernel->volume(X);
+    EXPECT_NEAR(0.5 * u.dot(stiffness(X) * u), energy, round_off * energy);
+}
+
+TEST_P(Kernel, LinearFieldGivesItsConstantStressAtEveryNode) {
+    const Mat3 H = displacement_gradient();
+    Matrix stress(6, n);
+    kernel->nodal_stress(X, H * X, stress);
+    const Vec6 expected = material.stress(strain_of(H));
+    EXPECT_LT((stress.colwise() - expected).norm(), round_off);
+}
+
+TEST_P(Kernel, StiffnessTurnsAndTravelsWithTheElement) {
+    const Mat3 R = Eigen::AngleAxisd(0.9, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
+    Matrix T = Matrix::Zero(3 * n, 3 * n);
+    for (int a = 0; a < n; ++a) T.block<3, 3>(3 * a, 3 * a) = R;
+    const Matrix expected = T * stiffness(X) * T.transpose();
+    const Matrix moved = stiffness((R * X).colwise() + Vec3(3, -2, 5));
+    EXPECT_LT((moved - expected).norm(), round_off * expected.norm());
+}
+
+TEST_P(Kernel, StiffnessGrowsWithTheSizeOfTheElement) {
+    const Matrix K = stiffness(X);
+    EXPECT_LT((stiffness(1000 * X) - 1000 * K).norm(), 1000 * round_off * K.norm());
+}
+
+TEST_P(Kernel, EverySymmetryOfTheShapePermutesTheStiffness) {
+    // a permutation is a symmetry when an orientation-keeping affine map carries the reference nodes into that order
+    const Eigen::Matrix3Xd c = reference_positions(GetParam().type);
+    Matrix affine(n, 4);
+    affine << c.transpose(), Vector::Ones(n);
+    const Matrix inverse = affine.completeOrthogonalDecomposition().pseudoInverse();
+    const Matrix misfit = Matrix::Identity(n, n) - affine * inverse;
+    const Matrix K = stiffness(X);
+    std::vector<int> p(static_cast<std::size_t>(n));
+    std::iota(p.begin(), p.end(), 0);
+    int symmetries = 0;
+    do {
+        const Matrix permuted = c(Eigen::all, p).transpose();
+        if ((misfit * permuted).norm() > round_off || (inverse * permuted).topRows<3>().determinant() < 0) continue;
+        ++symmetries;
+        std::vector<int> dofs;
+        for (const int a : p)
+            for (int d = 0; d < 3; ++d) dofs.push_back(3 * a + d);
+        const Matrix expected = K(dofs, dofs);
+        EXPECT_LT((stiffness(X(Eigen::all, p)) - expected).norm(), round_off * K.norm());
+    } while (std::next_permutation(p.begin(), p.end()));
+    const int expected = n == 4 ? 12 : n == 6 ? 6 : 24;
+    EXPECT_EQ(symmetries, expected);
+}
+
+TEST_P(Kernel, BodyForceSumsToForcePerVolumeTimesVolume) {
+    const Vec3 b(1, -2, 3);
+    Eigen::Matrix3Xd f(3, n);
+    kernel->body_force(X, b, f);
+    EXPECT_LT((f.rowwise().sum() - b * kernel->volume(X)).norm(), round_off);
+}
+
+TEST_P(Kernel, BodyForceOfAnAffineElementIsSharedEqually) {
+    const Eigen::Matrix3Xd affine = distorted_element(GetParam().type, 0);
+    const Vec3 b(1, -2, 3);
+    Eigen::Matrix3Xd f(3, n);
+    kernel->body_force(affine, b, f);
+    EXPECT_LT((f.colwise() - b * kernel->volume(affine) / n).norm(), round_off);
+}
+
+TEST_P(Kernel, InvertedElementIsRefused) {
+    const Eigen::Matrix3Xd mirrored = Vec3(1, 1, -1).asDiagonal() * X;
+    Matrix K(3 * n, 3 * n);
+    EXPECT_THROW(kernel->stiffness(mirrored, K), std::runtime_error);
+    EXPECT_THROW((void)kernel->volume(mirrored), std::runtime_error);
+    EXPECT_THROW((void)kernel->volume(0 * X), std::runtime_error);
+}
+
+TEST_P(Kernel, PatchOfDistortedElementsReproducesConstantStrain) {
+    // every node of the grid is moved off its place; only the surface nodes are told the linear field
+    int count = 0;
+    const Grid grid(GetParam(), material, {3, 3, 3}, [&](const Vec3& x) {
+        const Vec3 shift(scatter(count), scatter(count + 1), scatter(count + 2));
+        count += 3;
+        return Vec3(x + 0.06 * shift);
+    });
+    const Mat3 H = displacement_gradient();
+    const Eigen::Matrix3Xd linear = H * grid.X;
+    std::vector<bool> fixed(static_cast<std::size_t>(grid.X.size()), true);
+    Eigen::Matrix3Xd prescribed = linear;
+    for (int k = 1; k < 3; ++k)
+        for (int j = 1; j < 3; ++j)
+            for (int i = 1; i < 3; ++i)
+                for (int d = 0; d < 3; ++d) {
+                    fixed[static_cast<std::size_t>(3 * grid.node(i, j, k) + d)] = false;
+                    prescribed(d, grid.node(i, j, k)) = 0;
+                }
+    const Eigen::Matrix3Xd u = grid.solve(fixed, prescribed, Eigen::Matrix3Xd::Zero(3, grid.X.cols()));
+    EXPECT_LT((u - linear).norm(), round_off);
+    const Vec6 expected = material.stress(strain_of(H));
+    Matrix stress(6, n);
+    for (const auto& cell : grid.cells) {
+        kernel->nodal_stress(grid.gather(cell, grid.X), grid.gather(cell, u), stress);
+        EXPECT_LT((stress.colwise() - expected).norm(), round_off);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Kernel, ::testing::ValuesIn(all_cases), case_name);
+
+} // namespace
+} // namespace osculate::fe::testing

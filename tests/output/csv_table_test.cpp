@@ -87,9 +87,9 @@ TEST_F(CsvFile, StringsReadBackAsTheyWere) {
 }
 
 TEST_F(CsvFile, QuotesOnlyWhatNeedsIt) {
-    CsvTable table(folder / "a.csv", {"pair.P.force_x", "a,b"});
-    table.row({std::string("accept"), std::string("say \"no\"")});
-    EXPECT_EQ(content(folder / "a.csv"), "pair.P.force_x,\"a,b\"\naccept,\"say \"\"no\"\"\"\n");
+    CsvTable table(folder / "a.csv", {"pair.P.force_x", "a,b", "c"});
+    table.row({std::string("accept"), std::string("say \"no\""), std::string("\r")});
+    EXPECT_EQ(content(folder / "a.csv"), "pair.P.force_x,\"a,b\",c\naccept,\"say \"\"no\"\"\",\"\r\"\n");
 }
 
 TEST_F(CsvFile, EveryRowIsInTheFileAtOnce) {

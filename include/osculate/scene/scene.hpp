@@ -2,6 +2,7 @@
 /// A validated scene in SI units: what the user asked for, every default filled in, nothing else.
 
 #include "osculate/core/types.hpp"
+#include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/mesh.hpp"
 
 #include <array>
@@ -19,8 +20,7 @@ template <class T> using Named = std::vector<std::pair<std::string, T>>;
 
 // ---- meshes --------------------------------------------------------------------------------------------------------
 
-/// How the top (and, extruded, every horizontal layer) of a block is divided.
-enum class BlockPattern { quad, triangle, hybrid };
+using mesh::BlockPattern;
 
 struct BlockMesh {
     Vec3 origin = Vec3::Zero(); ///< lower corner, m
@@ -28,6 +28,7 @@ struct BlockMesh {
     std::array<int, 3> divisions{1, 1, 1};
     mesh::CellType element = mesh::CellType::hex8;
     BlockPattern pattern = BlockPattern::quad; ///< triangle: wedge6; hybrid: hex8 and wedge6 side by side
+    bool operator==(const BlockMesh&) const = default;
 };
 
 /// Lower half of a tube with its axis along y, open towards +z; z = -(inner_radius + thickness) is its lowest line.
@@ -35,6 +36,7 @@ struct HalfTubeMesh {
     double inner_radius = 3, thickness = 1, length = 12; ///< m
     std::array<int, 3> divisions{13, 12, 3};             ///< around, along, through the thickness
     mesh::CellType element = mesh::CellType::hex8;
+    bool operator==(const HalfTubeMesh&) const = default;
 };
 
 /// Block with a cylindrical underside (axis along y through the origin's x, radius `radius`) and a flat top.
@@ -43,10 +45,12 @@ struct ContactorMesh {
     double rear = 0.5;                                    ///< y of the rear face, m
     std::array<int, 3> divisions{12, 16, 3};              ///< across, along, through the height
     mesh::CellType element = mesh::CellType::hex8;
+    bool operator==(const ContactorMesh&) const = default;
 };
 
 struct FileMesh {
-    std::string path; ///< VTU file, absolute or beside the scene
+    std::string path; ///< VTU file; the reader makes it absolute
+    bool operator==(const FileMesh&) const = default;
 };
 
 /// Rigid placement applied after generation: x = scale * (rotation * X) + translation.
@@ -55,11 +59,13 @@ struct Placement {
     double angle = 0; ///< rad
     Vec3 translation = Vec3::Zero();
     double scale = 1;
+    bool operator==(const Placement&) const = default;
 };
 
 struct MeshSpec {
     std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, FileMesh> source;
     Placement placement;
+    bool operator==(const MeshSpec&) const = default;
 };
 
 // ---- bodies --------------------------------------------------------------------------------------------------------
@@ -67,6 +73,7 @@ struct MeshSpec {
 struct LinearElastic {
     double E = 0;  ///< Young's modulus, Pa
     double nu = 0; ///< Poisson's ratio
+    bool operator==(const LinearElastic&) const = default;
 };
 
 enum class HexFormulation { full, b_bar, incompatible_modes };
@@ -75,31 +82,39 @@ struct Body {
     MeshSpec mesh;
     std::variant<LinearElastic> material;
     HexFormulation hex_formulation = HexFormulation::full;
+    bool operator==(const Body&) const = default;
 };
 
 // ---- sets: parts of a body's exterior, or of its nodes ---------------------------------------------------------------
 
 struct SelectNamed {
-    std::string name; ///< a surface or node set that the mesh brings along
+    std::string name;   ///< a surface or node set that the mesh brings along
+    bool nodes = false; ///< a node set; false: a surface
+    bool operator==(const SelectNamed&) const = default;
 };
 struct SelectPlane {
     Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
+    bool operator==(const SelectPlane&) const = default;
 };
 struct SelectCylinder {
     Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
     double radius = 1;
+    bool operator==(const SelectCylinder&) const = default;
 };
 struct SelectBox {
     Vec3 min = Vec3::Zero(), max = Vec3::Ones();
+    bool operator==(const SelectBox&) const = default;
 };
 struct SelectNormal {
     Vec3 direction = Vec3::UnitZ();
     double angle = 0.5; ///< largest angle between facet normal and direction, rad
+    bool operator==(const SelectNormal&) const = default;
 };
 
 struct SetSpec {
     std::string body;
     std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal> select;
+    bool operator==(const SetSpec&) const = default;
 };
 
 // ---- supports: constraints that hold for the whole run ---------------------------------------------------------------
@@ -108,14 +123,15 @@ struct SetSpec {
 struct Support {
     std::array<bool, 3> fixed{false, false, false}; ///< held at zero along axes[0..2]
     Mat3 axes = Mat3::Identity();                   ///< columns: the directions that "x", "y", "z" mean for this set
-    bool symmetry =
-        false; ///< mirror plane through the set: only the displacement along its normal (axes column 0) is held
+    bool symmetry = false; ///< mirror plane: fixed is {true, false, false} and column 0 of the axes is its normal
+    bool operator==(const Support&) const = default;
 };
 
 // ---- contact ---------------------------------------------------------------------------------------------------------
 
 struct FacetsSurface {
     double hysteresis = 0.03; ///< a facet is left only for one closer by this fraction of its size
+    bool operator==(const FacetsSurface&) const = default;
 };
 
 enum class PatchCoordinates { tangential, equal_length };
@@ -126,11 +142,13 @@ struct RpimSurface {
     int m = 6; ///< terms of the polynomial basis, 3 or 6
     PatchCoordinates coordinates = PatchCoordinates::equal_length;
     double hysteresis = 0.03;
+    bool operator==(const RpimSurface&) const = default;
 };
 
 struct MasterSpec {
     std::string set;
     std::variant<FacetsSurface, RpimSurface> surface;
+    bool operator==(const MasterSpec&) const = default;
 };
 
 struct Pair {
@@ -140,7 +158,8 @@ struct Pair {
     double closing_tolerance = 0.02;    ///< of the facet size: a first solve closes nodes with a smaller gap
     double initial_overlap_limit = 0.1; ///< of the facet size: a deeper initial overlap is a fault
     double stiffness_scale =
-        1; ///< c of the complementarity function over its local estimate; the result is independent of it
+        1; ///< c of the complementarity function over its local estimate; results do not depend on it
+    bool operator==(const Pair&) const = default;
 };
 
 // ---- stages ------------------------------------------------------------------------------------------------------------
@@ -153,6 +172,7 @@ struct Stage {
     Named<std::array<std::optional<double>, 3>> displacement; ///< set -> components along the support's axes, m
     Named<double> pressure; ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
     Named<Vec3> body_force; ///< body -> N/m^3
+    bool operator==(const Stage&) const = default;
 };
 
 struct Solver {
@@ -160,12 +180,13 @@ struct Solver {
     int max_iterations = 30;     ///< Newton iterations of one attempt
     double smallest_step = 1e-3; ///< of the stage's step: a smaller one is given up
     bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
+    bool operator==(const Solver&) const = default;
 };
 
 // ---- output --------------------------------------------------------------------------------------------------------------
 
 struct Output {
-    std::string template_name = "contact";
+    std::string template_name = "contact";  ///< or the absolute path of a template that is not a shipped one
     std::vector<std::string> body_fields;   ///< displacement stress von_mises reaction
     std::vector<std::string> slave_fields;  ///< gap contact_force normal_stress slip status normal
     std::vector<std::string> master_fields; ///< contact_force
@@ -173,11 +194,13 @@ struct Output {
     bool history_reactions = true;
     bool iterations = false; ///< write iterations.csv
     int frame_every = 1;     ///< accepted steps between frames; 0 writes none
+    bool operator==(const Output&) const = default;
 };
 
 struct Scene {
-    std::string name;
-    std::string directory; ///< of the scene file, for relative paths
+    std::string name;        ///< fit for a file name: letters, digits, _ and -
+    std::string description; ///< free text
+    std::string directory;   ///< of the scene file, absolute
     Named<Body> bodies;
     Named<SetSpec> sets;
     Named<Support> supports; ///< keyed by set
@@ -185,6 +208,7 @@ struct Scene {
     Named<Stage> stages;
     Solver solver;
     Output output;
+    bool operator==(const Scene&) const = default;
 };
 
 /// The value called `name`, or nullptr.

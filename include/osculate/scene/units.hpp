@@ -1,0 +1,48 @@
+#pragma once
+/// Quantities with units: "30 MPa", "0.25 m", "2 kN/m^3".
+
+#include <string>
+#include <string_view>
+
+namespace osculate::scene {
+
+/// Exponents of the base units m, kg, s and rad. An angle is a dimension of its own, so that no angle passes as a number.
+struct Dimension {
+    int length = 0, mass = 0, time = 0, angle = 0;
+    bool operator==(const Dimension&) const = default;
+};
+
+namespace dimension {
+inline constexpr Dimension none{};
+inline constexpr Dimension length{1, 0, 0, 0};
+inline constexpr Dimension time{0, 0, 1, 0};
+inline constexpr Dimension angle{0, 0, 0, 1};
+inline constexpr Dimension force{1, 1, -2, 0};
+inline constexpr Dimension pressure{-1, 1, -2, 0};
+inline constexpr Dimension density{-3, 1, 0, 0};
+inline constexpr Dimension acceleration{1, 0, -2, 0};
+inline constexpr Dimension force_per_volume{-2, 1, -2, 0};
+} // namespace dimension
+
+/// "pressure", "force per volume"; the SI unit itself where the dimension has no name, "number" where it has no unit.
+[[nodiscard]] std::string name_of(Dimension dimension);
+
+/// SI unit: "Pa", "N/m^3"; empty for a plain number.
+[[nodiscard]] std::string unit_of(Dimension dimension);
+
+struct Quantity {
+    double value = 0; ///< SI; may be infinite or NaN, as written
+    Dimension dimension;
+    bool has_unit = false;
+    std::string problem; ///< why the text is no quantity; empty when it is one
+    std::string nearest; ///< the known unit nearest to an unknown one
+};
+
+/// A number, or a number and a unit: products and quotients (left to right) of m, g, s, N, Pa, J, W, Hz, rad with SI
+/// prefixes, and t, bar, min, h, deg, each with an integer power.
+[[nodiscard]] Quantity parse_quantity(std::string_view text);
+
+/// The shortest decimal that reads back as the same double.
+[[nodiscard]] std::string number_text(double value);
+
+} // namespace osculate::scene

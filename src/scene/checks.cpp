@@ -1,0 +1,103 @@
+#include "scene/checks.hpp"
+
+#include "osculate/scene/units.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+namespace osculate::scene {
+
+namespace {
+
+class Rules {
+public:
+    Rules(const Tree& tree, std::vector<Fault>& faults) : tree_(tree), faults_(faults) {}
+
+    void check_mesh(const std::string& body, const BlockMesh& m) {
+        const std::vector<std::string> path{"bodies", body, "mesh", "block", "pattern"};
+        if (m.pattern == BlockPattern::hybrid && m.element != mesh::CellType::hex8)
+            fault(path, "pattern hybrid with element hex8", "another element");
+        else if (m.pattern == BlockPattern::hybrid && m.divisions[0] * m.divisions[1] < 2)
+            fault(path, "at least two columns of elements for pattern hybrid", "one");
+        else if (m.pattern != BlockPattern::quad && m.element == mesh::CellType::tet4)
+            fault(path, "pattern quad with element tet4", "another pattern");
+    }
+    void check_mesh(const std::string& /*body*/, const HalfTubeMesh& /*m*/) {}
+    void check_mesh(const std::string& body, const ContactorMesh& m) {
+        const double half = m.width / 2;
+        if (half > m.radius) {
+            fault({"bodies", body, "mesh", "contactor", "width"},
+                  "at most twice the radius, " + number_text(2 * m.radius) + " m", number_text(m.width) + " m");
+            return;
+        }
+        const double least = m.radius - std::sqrt((m.radius - half) * (m.radius + half));
+        if (m.height <= least)
+            fault({"bodies", body, "mesh", "contactor", "height"},
+                  "more than " + number_text(least) + " m, where the flat top meets the underside's edges",
+                  number_text(m.height) + " m");
+    }
+    void check_mesh(const std::string& body, const FileMesh& m) {
+        std::error_code ignored;
+        if (!m.path.empty() && !std::filesystem::is_regular_file(m.path, ignored))
+            fault({"bodies", body, "mesh", "file", "path"}, "a file that exists", "'" + m.path + "'");
+    }
+
+    void check_set(const std::string& name, const SetSpec& set) {
+        const auto* box = std::get_if<SelectBox>(&set.select);
+        if (box && (box->min.array() > box->max.array()).any())
+            fault({"sets", name, "box"}, "min at most max in every component", "min above max");
+    }
+
+    void check_pair(const std::string& name, const Pair& pair) {
+        if (!pair.slave.empty() && pair.slave == pair.master.set)
+            fault({"contact", name, "slave"}, "another set than the master's", "'" + pair.slave + "' for both");
+    }
+
+    void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {
+        const std::vector<std::string> path{"stages", name, "displacement"};
+        for (const auto& [set, components] : stage.displacement) {
+            const Support* support = find(supports, set);
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (!components[a] || !support || !support->fixed[a]) continue;
+                const std::string axis(1, "xyz"[a]);
+                fault({"stages", name, "displacement", set, axis}, "a component that supports." + set + " leaves free",
+                      axis + ", which is held");
+            }
+            const Tree* written = locate({"stages", name, "displacement", set});
+            if (written->key == set && written->children.empty())
+                fault({"stages", name, "displacement", set}, "at least one of x, y, z", "none");
+        }
+    }
+
+private:
+    /// The deepest part of a path that the tree has.
+    [[nodiscard]] const Tree* locate(const std::vector<std::string>& path) const {
+        const Tree* node = &tree_;
+        for (const std::string& part : path) {
+            const Tree* child = node->find(part);
+            if (!child) break;
+            node = child;
+        }
+        return node;
+    }
+
+    void fault(const std::vector<std::string>& path, std::string expected, std::string found) {
+        faults_.push_back(fault_at(locate(path)->place, join(path, "."), std::move(expected), std::move(found)));
+    }
+
+    const Tree& tree_;
+    std::vector<Fault>& faults_;
+};
+
+} // namespace
+
+void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& faults) {
+    Rules rules(tree, faults);
+    for (const auto& [name, body] : scene.bodies)
+        std::visit([&, &n = name](const auto& source) { rules.check_mesh(n, source); }, body.mesh.source);
+    for (const auto& [name, set] : scene.sets) rules.check_set(name, set);
+    for (const auto& [name, pair] : scene.contact) rules.check_pair(name, pair);
+    for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,212 @@
+#include "scene/describe.hpp"
+
+#include "scene/describe_parts.hpp"
+
+#include <algorithm>
+
+namespace osculate::scene {
+
+namespace {
+
+constexpr const char* hysteresis_meaning = "A facet is left only for one closer by this fraction of its size.";
+constexpr Range hysteresis_range{.low = 0, .high = 1, .open_high = true};
+
+void describe(Visitor& v, FacetsSurface& s) {
+    v.number({.name = "hysteresis", .meaning = hysteresis_meaning, .range = hysteresis_range}, s.hysteresis);
+}
+
+void describe(Visitor& v, RpimSurface& s) {
+    v.integer({.name = "ring",
+               .meaning = "Rings of facets around the projection's facet whose nodes make its patch.",
+               .range = {.low = 1, .high = 3}},
+              s.ring);
+    v.number({.name = "R",
+              .meaning = "Shape parameter of the multiquadric, in mean nodal distances.",
+              .range = {.low = 0, .high = 4}},
+             s.R);
+    v.number({.name = "q",
+              .meaning = "Exponent of the multiquadric; not a whole number.",
+              .range = {.low = -4, .high = 4},
+              .not_whole = true},
+             s.q);
+    static const Words sizes{"3", "6"};
+    std::size_t index = s.m == 3 ? 0 : 1;
+    v.word({.name = "m", .meaning = "Terms of the polynomial basis: 3 linear, 6 quadratic."}, sizes, index);
+    s.m = index == 0 ? 3 : 6;
+    static const Words coordinates{"tangential", "equal_length"};
+    word(v, {.name = "coordinates", .meaning = "How patch nodes are laid out on the reference plane."}, coordinates,
+         s.coordinates);
+    v.number({.name = "hysteresis", .meaning = hysteresis_meaning, .range = hysteresis_range}, s.hysteresis);
+}
+
+void describe(Visitor& v, MasterSpec& master) {
+    v.text({.name = "set", .meaning = "Master surface.", .required = true, .names = Names::set}, master.set);
+    v.group({.name = "surface",
+             .meaning = "Geometry of the master; contact.<pair>.surface is short for it.",
+             .bare_word = true},
+            [&] {
+                static const Words tags{"facets", "rpim"};
+                one_of(v, tags,
+                       {"The finite element surface as it is.",
+                        "Smooth patches by radial point interpolation with a polynomial basis."},
+                       true, master.surface, [&v](auto& alternative) { describe(v, alternative); });
+            });
+}
+
+} // namespace
+
+void describe(Visitor& v, Pair& pair) {
+    v.text({.name = "slave",
+            .meaning = "Slave surface: its nodes carry the contact.",
+            .required = true,
+            .names = Names::set},
+           pair.slave);
+    v.group({.name = "master", .meaning = "Master side.", .required = true}, [&] { describe(v, pair.master); });
+    v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
+    v.number({.name = "closing_tolerance",
+              .meaning = "Of the facet size: a first solve closes nodes with a smaller gap.",
+              .range = range::fraction},
+             pair.closing_tolerance);
+    v.number({.name = "initial_overlap_limit",
+              .meaning = "Of the facet size: a deeper initial overlap is a fault.",
+              .range = range::fraction},
+             pair.initial_overlap_limit);
+    v.number({.name = "stiffness_scale",
+              .meaning = "Factor on the complementarity function's constant; results do not depend on it.",
+              .range = {.low = 1e-6, .high = 1e6}},
+             pair.stiffness_scale);
+}
+
+void describe(Visitor& v, Stage& stage) {
+    v.number({.name = "duration",
+              .meaning = "Length of the stage.",
+              .unit = dimension::time,
+              .range = {.low = 1e-12, .high = 1e12}},
+             stage.duration);
+    v.integer({.name = "steps", .meaning = "Equal steps of the stage.", .range = {.low = 1, .high = 1e6}}, stage.steps);
+    static const Words ramps{"linear", "step"};
+    std::size_t ramp = stage.ramp ? 0 : 1;
+    v.word({.name = "ramp", .meaning = "Values change linearly over the stage, or in full in its first step."}, ramps,
+           ramp);
+    stage.ramp = ramp == 0;
+    named(v,
+          {.name = "displacement",
+           .meaning = "Displacement of sets reached at the end of the stage.",
+           .names = Names::set,
+           .item = "set"},
+          stage.displacement, [&](const std::string& set, std::array<std::optional<double>, 3>& components) {
+              v.group(
+                  {.name = set, .meaning = "Components along the set's axes; one left out stays free or as it was."},
+                  [&] {
+                      for (std::size_t a = 0; a < 3; ++a)
+                          v.optional_number({.name = axis_words[a],
+                                             .meaning = "Component from the reference position.",
+                                             .unit = dimension::length,
+                                             .range = range::position},
+                                            components[a]);
+                  });
+          });
+    named(v,
+          {.name = "pressure",
+           .meaning = "Dead pressure on sets, on the reference area, reached at the end of the stage.",
+           .names = Names::set,
+           .item = "set"},
+          stage.pressure, [&](const std::string& set, double& value) {
+              v.number({.name = set,
+                        .meaning = "Positive pushes into the body.",
+                        .unit = dimension::pressure,
+                        .required = true},
+                       value);
+          });
+    named(v,
+          {.name = "body_force",
+           .meaning = "Force per volume on bodies, reached at the end of the stage.",
+           .names = Names::body,
+           .item = "body"},
+          stage.body_force, [&](const std::string& body, Vec3& value) {
+              v.vector({.name = body,
+                        .meaning = "Force per reference volume.",
+                        .unit = dimension::force_per_volume,
+                        .required = true},
+                       value);
+          });
+}
+
+void describe(Visitor& v, Solver& solver) {
+    v.number({.name = "tolerance",
+              .meaning = "Largest residual over the step's reference force.",
+              .range = {.low = 0, .high = 1e-2, .open_low = true}},
+             solver.tolerance);
+    v.integer(
+        {.name = "max_iterations", .meaning = "Newton iterations of one attempt.", .range = {.low = 1, .high = 1000}},
+        solver.max_iterations);
+    v.number({.name = "smallest_step",
+              .meaning = "Of the stage's step: a run that needs a smaller one gives up.",
+              .range = {.low = 0, .high = 1, .open_low = true}},
+             solver.smallest_step);
+    v.flag({.name = "predictor",
+            .meaning = "Move driven bodies rigidly by the prescribed increment before the first iteration."},
+           solver.predictor);
+}
+
+void describe_output(Visitor& v, Output& output) {
+    static const Words body_fields{"displacement", "stress", "von_mises", "reaction"};
+    static const Words slave_fields{"gap", "contact_force", "normal_stress", "slip", "status", "normal"};
+    static const Words master_fields{"contact_force"};
+    constexpr const char* from_template = "the template's";
+    v.words({.name = "body_fields", .meaning = "Fields of the bodies' frames.", .default_text = from_template},
+            body_fields, output.body_fields);
+    v.words({.name = "slave_fields", .meaning = "Fields of the slave surfaces' frames.", .default_text = from_template},
+            slave_fields, output.slave_fields);
+    v.words(
+        {.name = "master_fields", .meaning = "Fields of the master surfaces' frames.", .default_text = from_template},
+        master_fields, output.master_fields);
+    static const Words histories{"pairs", "reactions"};
+    std::vector<std::string> history;
+    if (output.history_pairs) history.push_back(histories[0]);
+    if (output.history_reactions) history.push_back(histories[1]);
+    v.words({.name = "history", .meaning = "Column groups of history.csv.", .default_text = from_template}, histories,
+            history);
+    output.history_pairs = std::ranges::count(history, histories[0]) > 0;
+    output.history_reactions = std::ranges::count(history, histories[1]) > 0;
+    v.flag({.name = "iterations", .meaning = "Write iterations.csv.", .default_text = from_template},
+           output.iterations);
+    v.integer({.name = "frame_every",
+               .meaning = "Accepted steps between frames; 0 writes none.",
+               .range = {.low = 0, .high = 1e6},
+               .default_text = from_template},
+              output.frame_every);
+}
+
+void describe(Visitor& v, Scene& scene) {
+    v.text({.name = "name",
+            .meaning = "Name of the scene and of its output folder.",
+            .names = Names::identifier,
+            .default_text = "the file's name"},
+           scene.name);
+    v.text({.name = "description", .meaning = "Free text."}, scene.description);
+    const auto group = [&v]<class T>(const std::string& name, T& value) {
+        v.group({.name = name}, [&] { describe(v, value); });
+    };
+    named(v, {.name = "bodies", .meaning = "Deformable bodies.", .required = true, .item = "body"}, scene.bodies,
+          group);
+    named(v, {.name = "sets", .meaning = "Parts of a body's exterior, or of its nodes.", .item = "set"}, scene.sets,
+          group);
+    named(
+        v,
+        {.name = "supports", .meaning = "Constraints of sets, for the whole run.", .names = Names::set, .item = "set"},
+        scene.supports, group);
+    named(v, {.name = "contact", .meaning = "Contact pairs.", .item = "pair"}, scene.contact, group);
+    named(v, {.name = "stages", .meaning = "Static stages, in order.", .required = true, .item = "stage"}, scene.stages,
+          group);
+    v.group({.name = "solver", .meaning = "Nonlinear solution."}, [&] { describe(v, scene.solver); });
+    v.group({.name = "output", .meaning = "What the run writes."}, [&] {
+        v.text({.name = "template",
+                .meaning = "Output template: the name of a shipped one or of a file NAME.yaml, or a path to a .yaml "
+                           "file; the keys beside it win over it."},
+               scene.output.template_name);
+        describe_output(v, scene.output);
+    });
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,15 @@
+#pragma once
+/// The one list of keys.
+
+#include "osculate/scene/scene.hpp"
+#include "scene/visitor.hpp"
+
+namespace osculate::scene {
+
+/// Shows every key of a scene to a visitor.
+void describe(Visitor& v, Scene& scene);
+
+/// The keys that an output template may hold: those of `output` but for the template's name.
+void describe_output(Visitor& v, Output& output);
+
+} // namespace osculate::scene

@@ -1,0 +1,256 @@
+#include "scene/describe_parts.hpp"
+#include "scene/frame.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace osculate::scene {
+
+namespace {
+
+constexpr Range divisions_range{.low = 1, .high = 10000};
+constexpr double most_elements = 2e7;
+
+const Words cell_words{"tet4", "wedge6", "hex8"};
+
+void describe(Visitor& v, BlockMesh& m) {
+    v.vector({.name = "origin", .meaning = "Lower corner.", .unit = dimension::length, .range = range::position},
+             m.origin);
+    v.vector({.name = "size", .meaning = "Edge lengths.", .unit = dimension::length, .range = range::size}, m.size);
+    v.divisions({.name = "divisions",
+                 .meaning = "Elements along x, y, z.",
+                 .range = divisions_range,
+                 .largest_product = most_elements},
+                m.divisions);
+    word(v, {.name = "element", .meaning = "Element shape."}, cell_words, m.element);
+    static const Words patterns{"quad", "triangle", "hybrid"};
+    word(v,
+         {.name = "pattern",
+          .meaning = "How the top and every layer below is divided; triangle cuts hexahedra into wedges, hybrid every "
+                     "other one."},
+         patterns, m.pattern);
+}
+
+void describe(Visitor& v, HalfTubeMesh& m) {
+    v.number({.name = "inner_radius",
+              .meaning = "Radius of the inner face.",
+              .unit = dimension::length,
+              .range = range::size},
+             m.inner_radius);
+    v.number({.name = "thickness", .meaning = "Wall thickness.", .unit = dimension::length, .range = range::size},
+             m.thickness);
+    v.number(
+        {.name = "length", .meaning = "Length along y, from y = 0.", .unit = dimension::length, .range = range::size},
+        m.length);
+    v.divisions({.name = "divisions",
+                 .meaning = "Elements around, along y, through the thickness.",
+                 .range = divisions_range,
+                 .largest_product = most_elements},
+                m.divisions);
+    word(v, {.name = "element", .meaning = "Element shape."}, cell_words, m.element);
+}
+
+void describe(Visitor& v, ContactorMesh& m) {
+    v.number({.name = "radius",
+              .meaning = "Radius of the underside, at least half the width.",
+              .unit = dimension::length,
+              .range = range::size},
+             m.radius);
+    v.number({.name = "width", .meaning = "Extent along x.", .unit = dimension::length, .range = range::size}, m.width);
+    v.number({.name = "length", .meaning = "Extent along y.", .unit = dimension::length, .range = range::size},
+             m.length);
+    v.number({.name = "height",
+              .meaning = "Extent along z at the centre line.",
+              .unit = dimension::length,
+              .range = range::size},
+             m.height);
+    v.number({.name = "rear", .meaning = "y of the rear face.", .unit = dimension::length, .range = range::position},
+             m.rear);
+    v.divisions({.name = "divisions",
+                 .meaning = "Elements across x, along y, through z.",
+                 .range = divisions_range,
+                 .largest_product = most_elements},
+                m.divisions);
+    word(v, {.name = "element", .meaning = "Element shape."}, cell_words, m.element);
+}
+
+void describe(Visitor& v, FileMesh& m) {
+    v.text({.name = "path", .meaning = "VTU file; a relative path starts at the scene's folder.", .required = true},
+           m.path);
+}
+
+void describe(Visitor& v, LinearElastic& m) {
+    v.number({.name = "E",
+              .meaning = "Young's modulus.",
+              .unit = dimension::pressure,
+              .range = range::positive,
+              .required = true},
+             m.E);
+    v.number({.name = "nu",
+              .meaning = "Poisson's ratio.",
+              .range = {.low = -1, .high = 0.5, .open_low = true, .open_high = true},
+              .required = true},
+             m.nu);
+}
+
+void describe(Visitor& v, MeshSpec& mesh) {
+    static const Words tags{"block", "half_tube", "contactor", "file"};
+    one_of(v, tags,
+           {"Axis-parallel block; surfaces x_min x_max y_min y_max z_min z_max.",
+            "Lower half of a tube along y, open towards +z; surfaces inner outer y_min y_max rim_left rim_right.",
+            "Block with a cylindrical underside along y; surfaces bottom top rear front left right.",
+            "Mesh from a VTU file."},
+           true, mesh.source, [&v](auto& alternative) { describe(v, alternative); });
+    Placement& p = mesh.placement;
+    v.number({.name = "scale",
+              .meaning = "Size factor; applied with the rotation, before the translation.",
+              .range = {.low = 1e-12, .high = 1e12}},
+             p.scale);
+    v.group({.name = "rotate", .meaning = "Rotation about an axis through the origin."}, [&] {
+        v.vector({.name = "axis", .meaning = "Direction of the axis.", .range = range::direction, .direction = true},
+                 p.axis);
+        v.number({.name = "angle",
+                  .meaning = "Right-handed angle.",
+                  .unit = dimension::angle,
+                  .range = {.low = -100, .high = 100}},
+                 p.angle);
+    });
+    v.vector({.name = "translate", .meaning = "Translation.", .unit = dimension::length, .range = range::position},
+             p.translation);
+}
+
+} // namespace
+
+void describe(Visitor& v, Body& body) {
+    v.group({.name = "mesh", .meaning = "A generator or a file, and its placement.", .required = true},
+            [&] { describe(v, body.mesh); });
+    v.group({.name = "material", .meaning = "Constitutive law.", .required = true}, [&] {
+        static const Words tags{"linear_elastic"};
+        one_of(v, tags, {"Isotropic linear elasticity at small strain."}, true, body.material,
+               [&v](auto& alternative) { describe(v, alternative); });
+    });
+    static const Words formulations{"full", "b_bar", "incompatible_modes"};
+    word(v, {.name = "hex_formulation", .meaning = "Formulation of the body's hexahedra."}, formulations,
+         body.hex_formulation);
+}
+
+namespace {
+
+// Point, direction and box of the geometric selections.
+void point(Visitor& v, const char* name, const char* meaning, Vec3& value) {
+    v.vector({.name = name, .meaning = meaning, .unit = dimension::length, .range = range::position, .required = true},
+             value);
+}
+void direction(Visitor& v, const char* name, const char* meaning, Vec3& value) {
+    v.vector({.name = name, .meaning = meaning, .range = range::direction, .required = true, .direction = true}, value);
+}
+
+void describe(Visitor& v, SelectPlane& s) {
+    point(v, "point", "A point of the plane.", s.point);
+    direction(v, "normal", "Normal of the plane.", s.normal);
+}
+
+void describe(Visitor& v, SelectCylinder& s) {
+    point(v, "point", "A point of the axis.", s.point);
+    direction(v, "axis", "Direction of the axis.", s.axis);
+    v.number(
+        {.name = "radius", .meaning = "Radius.", .unit = dimension::length, .range = range::size, .required = true},
+        s.radius);
+}
+
+void describe(Visitor& v, SelectBox& s) {
+    point(v, "min", "Lower corner.", s.min);
+    point(v, "max", "Upper corner.", s.max);
+}
+
+void describe(Visitor& v, SelectNormal& s) {
+    direction(v, "direction", "Direction that outward normals are compared with.", s.direction);
+    v.number({.name = "angle",
+              .meaning = "Largest angle between a facet's normal and the direction.",
+              .unit = dimension::angle,
+              .range = {.low = 0, .high = std::numbers::pi, .open_low = true}},
+             s.angle);
+}
+
+} // namespace
+
+void describe(Visitor& v, SetSpec& set) {
+    v.text({.name = "body", .meaning = "Body the set belongs to.", .required = true, .names = Names::body}, set.body);
+    static const Words tags{"surface", "nodes", "plane", "cylinder", "box", "normal"};
+    constexpr std::size_t nodes = 1; // surface and nodes are both a SelectNamed
+    const std::size_t index = set.select.index();
+    const auto* by_name = std::get_if<SelectNamed>(&set.select);
+    const auto name = [&v](const Key& key, SelectNamed& s) { v.text(key, s.name); };
+    const auto group = [&](const char* tag, const char* meaning) {
+        v.group({.name = tag, .meaning = meaning}, [&] {
+            std::visit(
+                [&]<class S>(S& s) {
+                    if constexpr (!std::is_same_v<S, SelectNamed>) describe(v, s);
+                },
+                set.select);
+        });
+    };
+    v.one_of({.tags = tags,
+              .active = by_name ? (by_name->nodes ? nodes : 0) : index + 1,
+              .required = true,
+              .choose =
+                  [&](std::size_t i) {
+                      emplace(set.select, i <= nodes ? 0 : i - 1, std::make_index_sequence<5>{});
+                      if (i == nodes) std::get<SelectNamed>(set.select).nodes = true;
+                  },
+              .describe =
+                  [&](std::size_t i) {
+                      switch (i) {
+                      case 0:
+                          return name(
+                              {.name = "surface", .meaning = "A surface that the mesh names.", .required = true},
+                              std::get<SelectNamed>(set.select));
+                      case nodes:
+                          return name({.name = "nodes", .meaning = "A node set that the mesh names.", .required = true},
+                                      std::get<SelectNamed>(set.select));
+                      case 2: return group("plane", "Exterior facets in a plane.");
+                      case 3: return group("cylinder", "Exterior facets on a cylinder.");
+                      case 4: return group("box", "Exterior facets inside a box.");
+                      default: return group("normal", "Exterior facets that face a direction.");
+                      }
+                  }});
+}
+
+void describe(Visitor& v, Support& support) {
+    static const Words tags{"fix", "symmetry"};
+    v.one_of({.tags = tags,
+              .active = support.symmetry ? std::size_t{1} : std::size_t{0},
+              .required = false,
+              .choose =
+                  [&](std::size_t i) {
+                      support.symmetry = i == 1;
+                      support.fixed = {support.symmetry, false, false};
+                  },
+              .describe =
+                  [&](std::size_t i) {
+                      if (i == 1) {
+                          Vec3 normal = support.axes.col(0);
+                          v.vector({.name = "symmetry",
+                                    .meaning = "Mirror plane with this normal: displacement along it is held at zero.",
+                                    .range = range::direction,
+                                    .direction = true,
+                                    .default_text = "none"},
+                                   normal);
+                          support.axes = frame_about(normal);
+                          return;
+                      }
+                      std::vector<std::string> fixed;
+                      for (std::size_t a = 0; a < 3; ++a)
+                          if (support.fixed[a]) fixed.push_back(axis_words[a]);
+                      v.words({.name = "fix", .meaning = "Components held at zero.", .default_text = "none"},
+                              axis_words, fixed);
+                      for (std::size_t a = 0; a < 3; ++a)
+                          support.fixed[a] = std::ranges::count(fixed, axis_words[a]) > 0;
+                  }});
+    if (!support.symmetry)
+        v.axes({.name = "axes",
+                .meaning = "The directions that x and y mean for this set, made orthonormal; z is normal to both."},
+               support.axes);
+}
+
+} // namespace osculate::scene

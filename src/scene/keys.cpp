@@ -1,0 +1,128 @@
+#include "osculate/scene/keys.hpp"
+
+#include "scene/describe.hpp"
+#include "scene/tree.hpp"
+
+#include <algorithm>
+
+namespace osculate::scene {
+
+namespace {
+
+std::vector<std::string> split(const std::string& path) {
+    std::vector<std::string> parts;
+    for (std::size_t start = 0; start < path.size();) {
+        const std::size_t end = std::min(path.find('.', start), path.size());
+        parts.push_back(path.substr(start, end - start));
+        start = end + 1;
+    }
+    return parts;
+}
+
+/// Lists every key it is shown, all alternatives included, with one made-up entry in every named map.
+class KeyLister final : public Visitor {
+public:
+    explicit KeyLister(const std::string& prefix) : prefix_(split(prefix)) {}
+
+    [[nodiscard]] std::string take_text() { return std::move(text_); }
+
+    void number(const Key& key, double& value) override { list(key, unit(key), number_text(value)); }
+    void optional_number(const Key& key, std::optional<double>& /*value*/) override { list(key, unit(key), "not set"); }
+    void vector(const Key& key, Vec3& value) override {
+        list(key, "[x, y, z] " + unit(key),
+             "[" + number_text(value.x()) + ", " + number_text(value.y()) + ", " + number_text(value.z()) + "]");
+    }
+    void integer(const Key& key, int& value) override { list(key, "whole number", std::to_string(value)); }
+    void divisions(const Key& key, std::array<int, 3>& value) override {
+        list(key, "three whole numbers",
+             "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]",
+             "product <= " + number_text(key.largest_product));
+    }
+    void flag(const Key& key, bool& value) override { list(key, "true or false", value ? "true" : "false"); }
+    void text(const Key& key, std::string& value) override {
+        list(key,
+             key.names == Names::body  ? "name of a body"
+             : key.names == Names::set ? "name of a set"
+                                       : "text",
+             value.empty() ? "none" : value);
+    }
+    void word(const Key& key, const Words& vocabulary, std::size_t& index) override {
+        list(key, "one of " + join(vocabulary), vocabulary[index]);
+    }
+    void words(const Key& key, const Words& vocabulary, std::vector<std::string>& /*value*/) override {
+        list(key, "list of " + join(vocabulary), "[]");
+    }
+    void axes(const Key& key, Mat3& /*value*/) override { list(key, "two directions", "[[1, 0, 0], [0, 1, 0]]"); }
+    void group(const Key& key, const std::function<void()>& body) override {
+        if (*key.meaning) list(key, "map", key.required ? "" : "none");
+        path_.push_back(key.name);
+        body();
+        path_.pop_back();
+    }
+    void one_of(const Choice& choice) override {
+        for (std::size_t i = 0; i < choice.tags.size(); ++i) {
+            choice.choose(i);
+            alternatives_ = join(choice.tags, " | ");
+            choice.describe(i);
+        }
+        choice.choose(choice.active);
+    }
+    void named(const Key& key, const Entries& entries) override {
+        list(key, std::string("map of <") + key.item + ">", "none");
+        path_.push_back(key.name);
+        entries.add(std::string("<") + key.item + ">");
+        entries.describe(0);
+        path_.pop_back();
+    }
+
+private:
+    static std::string unit(const Key& key) {
+        return key.unit == dimension::none ? "number" : name_of(key.unit) + " in " + unit_of(key.unit);
+    }
+
+    /// A made-up name stands for any name; the listed key must lie at or below the prefix.
+    [[nodiscard]] bool below_prefix(const std::vector<std::string>& path) const {
+        if (path.size() < prefix_.size()) return false;
+        for (std::size_t i = 0; i < prefix_.size(); ++i)
+            if (!path[i].starts_with('<') && path[i] != prefix_[i]) return false;
+        return true;
+    }
+
+    void list(const Key& key, const std::string& type, const std::string& value, const std::string& limit = {}) {
+        // The first key described after a choice began is that alternative's own tag.
+        const std::string choice = std::exchange(alternatives_, {});
+        std::vector<std::string> path = path_;
+        path.push_back(key.name);
+        if (!below_prefix(path)) return;
+        text_ += join(path, ".") + "\n    " + type;
+        const std::string bounds = key.range.text();
+        if (!bounds.empty()) text_ += ", " + bounds;
+        if (key.not_whole) text_ += ", not whole";
+        if (!limit.empty()) text_ += ", " + limit;
+        if (!choice.empty())
+            text_ += "; one of " + choice;
+        else if (key.required)
+            text_ += "; required";
+        else
+            text_ += "; default " + std::string(key.default_text ? key.default_text : value);
+        text_ += ". ";
+        text_ += key.meaning;
+        text_ += "\n";
+    }
+
+    std::vector<std::string> prefix_;
+    std::vector<std::string> path_;
+    std::string alternatives_;
+    std::string text_;
+};
+
+} // namespace
+
+std::string describe_keys(const std::string& path_prefix) {
+    KeyLister lister(path_prefix);
+    Scene defaults;
+    describe(lister, defaults);
+    return lister.take_text();
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,92 @@
+#include "scene/overrides.hpp"
+
+namespace osculate::scene {
+
+namespace {
+
+std::vector<std::string> split(const std::string& path) {
+    std::vector<std::string> parts(1);
+    for (const char c : path) {
+        if (c == '.')
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    return parts;
+}
+
+/// Places of an override: the file is "--set" and no line of it means anything.
+void set_place(Tree& tree) {
+    tree.place = tree.key_place = {override_file, 0, 0};
+    for (Tree& child : tree.children) set_place(child);
+}
+
+Tree implied_map(const std::string& key) {
+    Tree map{.kind = Tree::Kind::map, .key = key, .implied = true};
+    set_place(map);
+    return map;
+}
+
+} // namespace
+
+void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
+    Tree* pairs = scene.find("contact");
+    if (!pairs || pairs->kind != Tree::Kind::map) return;
+    for (Tree& pair : pairs->children) {
+        const Tree* surface = pair.find("surface");
+        if (!surface) continue;
+        const Tree moved = *surface;
+        std::erase_if(pair.children, [](const Tree& child) { return child.key == "surface"; });
+        Tree* master = pair.find("master");
+        if (!master) {
+            pair.children.push_back(
+                {.kind = Tree::Kind::map, .key = "master", .place = pair.place, .key_place = moved.key_place});
+            master = &pair.children.back();
+        }
+        if (master->find("surface")) {
+            faults.push_back(fault_at(moved.key_place, "contact." + pair.key + ".surface",
+                                      "one surface, here or under master", "both"));
+        } else if (master->kind == Tree::Kind::map) {
+            master->children.push_back(moved);
+        }
+    }
+}
+
+void apply(const Override& change, Tree& scene, std::vector<Fault>& faults) {
+    const Place place{override_file, 0, 0};
+    std::vector<std::string> path = split(change.key);
+    for (const std::string& part : path)
+        if (part.empty()) {
+            faults.push_back(fault_at(place, change.key, "key.path=value", "'" + change.key + "'"));
+            return;
+        }
+    if (path.size() >= 3 && path[0] == "contact" && path[2] == "surface") path.insert(path.begin() + 2, "master");
+
+    std::vector<Fault> syntax;
+    Tree value = parse_yaml(change.value, override_file, syntax);
+    if (!syntax.empty()) {
+        faults.push_back(fault_at(place, change.key, syntax.front().expected, syntax.front().found));
+        return;
+    }
+    set_place(value);
+
+    Tree* node = &scene;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        if (node->kind == Tree::Kind::list) {
+            faults.push_back(fault_at(place, change.key, "a whole list", "a path into a list"));
+            return;
+        }
+        if (node->kind == Tree::Kind::scalar) // a bare word stands for a map with that tag
+            node->children.push_back({.key = node->scalar, .place = node->place, .key_place = node->place});
+        node->kind = Tree::Kind::map;
+        Tree* child = node->find(path[i]);
+        if (!child) child = &node->children.emplace_back(implied_map(path[i]));
+        node = child;
+    }
+    // A key of the file stays the file's, so that only a tag that an override brought wins over another.
+    value.key = path.back();
+    value.key_place = node->key_place;
+    *node = value;
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "osculate/scene/reader.hpp"
+#include "scene/tree.hpp"
+
+namespace osculate::scene {
+
+/// Moves `surface` of every contact pair to where it belongs, into its `master`.
+void expand_short_forms(Tree& scene, std::vector<Fault>& faults);
+
+/// Replaces or adds the value at the override's key path, making the maps on the way.
+void apply(const Override& change, Tree& scene, std::vector<Fault>& faults);
+
+} // namespace osculate::scene

@@ -1,0 +1,118 @@
+#include "osculate/scene/reader.hpp"
+
+#include "scene/checks.hpp"
+#include "scene/describe.hpp"
+#include "scene/nearest.hpp"
+#include "scene/overrides.hpp"
+#include "scene/templates.hpp"
+#include "scene/tree_reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <tuple>
+
+namespace osculate::scene {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Words keys_under(const Tree& tree, const char* name) {
+    Words keys;
+    if (const Tree* map = tree.find(name))
+        for (const Tree& child : map->children)
+            if (!child.implied) keys.push_back(child.key);
+    return keys;
+}
+
+/// A file's stem as a name: what does not fit into one becomes '_'.
+std::string name_from(const std::string& path) {
+    std::string name = fs::path(path).stem().string();
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    if (name.empty() || name.front() == '-') name.insert(name.begin(), '_');
+    return name;
+}
+
+/// Fills the output from its template; returns what the scene calls it when that can be found again from anywhere.
+std::string read_template(const Tree& tree, const fs::path& directory, Output& output, std::vector<Fault>& faults) {
+    const Tree* section = tree.find("output");
+    const Tree* given = section ? section->find("template") : nullptr;
+    if (given && given->kind != Tree::Kind::scalar) return output.template_name; // reported by the reader
+    const std::string name = given ? given->scalar : output.template_name;
+    const auto file = find_template(name, directory);
+    if (!file) {
+        const Words known = known_templates(directory);
+        faults.push_back(
+            fault_at(given ? given->place : tree.place, "output.template",
+                     name.ends_with(".yaml") ? "a template file that exists" : "an output template: " + join(known),
+                     "'" + name + "'", nearest(name, known)));
+        return name;
+    }
+    const Tree document = read_yaml(file->path.string(), faults);
+    const KnownNames none;
+    TreeReader reader(none, faults);
+    reader.read(document, [&] { describe_output(reader, output); });
+    return file->shipped ? name : file->path.string();
+}
+
+void make_absolute(Scene& scene) {
+    for (auto& [name, body] : scene.bodies)
+        if (auto* file = std::get_if<FileMesh>(&body.mesh.source); file && !file->path.empty())
+            file->path = (fs::path(scene.directory) / file->path).lexically_normal().string();
+}
+
+/// By place: the scene's own file first, then templates, overrides last.
+void sort_by_place(std::vector<Fault>& faults, const std::string& file) {
+    const auto rank = [&](const Fault& f) { return f.file == file ? 0 : f.file == override_file ? 2 : 1; };
+    std::ranges::stable_sort(faults, [&](const Fault& a, const Fault& b) {
+        return std::tuple(rank(a), a.line, a.column) < std::tuple(rank(b), b.line, b.column);
+    });
+}
+
+Scene build(Tree tree, const std::string& file, const fs::path& directory, const std::vector<Override>& overrides,
+            std::vector<Fault> faults) {
+    expand_short_forms(tree, faults);
+    for (const Override& change : overrides) apply(change, tree, faults);
+
+    Scene scene;
+    scene.name = name_from(file);
+    scene.directory = directory.string();
+    const std::string template_name = read_template(tree, directory, scene.output, faults);
+    const KnownNames names{keys_under(tree, "bodies"), keys_under(tree, "sets")};
+    TreeReader reader(names, faults);
+    reader.read(tree, [&] { describe(reader, scene); });
+    scene.output.template_name = template_name;
+    make_absolute(scene);
+    check_rules(scene, tree, faults);
+    if (!faults.empty()) {
+        sort_by_place(faults, file);
+        throw SceneError(std::move(faults));
+    }
+    return scene;
+}
+
+/// What cannot be parsed cannot be judged: a fault of the syntax stands alone.
+void throw_unreadable(const Tree& tree, std::vector<Fault>& faults) {
+    if (tree.kind == Tree::Kind::null && !faults.empty()) throw SceneError(std::move(faults));
+}
+
+} // namespace
+
+Scene read_scene(const std::string& path, const std::vector<Override>& overrides) {
+    std::vector<Fault> faults;
+    Tree tree = read_yaml(path, faults);
+    throw_unreadable(tree, faults);
+    const fs::path directory = fs::absolute(path).lexically_normal().parent_path();
+    return build(std::move(tree), path, directory, overrides, std::move(faults));
+}
+
+Scene parse_scene(const std::string& yaml_text, const std::string& name, const std::vector<Override>& overrides) {
+    std::vector<Fault> faults;
+    Tree tree = parse_yaml(yaml_text, name, faults);
+    throw_unreadable(tree, faults);
+    return build(std::move(tree), name, fs::current_path(), overrides, std::move(faults));
+}
+
+} // namespace osculate::scene

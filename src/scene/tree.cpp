@@ -1,0 +1,165 @@
+#include "scene/tree.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <yaml-cpp/yaml.h>
+
+namespace osculate::scene {
+
+namespace {
+
+constexpr int max_depth = 64;
+constexpr int max_nodes = 200000; ///< aliases of aliases grow without bound
+
+/// Copies yaml-cpp's nodes into a Tree.
+class Copier {
+public:
+    Copier(const std::string& file, std::vector<Fault>& faults) : file_(file), faults_(faults) {}
+
+    Tree copy(const YAML::Node& node, const std::string& path, int depth = 0) {
+        Tree tree;
+        tree.place = place_of(node);
+        if (depth > max_depth || ++nodes_ > max_nodes) {
+            if (!overflow_)
+                faults_.push_back(fault_at(tree.place, path,
+                                           "at most " + std::to_string(max_depth) + " levels and " +
+                                               std::to_string(max_nodes) + " values",
+                                           "more"));
+            overflow_ = true;
+            return tree;
+        }
+        switch (node.Type()) {
+        case YAML::NodeType::Scalar:
+            tree.kind = Tree::Kind::scalar;
+            tree.scalar = node.Scalar();
+            break;
+        case YAML::NodeType::Sequence:
+            tree.kind = Tree::Kind::list;
+            for (const auto& item : node) {
+                if (overflow_) break;
+                tree.children.push_back(copy(item, path, depth + 1));
+            }
+            break;
+        case YAML::NodeType::Map: copy_map(node, tree, path, depth); break;
+        default: break;
+        }
+        return tree;
+    }
+
+private:
+    Place place_of(const YAML::Node& node) const {
+        const YAML::Mark mark = node.Mark();
+        if (mark.is_null()) return {file_, 0, 0};
+        return {file_, mark.line + 1, mark.column + 1};
+    }
+
+    void copy_map(const YAML::Node& node, Tree& tree, const std::string& path, int depth) {
+        tree.kind = Tree::Kind::map;
+        for (const auto& entry : node) {
+            if (overflow_) return;
+            const Place key_place = place_of(entry.first);
+            if (!entry.first.IsScalar()) {
+                faults_.push_back(fault_at(key_place, path, "a name as a key", "something else"));
+                continue;
+            }
+            const std::string& key = entry.first.Scalar();
+            const std::string inside = path.empty() ? key : path + "." + key;
+            if (const Tree* first = tree.find(key)) {
+                faults_.push_back(
+                    fault_at(key_place, inside, "every key once",
+                             "'" + key + "' again (first in line " + std::to_string(first->key_place.line) + ")"));
+                continue;
+            }
+            Tree value = copy(entry.second, inside, depth + 1);
+            value.key = key;
+            value.key_place = key_place;
+            tree.children.push_back(std::move(value));
+        }
+    }
+
+    const std::string& file_;
+    std::vector<Fault>& faults_;
+    int nodes_ = 0;
+    bool overflow_ = false;
+};
+
+} // namespace
+
+const Tree* Tree::find(std::string_view name) const {
+    if (kind != Kind::map) return nullptr;
+    for (const Tree& child : children)
+        if (child.key == name) return &child;
+    return nullptr;
+}
+
+Tree* Tree::find(std::string_view name) {
+    return const_cast<Tree*>(static_cast<const Tree*>(this)->find(name));
+}
+
+std::string Tree::found() const {
+    switch (kind) {
+    case Kind::scalar: return "'" + scalar + "'";
+    case Kind::list: return "a list of " + std::to_string(children.size());
+    case Kind::map: return "a map";
+    case Kind::null: break;
+    }
+    return "nothing";
+}
+
+Fault fault_at(const Place& place, std::string key, std::string expected, std::string found, std::string nearest_name) {
+    return {place.file,          place.line,       place.column,           std::move(key),
+            std::move(expected), std::move(found), std::move(nearest_name)};
+}
+
+std::string join(const std::vector<std::string>& words, const char* separator) {
+    constexpr std::size_t longest = 24;
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i == longest) return text + separator + "...";
+        text += (i == 0 ? "" : separator) + words[i];
+    }
+    return text;
+}
+
+Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fault>& faults) {
+    try {
+        const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+        if (documents.empty()) return {.place = {file, 1, 1}};
+        Copier copier(file, faults);
+        if (documents.size() > 1)
+            faults.push_back(fault_at({file, documents[1].Mark().line + 1, 1}, "", "one YAML document",
+                                      std::to_string(documents.size())));
+        Tree tree = copier.copy(documents.front(), "");
+        if (tree.place.line == 0) tree.place = {file, 1, 1};
+        return tree;
+    } catch (const YAML::Exception& error) {
+        Place place{file, 0, 0};
+        if (!error.mark.is_null()) place = {file, error.mark.line + 1, error.mark.column + 1};
+        faults.push_back(fault_at(place, "", "valid YAML", error.msg));
+    } catch (const std::runtime_error& error) { // yaml-cpp's guard against deep nesting
+        faults.push_back(fault_at({file, 0, 0}, "", "valid YAML", error.what()));
+    }
+    return {.place = {file, 1, 1}};
+}
+
+Tree read_yaml(const std::string& path, std::vector<Fault>& faults) {
+    const Tree nothing{.place = {path, 0, 0}};
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) {
+        faults.push_back(fault_at({path, 0, 0}, "", "a YAML file", "a folder"));
+        return nothing;
+    }
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) {
+        faults.push_back(fault_at({path, 0, 0}, "", "a readable file", std::strerror(errno)));
+        return nothing;
+    }
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return parse_yaml(text.str(), path, faults);
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,357 @@
+#include "scene/tree_reader.hpp"
+
+#include "scene/frame.hpp"
+#include "scene/nearest.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+namespace osculate::scene {
+
+namespace {
+
+std::string with_article(const std::string& noun) {
+    const bool vowel = std::string("aeiou").find(noun.front()) != std::string::npos;
+    return (vowel ? "an " : "a ") + noun;
+}
+
+/// "a pressure (Pa) > 0".
+std::string expected_number(const Key& key) {
+    std::string text = with_article(name_of(key.unit));
+    if (key.unit != dimension::none) text += " (" + unit_of(key.unit) + ")";
+    if (const std::string bounds = key.range.text(); !bounds.empty()) text += " " + bounds;
+    if (key.not_whole) text += ", not whole";
+    return text;
+}
+
+std::string expected_integer(const Key& key) {
+    const std::string bounds = key.range.text();
+    return "a whole number" + (bounds.empty() ? "" : " " + bounds);
+}
+
+std::string expected_vector(const Key& key) {
+    if (key.direction) return "a list of three numbers, not all zero";
+    return "a list of three, each " + expected_number(key);
+}
+
+bool is_identifier(const std::string& name) {
+    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+    return !name.empty() && name.front() != '-' && std::ranges::all_of(name, fits);
+}
+
+constexpr double shortest_direction = 1e-12;
+
+} // namespace
+
+std::string Range::text() const {
+    const bool bounded_low = std::isfinite(low), bounded_high = std::isfinite(high);
+    if (bounded_low && bounded_high)
+        return std::string("in ") + (open_low ? "(" : "[") + number_text(low) + ", " + number_text(high) +
+               (open_high ? ")" : "]");
+    if (bounded_low) return (open_low ? "> " : ">= ") + number_text(low);
+    if (bounded_high) return (open_high ? "< " : "<= ") + number_text(high);
+    return {};
+}
+
+// ---- the current map -------------------------------------------------------------------------------------------------
+
+std::string TreeReader::path_of(const std::string& name) const {
+    return levels_.back().path.empty() ? name : levels_.back().path + "." + name;
+}
+
+void TreeReader::fault(const Tree& at, const Key& key, std::string expected, std::string found, std::string near) {
+    if (found.empty()) found = at.found();
+    faults_.push_back(fault_at(at.place, path_of(key.name), std::move(expected), std::move(found), std::move(near)));
+}
+
+const Tree* TreeReader::take(const Key& key, const std::string& expected) {
+    Level& level = levels_.back();
+    level.known.push_back(key.name);
+    const Tree* value = level.map->find(key.name);
+    if (!value && key.required) fault(*level.map, key, expected, "nothing");
+    return value;
+}
+
+void TreeReader::check_unknown(const Level& level) {
+    for (const Tree& child : level.map->children) {
+        if (std::ranges::count(level.known, child.key) > 0) continue;
+        const std::string path = level.path.empty() ? child.key : level.path + "." + child.key;
+        faults_.push_back(fault_at(child.key_place, path, "one of the keys " + join(level.known),
+                                   "unknown key '" + child.key + "'", nearest(child.key, level.known)));
+    }
+}
+
+void TreeReader::enter(const Tree& map, std::string path, const std::function<void()>& body) {
+    levels_.push_back({&map, std::move(path), {}});
+    body();
+    const Level level = std::move(levels_.back());
+    levels_.pop_back();
+    check_unknown(level);
+}
+
+void TreeReader::read(const Tree& document, const std::function<void()>& body) {
+    Tree empty{.kind = Tree::Kind::map, .place = document.place};
+    if (document.kind != Tree::Kind::map && document.kind != Tree::Kind::null)
+        faults_.push_back(fault_at(document.place, "", "a map of keys", document.found()));
+    enter(document.kind == Tree::Kind::map ? document : empty, "", body);
+}
+
+// ---- single values ---------------------------------------------------------------------------------------------------
+
+std::optional<double> TreeReader::read_number(const Tree& tree, const Key& key, const std::string& expected) {
+    if (tree.kind != Tree::Kind::scalar) {
+        fault(tree, key, expected);
+        return {};
+    }
+    const Quantity quantity = parse_quantity(tree.scalar);
+    const auto reject = [&](const std::string& why) -> std::optional<double> {
+        fault(tree, key, expected, tree.found() + (why.empty() ? "" : " (" + why + ")"), quantity.nearest);
+        return {};
+    };
+    if (!quantity.problem.empty()) return reject(quantity.problem);
+    if (quantity.has_unit && quantity.dimension != key.unit) return reject(name_of(quantity.dimension));
+    if (!std::isfinite(quantity.value)) return reject("not finite");
+    if (!key.range.contains(quantity.value)) return reject("");
+    if (key.not_whole && quantity.value == std::round(quantity.value)) return reject("whole");
+    return quantity.value;
+}
+
+std::optional<int> TreeReader::read_integer(const Tree& tree, const Key& key, const std::string& expected) {
+    int value = 0;
+    if (tree.kind == Tree::Kind::scalar) {
+        const char* end = tree.scalar.data() + tree.scalar.size();
+        const auto [stop, error] = std::from_chars(tree.scalar.data(), end, value);
+        if (error == std::errc{} && stop == end && key.range.contains(value)) return value;
+    }
+    fault(tree, key, expected);
+    return {};
+}
+
+std::optional<Vec3> TreeReader::read_vector(const Tree& tree, const Key& key) {
+    const std::string expected = expected_vector(key);
+    if (tree.kind != Tree::Kind::list || tree.children.size() != 3) {
+        fault(tree, key, expected);
+        return {};
+    }
+    Vec3 value = Vec3::Zero();
+    bool complete = true;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        const auto component = read_number(tree.children[static_cast<std::size_t>(i)], key, expected);
+        complete = complete && component;
+        value[i] = component.value_or(0);
+    }
+    if (!complete) return {};
+    if (key.direction && value.norm() < shortest_direction) {
+        fault(tree, key, expected, "a zero vector");
+        return {};
+    }
+    return value;
+}
+
+void TreeReader::number(const Key& key, double& value) {
+    const std::string expected = expected_number(key);
+    if (const Tree* tree = take(key, expected)) value = read_number(*tree, key, expected).value_or(value);
+}
+
+void TreeReader::optional_number(const Key& key, std::optional<double>& value) {
+    const std::string expected = expected_number(key);
+    if (const Tree* tree = take(key, expected)) value = read_number(*tree, key, expected);
+}
+
+void TreeReader::vector(const Key& key, Vec3& value) {
+    if (const Tree* tree = take(key, expected_vector(key))) value = read_vector(*tree, key).value_or(value);
+}
+
+void TreeReader::integer(const Key& key, int& value) {
+    const std::string expected = expected_integer(key);
+    if (const Tree* tree = take(key, expected)) value = read_integer(*tree, key, expected).value_or(value);
+}
+
+void TreeReader::divisions(const Key& key, std::array<int, 3>& value) {
+    const std::string expected = "a list of three, each " + expected_integer(key);
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind != Tree::Kind::list || tree->children.size() != 3) return fault(*tree, key, expected);
+    std::array<int, 3> read = value;
+    double product = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto division = read_integer(tree->children[i], key, expected);
+        if (!division) product = 0;
+        read[i] = division.value_or(1);
+        product *= read[i];
+    }
+    if (product > key.largest_product)
+        return fault(*tree, key, "at most " + number_text(key.largest_product) + " elements", number_text(product));
+    if (product > 0) value = read;
+}
+
+void TreeReader::flag(const Key& key, bool& value) {
+    const std::string expected = "true or false";
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    const bool scalar = tree->kind == Tree::Kind::scalar;
+    if (scalar && (tree->scalar == "true" || tree->scalar == "yes"))
+        value = true;
+    else if (scalar && (tree->scalar == "false" || tree->scalar == "no"))
+        value = false;
+    else
+        fault(*tree, key, expected);
+}
+
+const Words& TreeReader::referred(Names names) const {
+    return names == Names::body ? names_.bodies : names_.sets;
+}
+
+bool TreeReader::check_name(const Tree& at, const Place& place, const Key& key, const std::string& name, Names names) {
+    const auto reject = [&](std::string expected, std::string near) {
+        faults_.push_back(fault_at(place, path_of(key.name), std::move(expected), at.found(), std::move(near)));
+        return false;
+    };
+    if (names == Names::any) return true;
+    if (names == Names::identifier) return is_identifier(name) || reject("a name of letters, digits, _ and -", "");
+    const Words& known = referred(names);
+    if (std::ranges::count(known, name) > 0) return true;
+    if (names == Names::body && known.empty()) return true; // a scene without bodies is one fault, not many
+    const std::string what = names == Names::body ? "body" : "set";
+    return reject(known.empty() ? "the name of a " + what + " (there is none)"
+                                : "the name of a " + what + ": " + join(known),
+                  nearest(name, known));
+}
+
+void TreeReader::text(const Key& key, std::string& value) {
+    const std::string expected = key.names == Names::body  ? "the name of a body"
+                                 : key.names == Names::set ? "the name of a set"
+                                                           : "a text";
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind != Tree::Kind::scalar || (key.required && tree->scalar.empty())) return fault(*tree, key, expected);
+    if (check_name(*tree, tree->place, key, tree->scalar, key.names)) value = tree->scalar;
+}
+
+void TreeReader::word(const Key& key, const Words& vocabulary, std::size_t& index) {
+    const std::string expected = "one of " + join(vocabulary);
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    const auto at = std::ranges::find(vocabulary, tree->scalar);
+    if (tree->kind != Tree::Kind::scalar || at == vocabulary.end())
+        return fault(*tree, key, expected, {}, nearest(tree->scalar, vocabulary));
+    index = static_cast<std::size_t>(at - vocabulary.begin());
+}
+
+void TreeReader::words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) {
+    const std::string expected = "a list of " + join(vocabulary);
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind != Tree::Kind::list) return fault(*tree, key, expected);
+    value.clear();
+    for (const Tree& item : tree->children) {
+        const bool scalar = item.kind == Tree::Kind::scalar;
+        if (!scalar || std::ranges::count(vocabulary, item.scalar) == 0)
+            fault(item, key, expected, {}, nearest(item.scalar, vocabulary));
+        else if (std::ranges::count(value, item.scalar) > 0)
+            fault(item, key, expected + ", each once");
+        else
+            value.push_back(item.scalar);
+    }
+}
+
+void TreeReader::axes(const Key& key, Mat3& value) {
+    const std::string expected = "a list of two directions that are not parallel";
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind != Tree::Kind::list || tree->children.size() != 2) return fault(*tree, key, expected);
+    Key direction = key;
+    direction.direction = true;
+    direction.range = range::direction;
+    const auto first = read_vector(tree->children[0], direction), second = read_vector(tree->children[1], direction);
+    if (!first || !second) return;
+    const auto frame = frame_of(*first, *second);
+    if (!frame) return fault(*tree, key, expected, "parallel directions");
+    value = *frame;
+}
+
+// ---- maps --------------------------------------------------------------------------------------------------------------
+
+void TreeReader::group(const Key& key, const std::function<void()>& body) {
+    const std::string expected = "a map of keys";
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    Tree map{.kind = Tree::Kind::map, .place = tree->place};
+    if (key.bare_word && tree->kind == Tree::Kind::scalar) {
+        map.children.push_back({.key = tree->scalar, .place = tree->place, .key_place = tree->place});
+        tree = &map;
+    } else if (tree->kind == Tree::Kind::null) {
+        tree = &map;
+    } else if (tree->kind != Tree::Kind::map) {
+        return fault(*tree, key, expected);
+    }
+    enter(*tree, path_of(key.name), body);
+}
+
+void TreeReader::one_of(const Choice& choice) {
+    Level& level = levels_.back();
+    std::vector<std::size_t> present;
+    for (std::size_t i = 0; i < choice.tags.size(); ++i)
+        if (level.map->find(choice.tags[i])) present.push_back(i);
+    const auto overridden = [&](std::size_t i) {
+        return level.map->find(choice.tags[i])->key_place.file == override_file;
+    };
+    if (present.size() > 1) { // an override may switch to another alternative without removing the first
+        std::vector<std::size_t> from_overrides;
+        std::ranges::copy_if(present, std::back_inserter(from_overrides), overridden);
+        if (from_overrides.size() == 1) present = from_overrides;
+    }
+    level.known.insert(level.known.end(), choice.tags.begin(), choice.tags.end());
+    const bool misspelt = std::ranges::any_of(level.map->children, [&](const Tree& child) {
+        return std::ranges::count(choice.tags, child.key) == 0 && !nearest(child.key, choice.tags).empty();
+    });
+    const Tree& map = *level.map;
+    const auto reject = [&](const std::string& quantity, std::string found) {
+        faults_.push_back(fault_at(map.place, level.path, quantity + " of " + join(choice.tags), std::move(found)));
+    };
+    if (present.size() > 1) {
+        Words found;
+        for (const std::size_t i : present) found.push_back(choice.tags[i]);
+        reject("only one", join(found, " and "));
+    } else if (present.size() == 1) {
+        choice.choose(present.front());
+        choice.describe(present.front());
+    } else if (choice.required && !misspelt) { // the misspelt tag is reported as an unknown key
+        reject("one", "none");
+    }
+}
+
+void TreeReader::named(const Key& key, const Entries& entries) {
+    const std::string expected = "a map of names" + (key.required ? std::string(", at least one") : std::string());
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind == Tree::Kind::null || (tree->kind == Tree::Kind::map && tree->children.empty())) {
+        if (key.required) fault(*tree, key, expected, "nothing");
+        return;
+    }
+    if (tree->kind != Tree::Kind::map) return fault(*tree, key, expected);
+    Words written;
+    for (const Tree& child : tree->children)
+        if (!child.implied) written.push_back(child.key);
+    enter(*tree, path_of(key.name), [&] {
+        for (const Tree& child : tree->children) {
+            levels_.back().known.push_back(child.key);
+            const Tree name{.kind = Tree::Kind::scalar, .scalar = child.key};
+            const bool refers = key.names == Names::body || key.names == Names::set;
+            const Key entry{.name = child.key};
+            if (!refers && child.implied) { // an override went inside something that the file does not have
+                faults_.push_back(fault_at(child.key_place, path_of(child.key),
+                                           std::string("the name of a ") + key.item + ": " + join(written),
+                                           name.found(), nearest(child.key, written)));
+                continue;
+            }
+            check_name(name, child.key_place, entry, child.key, refers ? key.names : Names::identifier);
+            entries.add(child.key);
+            entries.describe(entries.size() - 1);
+        }
+    });
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,63 @@
+#pragma once
+/// The visitor that fills a scene from a tree and collects every fault on its way.
+
+#include "scene/tree.hpp"
+#include "scene/visitor.hpp"
+
+#include <string>
+#include <vector>
+
+namespace osculate::scene {
+
+/// Names that other keys may refer to.
+struct KnownNames {
+    Words bodies, sets;
+};
+
+class TreeReader final : public Visitor {
+public:
+    TreeReader(const KnownNames& names, std::vector<Fault>& faults) : names_(names), faults_(faults) {}
+
+    /// Reads a whole document: `body` describes its keys; every other key is a fault.
+    void read(const Tree& document, const std::function<void()>& body);
+
+    void number(const Key& key, double& value) override;
+    void optional_number(const Key& key, std::optional<double>& value) override;
+    void vector(const Key& key, Vec3& value) override;
+    void integer(const Key& key, int& value) override;
+    void divisions(const Key& key, std::array<int, 3>& value) override;
+    void flag(const Key& key, bool& value) override;
+    void text(const Key& key, std::string& value) override;
+    void word(const Key& key, const Words& vocabulary, std::size_t& index) override;
+    void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) override;
+    void axes(const Key& key, Mat3& value) override;
+    void group(const Key& key, const std::function<void()>& body) override;
+    void one_of(const Choice& choice) override;
+    void named(const Key& key, const Entries& entries) override;
+
+private:
+    struct Level {
+        const Tree* map;
+        std::string path;
+        Words known; ///< keys described so far
+    };
+
+    /// The value under a key of the current map, or nullptr; a required one that is missing is a fault.
+    const Tree* take(const Key& key, const std::string& expected);
+    [[nodiscard]] std::string path_of(const std::string& name) const;
+    void fault(const Tree& at, const Key& key, std::string expected, std::string found = {}, std::string near = {});
+    void enter(const Tree& map, std::string path, const std::function<void()>& body);
+    void check_unknown(const Level& level);
+    [[nodiscard]] const Words& referred(Names names) const;
+
+    std::optional<double> read_number(const Tree& tree, const Key& key, const std::string& expected);
+    std::optional<int> read_integer(const Tree& tree, const Key& key, const std::string& expected);
+    std::optional<Vec3> read_vector(const Tree& tree, const Key& key);
+    bool check_name(const Tree& at, const Place& place, const Key& key, const std::string& name, Names names);
+
+    const KnownNames& names_;
+    std::vector<Fault>& faults_;
+    std::vector<Level> levels_;
+};
+
+} // namespace osculate::scene

@@ -1,0 +1,94 @@
+#pragma once
+/// One description of every key; reader, writer and key list are visitors of it.
+
+#include "osculate/core/types.hpp"
+#include "osculate/scene/units.hpp"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osculate::scene {
+
+/// Interval of admissible numbers.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool open_low = false, open_high = false;
+
+    [[nodiscard]] bool contains(double x) const {
+        return (open_low ? x > low : x >= low) && (open_high ? x < high : x <= high);
+    }
+    [[nodiscard]] std::string text() const; ///< "> 0", "in (-1, 0.5)"; empty when there is no bound
+};
+
+namespace range {
+inline constexpr Range positive{.low = 0, .open_low = true};
+inline constexpr Range not_negative{.low = 0};
+inline constexpr Range fraction{.low = 0, .high = 1};
+inline constexpr Range size{.low = 1e-12, .high = 1e9};     ///< of anything that must have an extent
+inline constexpr Range position{.low = -1e9, .high = 1e9};  ///< a coordinate or a displacement
+inline constexpr Range direction{.low = -1e9, .high = 1e9}; ///< a component of a vector without unit
+} // namespace range
+
+/// Whose name a text or a map's key must be.
+enum class Names { any, identifier, body, set };
+
+using Words = std::vector<std::string>;
+
+/// What is known of a key; members that a kind of value has no use for stay at their defaults.
+struct Key {
+    std::string name;
+    const char* meaning = "";
+    Dimension unit{};
+    Range range{};
+    bool required = false;
+    bool not_whole = false;             ///< a whole number is outside the range
+    bool direction = false;             ///< the vector must not be zero
+    bool bare_word = false;             ///< `key: tag` stands for `key: {tag: {}}`
+    Names names = Names::any;           ///< of a text, or of the keys of a named map
+    const char* item = "";              ///< what a named map holds: "body"
+    double largest_product = 0;         ///< of divisions
+    const char* default_text = nullptr; ///< where the default is not the member's own value
+};
+
+/// Exactly one of several tags, as keys of the current map.
+struct Choice {
+    const Words& tags;
+    std::size_t active;
+    bool required;
+    std::function<void(std::size_t)> choose;   ///< makes an alternative the active one
+    std::function<void(std::size_t)> describe; ///< the key `tags[i]` with what it holds; i is active
+};
+
+/// A map from names to values.
+struct Entries {
+    std::function<std::size_t()> size;
+    std::function<std::string(std::size_t)> name;
+    std::function<void(const std::string&)> add;
+    std::function<void(std::size_t)> describe; ///< the key name(i) with what it holds
+};
+
+class Visitor {
+public:
+    virtual ~Visitor() = default;
+    virtual void number(const Key& key, double& value) = 0;
+    virtual void optional_number(const Key& key, std::optional<double>& value) = 0;
+    virtual void vector(const Key& key, Vec3& value) = 0;
+    virtual void integer(const Key& key, int& value) = 0;
+    virtual void divisions(const Key& key, std::array<int, 3>& value) = 0;
+    virtual void flag(const Key& key, bool& value) = 0;
+    virtual void text(const Key& key, std::string& value) = 0;
+    virtual void word(const Key& key, const Words& vocabulary, std::size_t& index) = 0;
+    virtual void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) = 0;
+    virtual void axes(const Key& key, Mat3& value) = 0; ///< columns; the first two are written
+    virtual void group(const Key& key, const std::function<void()>& body) = 0;
+    virtual void one_of(const Choice& choice) = 0;
+    virtual void named(const Key& key, const Entries& entries) = 0;
+};
+
+} // namespace osculate::scene

@@ -1,0 +1,108 @@
+#include "osculate/scene/writer.hpp"
+
+#include "scene/describe.hpp"
+#include "scene/tree.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace osculate::scene {
+
+namespace {
+
+/// A scalar as YAML: plain where that cannot be misread, double-quoted otherwise.
+std::string quoted(const std::string& text) {
+    const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '/'; };
+    std::string lower = text;
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!text.empty() && text.front() != '-' && text.front() != '.' && std::ranges::all_of(text, plain) &&
+        lower != "null")
+        return text;
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') result += '\\';
+        if (c == '\n')
+            result += "\\n";
+        else if (c == '\t')
+            result += "\\t";
+        else if (c == '\r')
+            result += "\\r";
+        else
+            result += c;
+    }
+    return result + '"';
+}
+
+/// A number that every YAML reader takes for one: some need the point in 1.0e+06.
+std::string decimal(double value) {
+    std::string text = number_text(value);
+    const std::size_t exponent = text.find('e');
+    if (exponent != std::string::npos && text.find('.') == std::string::npos) text.insert(exponent, ".0");
+    return text;
+}
+
+/// Writes every key it is shown, two spaces deeper for every level.
+class Writer final : public Visitor {
+public:
+    [[nodiscard]] std::string take_text() { return std::move(text_); }
+
+    void number(const Key& key, double& value) override { line(key, decimal(value)); }
+    void optional_number(const Key& key, std::optional<double>& value) override {
+        if (value) line(key, decimal(*value));
+    }
+    void vector(const Key& key, Vec3& value) override { line(key, list(value)); }
+    void integer(const Key& key, int& value) override { line(key, std::to_string(value)); }
+    void divisions(const Key& key, std::array<int, 3>& value) override {
+        line(key,
+             "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]");
+    }
+    void flag(const Key& key, bool& value) override { line(key, value ? "true" : "false"); }
+    void text(const Key& key, std::string& value) override {
+        if (!value.empty()) line(key, quoted(value));
+    }
+    void word(const Key& key, const Words& vocabulary, std::size_t& index) override { line(key, vocabulary[index]); }
+    void words(const Key& key, const Words& /*vocabulary*/, std::vector<std::string>& value) override {
+        line(key, "[" + join(value) + "]");
+    }
+    void axes(const Key& key, Mat3& value) override {
+        line(key, "[" + list(value.col(0)) + ", " + list(value.col(1)) + "]");
+    }
+    void group(const Key& key, const std::function<void()>& body) override {
+        text_ += std::string(2 * depth_, ' ') + quoted(key.name) + ":";
+        const std::size_t before = text_.size();
+        text_ += '\n';
+        ++depth_;
+        body();
+        --depth_;
+        if (text_.size() == before + 1) text_.insert(before, " {}");
+    }
+    void one_of(const Choice& choice) override { choice.describe(choice.active); }
+    void named(const Key& key, const Entries& entries) override {
+        if (entries.size() == 0) return;
+        group(key, [&] {
+            for (std::size_t i = 0; i < entries.size(); ++i) entries.describe(i);
+        });
+    }
+
+private:
+    static std::string list(const Vec3& v) {
+        return "[" + decimal(v.x()) + ", " + decimal(v.y()) + ", " + decimal(v.z()) + "]";
+    }
+    void line(const Key& key, const std::string& value) {
+        text_ += std::string(2 * depth_, ' ') + quoted(key.name) + ": " + value + "\n";
+    }
+
+    std::string text_;
+    std::size_t depth_ = 0;
+};
+
+} // namespace
+
+std::string write_scene(const Scene& scene) {
+    Writer writer;
+    Scene shown = scene; // describe takes what a reader could fill; a writer changes nothing
+    describe(writer, shown);
+    return writer.take_text();
+}
+
+} // namespace osculate::scene

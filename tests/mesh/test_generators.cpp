@@ -33,78 +33,85 @@ double sum_of_cells(const Mesh& mesh) {
     return sum;
 }
 
-class EveryShape : public ::testing::TestWithParam<Shape> {};
-
-TEST_P(EveryShape, HasTheExactVolumeInsideAnOutwardSurface) {
-    const auto& [name, mesh, volume, area] = GetParam();
-    const auto exterior = testing::integrate(exterior_facets(mesh), mesh.nodes);
-    EXPECT_NEAR(exterior.volume, volume, round_off * volume);
-    EXPECT_LT(exterior.area_vector.norm(), round_off * exterior.area);
-    EXPECT_NEAR(sum_of_cells(mesh), volume, round_off * volume);
+TEST(EveryShape, HasTheExactVolumeInsideAnOutwardSurface) {
+    for (const Shape& shape : all_shapes()) {
+        SCOPED_TRACE(shape.name);
+        const auto& [name, mesh, volume, area] = shape;
+        const auto exterior = testing::integrate(exterior_facets(mesh), mesh.nodes);
+        EXPECT_NEAR(exterior.volume, volume, round_off * volume);
+        EXPECT_LT(exterior.area_vector.norm(), round_off * exterior.area);
+        EXPECT_NEAR(sum_of_cells(mesh), volume, round_off * volume);
+    }
 }
 
-TEST_P(EveryShape, HasAClosedExteriorLikeASphere) {
-    const Mesh& mesh = GetParam().mesh;
-    const auto facets = exterior_facets(mesh);
-    std::set<Index> vertices;
-    std::map<std::pair<Index, Index>, int> edges; // directed sum: +1 and -1 cancel on a closed oriented surface
-    std::map<std::pair<Index, Index>, int> uses;
-    for (const Facet& facet : facets)
-        for (int i = 0; i < facet.count; ++i) {
-            const Index a = facet.nodes[i], b = facet.nodes[(i + 1) % facet.count];
-            vertices.insert(a);
-            edges[std::minmax(a, b)] += a < b ? 1 : -1;
-            ++uses[std::minmax(a, b)];
-        }
-    for (const auto& [edge, sum] : edges) EXPECT_EQ(sum, 0);
-    for (const auto& [edge, count] : uses) EXPECT_EQ(count, 2);
-    EXPECT_EQ(vertices.size() - edges.size() + facets.size(), 2u);
+TEST(EveryShape, HasAClosedExteriorLikeASphere) {
+    for (const Shape& shape : all_shapes()) {
+        SCOPED_TRACE(shape.name);
+        const Mesh& mesh = shape.mesh;
+        const auto facets = exterior_facets(mesh);
+        std::set<Index> vertices;
+        std::map<std::pair<Index, Index>, int> edges; // directed sum: +1 and -1 cancel on a closed oriented surface
+        std::map<std::pair<Index, Index>, int> uses;
+        for (const Facet& facet : facets)
+            for (int i = 0; i < facet.count; ++i) {
+                const Index a = facet.nodes[i], b = facet.nodes[(i + 1) % facet.count];
+                vertices.insert(a);
+                edges[std::minmax(a, b)] += a < b ? 1 : -1;
+                ++uses[std::minmax(a, b)];
+            }
+        for (const auto& [edge, sum] : edges) EXPECT_EQ(sum, 0);
+        for (const auto& [edge, count] : uses) EXPECT_EQ(count, 2);
+        EXPECT_EQ(vertices.size() - edges.size() + facets.size(), 2u);
+    }
 }
 
 /// A crack between elements that do not match would show as facets strictly inside the body. Every quadrilateral of
 /// these exteriors is plane, so that cutting it leaves its area as it is.
-TEST_P(EveryShape, ConformsWithinAndIsSound) {
-    const Mesh& mesh = GetParam().mesh;
-    EXPECT_THAT(faults(mesh), IsEmpty());
-    const double area = GetParam().area;
-    EXPECT_NEAR(testing::integrate(exterior_facets(mesh), mesh.nodes).area, area, round_off * area);
+TEST(EveryShape, ConformsWithinAndIsSound) {
+    for (const Shape& shape : all_shapes()) {
+        SCOPED_TRACE(shape.name);
+        const Mesh& mesh = shape.mesh;
+        EXPECT_THAT(faults(mesh), IsEmpty());
+        const double area = shape.area;
+        EXPECT_NEAR(testing::integrate(exterior_facets(mesh), mesh.nodes).area, area, round_off * area);
+    }
 }
 
-TEST_P(EveryShape, HasNamedSurfacesThatPartitionTheExterior) {
-    const Mesh& mesh = GetParam().mesh;
-    std::map<std::vector<Index>, Facet> exterior;
-    for (const Facet& facet : exterior_facets(mesh)) exterior.emplace(key(facet), facet);
-    EXPECT_EQ(mesh.surfaces.size(), 6u);
-    std::size_t count = 0;
-    for (const auto& [name, facets] : mesh.surfaces) {
-        EXPECT_FALSE(facets.empty()) << name;
-        for (const Facet& facet : facets) {
-            const auto found = exterior.find(key(facet));
-            ASSERT_NE(found, exterior.end()) << name;
-            EXPECT_EQ(found->second.nodes, facet.nodes);
-            EXPECT_EQ(found->second.block, facet.block);
-            EXPECT_EQ(found->second.element, facet.element);
-            ++count;
+TEST(EveryShape, HasNamedSurfacesThatPartitionTheExterior) {
+    for (const Shape& shape : all_shapes()) {
+        SCOPED_TRACE(shape.name);
+        const Mesh& mesh = shape.mesh;
+        std::map<std::vector<Index>, Facet> exterior;
+        for (const Facet& facet : exterior_facets(mesh)) exterior.emplace(key(facet), facet);
+        EXPECT_EQ(mesh.surfaces.size(), 6u);
+        std::size_t count = 0;
+        for (const auto& [name, facets] : mesh.surfaces) {
+            EXPECT_FALSE(facets.empty()) << name;
+            for (const Facet& facet : facets) {
+                const auto found = exterior.find(key(facet));
+                ASSERT_NE(found, exterior.end()) << name;
+                EXPECT_EQ(found->second.nodes, facet.nodes);
+                EXPECT_EQ(found->second.block, facet.block);
+                EXPECT_EQ(found->second.element, facet.element);
+                ++count;
+            }
+        }
+        EXPECT_EQ(count, exterior.size());
+    }
+}
+
+TEST(EveryShape, HasFacetsThatBelongToTheirElement) {
+    for (const Shape& shape : all_shapes()) {
+        SCOPED_TRACE(shape.name);
+        const Mesh& mesh = shape.mesh;
+        for (const Facet& facet : exterior_facets(mesh)) {
+            const ElementBlock& block = mesh.blocks.at(facet.block);
+            const int stride = nodes_per_cell(block.type);
+            const auto first = block.connectivity.begin() + facet.element * stride;
+            for (const Index node : facet) EXPECT_NE(std::find(first, first + stride, node), first + stride);
         }
     }
-    EXPECT_EQ(count, exterior.size());
 }
-
-TEST_P(EveryShape, HasFacetsThatBelongToTheirElement) {
-    const Mesh& mesh = GetParam().mesh;
-    for (const Facet& facet : exterior_facets(mesh)) {
-        const ElementBlock& block = mesh.blocks.at(facet.block);
-        const int stride = nodes_per_cell(block.type);
-        const auto first = block.connectivity.begin() + facet.element * stride;
-        for (const Index node : facet) EXPECT_NE(std::find(first, first + stride, node), first + stride);
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Generators, EveryShape, ::testing::ValuesIn(all_shapes()), [](const auto& shape) {
-    std::string name = shape.param.name;
-    std::replace(name.begin(), name.end(), ' ', '_');
-    return name;
-});
 
 /// Mean outward normal of a named surface.
 Vec3 mean_normal(const Mesh& mesh, const std::string& surface) {

@@ -1,0 +1,108 @@
+#include "osculate/mesh/select.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace osculate::mesh {
+namespace {
+
+double tolerance_of(const Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& node : mesh.nodes) box.extend(node);
+    return box.isEmpty() ? 0 : selection_tolerance * box.diagonal().norm();
+}
+
+std::vector<Index> nodes_of(const std::vector<Facet>& facets) {
+    std::vector<Index> nodes;
+    for (const Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
+    return nodes;
+}
+
+void sort_unique(std::vector<Index>& nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+}
+
+std::vector<Facet> facets_within(const std::vector<Facet>& exterior, const std::vector<char>& member) {
+    std::vector<Facet> facets;
+    std::copy_if(exterior.begin(), exterior.end(), std::back_inserter(facets), [&](const Facet& facet) {
+        return std::all_of(facet.begin(), facet.end(), [&](Index node) { return member[node] != 0; });
+    });
+    return facets;
+}
+
+/// Nodes for which `on(position)` holds, and the exterior facets with all corners among them.
+template <class Predicate>
+Region select_where(const Mesh& mesh, const std::vector<Facet>& exterior, const Predicate& on) {
+    Region region;
+    std::vector<char> member(mesh.nodes.size(), 0);
+    for (Index n = 0; n < mesh.node_count(); ++n)
+        if (on(mesh.nodes[n])) {
+            member[n] = 1;
+            region.nodes.push_back(n);
+        }
+    region.facets = facets_within(exterior, member);
+    return region;
+}
+
+} // namespace
+
+std::optional<Region> select_named(const Mesh& mesh, const std::vector<Facet>& exterior, const std::string& name) {
+    const auto surface = mesh.surfaces.find(name);
+    const auto set = mesh.node_sets.find(name);
+    if (surface == mesh.surfaces.end() && set == mesh.node_sets.end()) return std::nullopt;
+    Region region;
+    if (set != mesh.node_sets.end()) region.nodes = set->second;
+    if (surface != mesh.surfaces.end()) {
+        region.facets = surface->second;
+        const std::vector<Index> more = nodes_of(region.facets);
+        region.nodes.insert(region.nodes.end(), more.begin(), more.end());
+    } else {
+        std::vector<char> member(mesh.nodes.size(), 0);
+        for (const Index node : region.nodes) member[node] = 1;
+        region.facets = facets_within(exterior, member);
+    }
+    sort_unique(region.nodes);
+    return region;
+}
+
+Region select_plane(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& point, const Vec3& normal) {
+    const double tolerance = tolerance_of(mesh);
+    const Vec3 n = normal.normalized();
+    return select_where(mesh, exterior, [&](const Vec3& x) { return std::abs((x - point).dot(n)) <= tolerance; });
+}
+
+Region select_cylinder(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& point, const Vec3& axis,
+                       double radius) {
+    const double tolerance = tolerance_of(mesh);
+    const Vec3 a = axis.normalized();
+    Region region = select_where(
+        mesh, exterior, [&](const Vec3& x) { return std::abs((x - point).cross(a).norm() - radius) <= tolerance; });
+    const double steepest = std::numbers::sqrt2 / 2;
+    std::erase_if(region.facets,
+                  [&](const Facet& facet) { return std::abs(facet_normal(facet, mesh.nodes).dot(a)) > steepest; });
+    return region;
+}
+
+Region select_box(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& min, const Vec3& max) {
+    const double tolerance = tolerance_of(mesh);
+    const Vec3 low = min.array() - tolerance, high = max.array() + tolerance;
+    return select_where(mesh, exterior, [&](const Vec3& x) {
+        return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
+    });
+}
+
+Region select_normal(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& direction, double angle) {
+    Region region;
+    for (const Facet& facet : exterior) {
+        const Vec3 normal = facet_normal(facet, mesh.nodes);
+        if (std::atan2(normal.cross(direction).norm(), normal.dot(direction)) <= angle) region.facets.push_back(facet);
+    }
+    region.nodes = nodes_of(region.facets);
+    sort_unique(region.nodes);
+    return region;
+}
+
+} // namespace osculate::mesh

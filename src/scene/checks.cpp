@@ -51,6 +51,12 @@ public:
     void check_pair(const std::string& name, const Pair& pair) {
         if (!pair.slave.empty() && pair.slave == pair.master.set)
             fault({"contact", name, "slave"}, "another set than the master's", "'" + pair.slave + "' for both");
+        const auto* rpim = std::get_if<RpimSurface>(&pair.master.surface);
+        if (!rpim) return;
+        const std::vector<std::string> q{"contact", name, "master", "surface", "rpim", "q"};
+        // (r^2 + R^2)^q is conditionally definite of order ceil(q); the basis must hold all polynomials of lower degree.
+        if (rpim->q > 2 && rpim->m < 6) fault(q, "at most 2 with m = 3", number_text(rpim->q));
+        if (rpim->R == 0 && rpim->q < 1) fault(q, "more than 1 with R = 0", number_text(rpim->q));
     }
 
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {

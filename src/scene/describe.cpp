@@ -21,12 +21,12 @@ void describe(Visitor& v, RpimSurface& s) {
                .range = {.low = 1, .high = 3}},
               s.ring);
     v.number({.name = "R",
-              .meaning = "Shape parameter of the multiquadric, in mean nodal distances.",
+              .meaning = "Shape parameter of the multiquadric, in mean nearest-neighbour distances of the patch.",
               .range = {.low = 0, .high = 4}},
              s.R);
     v.number({.name = "q",
               .meaning = "Exponent of the multiquadric; not a whole number.",
-              .range = {.low = -4, .high = 4},
+              .range = {.low = -4, .high = 3},
               .not_whole = true},
              s.q);
     static const Words sizes{"3", "6"};

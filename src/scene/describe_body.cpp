@@ -26,8 +26,8 @@ void describe(Visitor& v, BlockMesh& m) {
     static const Words patterns{"quad", "triangle", "hybrid"};
     word(v,
          {.name = "pattern",
-          .meaning = "How the top and every layer below is divided; triangle cuts hexahedra into wedges, hybrid every "
-                     "other one."},
+          .meaning = "How the top and every layer below is divided: triangle cuts the hexahedra into wedges, hybrid "
+                     "half of them."},
          patterns, m.pattern);
 }
 

@@ -1,6 +1,7 @@
 #include "osculate/scene/keys.hpp"
 
 #include "scene/describe.hpp"
+#include "scene/overrides.hpp"
 #include "scene/tree.hpp"
 
 #include <algorithm>
@@ -9,20 +10,10 @@ namespace osculate::scene {
 
 namespace {
 
-std::vector<std::string> split(const std::string& path) {
-    std::vector<std::string> parts;
-    for (std::size_t start = 0; start < path.size();) {
-        const std::size_t end = std::min(path.find('.', start), path.size());
-        parts.push_back(path.substr(start, end - start));
-        start = end + 1;
-    }
-    return parts;
-}
-
 /// Lists every key it is shown, all alternatives included, with one made-up entry in every named map.
 class KeyLister final : public Visitor {
 public:
-    explicit KeyLister(const std::string& prefix) : prefix_(split(prefix)) {}
+    explicit KeyLister(const std::string& prefix) : prefix_(prefix.empty() ? Words{} : split_path(prefix)) {}
 
     [[nodiscard]] std::string take_text() { return std::move(text_); }
 
@@ -54,7 +45,7 @@ public:
     }
     void axes(const Key& key, Mat3& /*value*/) override { list(key, "two directions", "[[1, 0, 0], [0, 1, 0]]"); }
     void group(const Key& key, const std::function<void()>& body) override {
-        if (*key.meaning) list(key, "map", key.required ? "" : "none");
+        if (*key.meaning) list(key, "map", "");
         path_.push_back(key.name);
         body();
         path_.pop_back();

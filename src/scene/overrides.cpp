@@ -4,17 +4,6 @@ namespace osculate::scene {
 
 namespace {
 
-std::vector<std::string> split(const std::string& path) {
-    std::vector<std::string> parts(1);
-    for (const char c : path) {
-        if (c == '.')
-            parts.emplace_back();
-        else
-            parts.back() += c;
-    }
-    return parts;
-}
-
 /// Places of an override: the file is "--set" and no line of it means anything.
 void set_place(Tree& tree) {
     tree.place = tree.key_place = {override_file, 0, 0};
@@ -28,6 +17,18 @@ Tree implied_map(const std::string& key) {
 }
 
 } // namespace
+
+std::vector<std::string> split_path(const std::string& path) {
+    std::vector<std::string> parts(1);
+    for (const char c : path) {
+        if (c == '.')
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    if (parts.size() >= 3 && parts[0] == "contact" && parts[2] == "surface") parts.insert(parts.begin() + 2, "master");
+    return parts;
+}
 
 void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
     Tree* pairs = scene.find("contact");
@@ -54,13 +55,12 @@ void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
 
 void apply(const Override& change, Tree& scene, std::vector<Fault>& faults) {
     const Place place{override_file, 0, 0};
-    std::vector<std::string> path = split(change.key);
+    const std::vector<std::string> path = split_path(change.key);
     for (const std::string& part : path)
         if (part.empty()) {
             faults.push_back(fault_at(place, change.key, "key.path=value", "'" + change.key + "'"));
             return;
         }
-    if (path.size() >= 3 && path[0] == "contact" && path[2] == "surface") path.insert(path.begin() + 2, "master");
 
     std::vector<Fault> syntax;
     Tree value = parse_yaml(change.value, override_file, syntax);

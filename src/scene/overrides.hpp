@@ -5,6 +5,9 @@
 
 namespace osculate::scene {
 
+/// Parts of a dotted key path, the short form contact.PAIR.surface written out.
+[[nodiscard]] std::vector<std::string> split_path(const std::string& path);
+
 /// Moves `surface` of every contact pair to where it belongs, into its `master`.
 void expand_short_forms(Tree& scene, std::vector<Fault>& faults);
 

@@ -74,21 +74,25 @@ const Tree* TreeReader::take(const Key& key, const std::string& expected) {
     return value;
 }
 
-void TreeReader::check_unknown(const Level& level) {
+void TreeReader::leave(const Level& level) {
+    bool misspelt = false; // a misspelt tag is reported as an unknown key, not as a missing choice too
     for (const Tree& child : level.map->children) {
         if (std::ranges::count(level.known, child.key) > 0) continue;
+        misspelt = misspelt || !nearest(child.key, level.missing_choice).empty();
         const std::string path = level.path.empty() ? child.key : level.path + "." + child.key;
         faults_.push_back(fault_at(child.key_place, path, "one of the keys " + join(level.known),
                                    "unknown key '" + child.key + "'", nearest(child.key, level.known)));
     }
+    if (!level.missing_choice.empty() && !misspelt)
+        faults_.push_back(fault_at(level.map->place, level.path, "one of " + join(level.missing_choice), "none"));
 }
 
 void TreeReader::enter(const Tree& map, std::string path, const std::function<void()>& body) {
-    levels_.push_back({&map, std::move(path), {}});
+    levels_.push_back({.map = &map, .path = std::move(path)});
     body();
     const Level level = std::move(levels_.back());
     levels_.pop_back();
-    check_unknown(level);
+    leave(level);
 }
 
 void TreeReader::read(const Tree& document, const std::function<void()>& body) {
@@ -304,22 +308,16 @@ void TreeReader::one_of(const Choice& choice) {
         if (from_overrides.size() == 1) present = from_overrides;
     }
     level.known.insert(level.known.end(), choice.tags.begin(), choice.tags.end());
-    const bool misspelt = std::ranges::any_of(level.map->children, [&](const Tree& child) {
-        return std::ranges::count(choice.tags, child.key) == 0 && !nearest(child.key, choice.tags).empty();
-    });
-    const Tree& map = *level.map;
-    const auto reject = [&](const std::string& quantity, std::string found) {
-        faults_.push_back(fault_at(map.place, level.path, quantity + " of " + join(choice.tags), std::move(found)));
-    };
     if (present.size() > 1) {
         Words found;
         for (const std::size_t i : present) found.push_back(choice.tags[i]);
-        reject("only one", join(found, " and "));
+        faults_.push_back(
+            fault_at(level.map->place, level.path, "only one of " + join(choice.tags), join(found, " and ")));
     } else if (present.size() == 1) {
         choice.choose(present.front());
         choice.describe(present.front());
-    } else if (choice.required && !misspelt) { // the misspelt tag is reported as an unknown key
-        reject("one", "none");
+    } else if (choice.required) {
+        level.missing_choice = choice.tags;
     }
 }
 

@@ -39,7 +39,8 @@ private:
     struct Level {
         const Tree* map;
         std::string path;
-        Words known; ///< keys described so far
+        Words known{};          ///< keys described so far
+        Words missing_choice{}; ///< tags of which one is required and none is there
     };
 
     /// The value under a key of the current map, or nullptr; a required one that is missing is a fault.
@@ -47,7 +48,7 @@ private:
     [[nodiscard]] std::string path_of(const std::string& name) const;
     void fault(const Tree& at, const Key& key, std::string expected, std::string found = {}, std::string near = {});
     void enter(const Tree& map, std::string path, const std::function<void()>& body);
-    void check_unknown(const Level& level);
+    void leave(const Level& level);
     [[nodiscard]] const Words& referred(Names names) const;
 
     std::optional<double> read_number(const Tree& tree, const Key& key, const std::string& expected);

@@ -1,0 +1,217 @@
+#include "scene_text.hpp"
+
+#include <filesystem>
+#include <gmock/gmock.h>
+
+namespace osculate::scene {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// Expects exactly one fault.
+void expect_fault(const std::string& text, const std::string& message, const std::vector<Override>& overrides = {}) {
+    EXPECT_THAT(messages(faults_of(text, overrides)), ElementsAre(message));
+}
+
+void expect_override_fault(const Override& change, const std::string& message) {
+    expect_fault(small_scene, message, {change});
+}
+
+TEST(BadScene, TheUnspoiltOneHasNoFault) {
+    EXPECT_THAT(messages(faults_of(small_scene)), IsEmpty());
+}
+
+TEST(BadScene, UnknownKeyNamesTheNearest) {
+    const std::vector<Fault> faults = faults_of(replaced(small_scene, "friction: 0.3", "frcition: 0.3"));
+    ASSERT_EQ(faults.size(), 1u);
+    EXPECT_EQ(faults[0].file, "bad.yaml");
+    EXPECT_EQ(faults[0].line, 19);
+    EXPECT_EQ(faults[0].column, 5);
+    EXPECT_EQ(faults[0].key, "contact.joint.frcition");
+    EXPECT_EQ(faults[0].expected, "one of the keys slave, master, friction, closing_tolerance, initial_overlap_limit, "
+                                  "stiffness_scale");
+    EXPECT_EQ(faults[0].found, "unknown key 'frcition'");
+    EXPECT_EQ(faults[0].nearest, "friction");
+}
+
+TEST(BadScene, WrongUnit) {
+    expect_fault(replaced(small_scene, "30 MPa", "3 m"), "bad.yaml:4:36: bodies.base.material.linear_elastic.E: "
+                                                         "expected a pressure (Pa) > 0, found '3 m' (length)");
+    expect_fault(replaced(small_scene, "30 MPa", "30 Mpa"),
+                 "bad.yaml:4:36: bodies.base.material.linear_elastic.E: expected a pressure (Pa) > 0, found '30 Mpa' "
+                 "(unknown unit 'Mpa') (did you mean 'MPa'?)");
+}
+
+TEST(BadScene, MissingNames) {
+    expect_fault(replaced(small_scene, "set: ground", "set: gruond"),
+                 "bad.yaml:18:19: contact.joint.master.set: expected the name of a set: bed, ground, under, top, found "
+                 "'gruond' (did you mean 'ground'?)");
+    expect_fault(replaced(small_scene, "body: base", "body: bases"),
+                 "bad.yaml:9:15: sets.bed.body: expected the name of a body: base, cap, found 'bases' (did you mean "
+                 "'base'?)");
+    expect_fault(
+        replaced(small_scene, "  bed: {fix", "  bde: {fix"),
+        "bad.yaml:14:3: supports.bde: expected the name of a set: bed, ground, under, top, found 'bde' (did you "
+        "mean 'bed'?)");
+    expect_fault(replaced(small_scene, ", surface: z_min", ""),
+                 "bad.yaml:9:8: sets.bed: expected one of surface, nodes, plane, cylinder, box, normal, found none");
+}
+
+TEST(BadScene, MissingAndDoubleKeys) {
+    expect_fault(replaced(small_scene, "E: 30 MPa, ", ""), "bad.yaml:4:32: bodies.base.material.linear_elastic.E: "
+                                                           "expected a pressure (Pa) > 0, found nothing");
+    expect_fault(
+        replaced(small_scene, "slave: under", "slave: under\n    friction: 0.1"),
+        "bad.yaml:20:5: contact.joint.friction: expected every key once, found 'friction' again (first in line "
+        "18)");
+}
+
+TEST(BadScene, NumbersOutOfRange) {
+    expect_fault(replaced(small_scene, "30 MPa", "-30 MPa"), "bad.yaml:4:36: bodies.base.material.linear_elastic.E: "
+                                                             "expected a pressure (Pa) > 0, found '-30 MPa'");
+    expect_fault(replaced(small_scene, "nu: 0.2", "nu: 0.5"), "bad.yaml:4:48: bodies.base.material.linear_elastic.nu: "
+                                                              "expected a number in (-1, 0.5), found '0.5'");
+    expect_fault(replaced(small_scene, "steps: 2", "steps: 0"),
+                 "bad.yaml:22:12: stages.load.steps: expected a whole number in [1, 1e+06], found '0'");
+    expect_override_fault(
+        {"contact.joint.surface.rpim.q", "2"},
+        "--set: contact.joint.master.surface.rpim.q: expected a number in [-4, 3], not whole, found '2' (whole)");
+}
+
+TEST(BadScene, RadialBasisThatItsPolynomialsCannotCarry) {
+    expect_override_fault({"contact.joint.surface", "{rpim: {q: 2.5, m: 3}}"},
+                          "--set: contact.joint.master.surface.rpim.q: expected at most 2 with m = 3, found 2.5");
+    expect_override_fault({"contact.joint.surface", "{rpim: {q: 0.5, R: 0}}"},
+                          "--set: contact.joint.master.surface.rpim.q: expected more than 1 with R = 0, found 0.5");
+    EXPECT_THAT(messages(faults_of(small_scene, {{"contact.joint.surface", "{rpim: {q: 2.5, R: 0}}"}})), IsEmpty());
+}
+
+TEST(BadScene, SyntaxStandsAlone) {
+    expect_fault("bodies: [1, 2\nsets: 3: 4\n",
+                 "bad.yaml:2:5: expected valid YAML, found end of sequence flow not found");
+}
+
+TEST(BadScene, NotANumber) {
+    expect_fault(replaced(small_scene, "friction: 0.3", "friction: .nan"),
+                 "bad.yaml:19:15: contact.joint.friction: expected a number >= 0, found '.nan' (not finite)");
+    expect_fault(replaced(small_scene, "friction: 0.3", "friction: .inf"),
+                 "bad.yaml:19:15: contact.joint.friction: expected a number >= 0, found '.inf' (not finite)");
+}
+
+TEST(BadScene, AbsurdSizes) {
+    const std::string place = "bad.yaml:3:27: bodies.base.mesh.block.size: ";
+    for (const char* size : {"0", "-2 m", "1e10 m", "1e-4 nm"})
+        expect_fault(replaced(small_scene, "2 m", size),
+                     place + "expected a list of three, each a length (m) in [1e-12, 1e+09], found '" + size + "'");
+    expect_fault(replaced(small_scene, "[2, 2, 1]", "[5000, 5000, 1]"),
+                 "bad.yaml:3:54: bodies.base.mesh.block.divisions: expected at most 2e+07 elements, found 2.5e+07");
+}
+
+TEST(BadScene, UnknownTemplate) {
+    expect_fault(replaced(small_scene, "minimal", "minmal"), "bad.yaml:27:20: output.template: expected an output "
+                                                             "template: contact, minimal, found 'minmal' (did you mean "
+                                                             "'minimal'?)");
+}
+
+TEST(BadScene, NothingInIt) {
+    EXPECT_THAT(messages(faults_of("")),
+                ElementsAre("bad.yaml:1:1: bodies: expected a map of names, at least one, found "
+                            "nothing",
+                            "bad.yaml:1:1: stages: expected a map of names, at least one, found "
+                            "nothing"));
+}
+
+TEST(BadScene, AllFaultsAtOnceInOrder) {
+    std::string text = replaced(small_scene, "nu: 0.3", "nu: 3");
+    text = replaced(text, "steps: 2", "stpes: 2");
+    text = replaced(text, "top: 5 kPa", "tpo: 5 kN");
+    text = replaced(text, "slave: under", "slave: ground");
+    EXPECT_THAT(
+        messages(faults_of(text, {{"solver.tolerance", "1"}})),
+        ElementsAre("bad.yaml:7:48: bodies.cap.material.linear_elastic.nu: expected a number in (-1, 0.5), found "
+                    "'3'",
+                    "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
+                    "for both",
+                    "bad.yaml:22:5: stages.load.stpes: expected one of the keys duration, steps, ramp, "
+                    "displacement, pressure, body_force, found unknown key 'stpes' (did you mean 'steps'?)",
+                    "bad.yaml:24:16: stages.load.pressure.tpo: expected the name of a set: bed, ground, under, "
+                    "top, found 'tpo' (did you mean 'top'?)",
+                    "bad.yaml:24:21: stages.load.pressure.tpo: expected a pressure (Pa), found '5 kN' (force)",
+                    "--set: solver.tolerance: expected a number in (0, 0.01], found '1'"));
+}
+
+TEST(BadScene, FaultInAnOverride) {
+    expect_override_fault({"contact.joint.friction", "-0.1"},
+                          "--set: contact.joint.friction: expected a number >= 0, found '-0.1'");
+    expect_override_fault(
+        {"contact.jiont.friction", "0.1"},
+        "--set: contact.jiont: expected the name of a pair: joint, found 'jiont' (did you mean 'joint'?)");
+    expect_override_fault({"contact.joint.friction", "[1"},
+                          "--set: contact.joint.friction: expected valid YAML, found end of sequence flow not found");
+    expect_override_fault({"contact..friction", "1"},
+                          "--set: contact..friction: expected key.path=value, found 'contact..friction'");
+    expect_override_fault(
+        {"contact.joint.ring", "1"},
+        "--set: contact.joint.ring: expected one of the keys slave, master, friction, closing_tolerance, "
+        "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
+}
+
+TEST(BadScene, OptionOfAnotherChoice) {
+    expect_override_fault(
+        {"contact.joint.surface", "{facets: {ring: 1}}"},
+        "--set: contact.joint.master.surface.facets.ring: expected one of the keys hysteresis, found unknown key "
+        "'ring'");
+    expect_fault(
+        replaced(small_scene, "{rpim: {ring: 1}}", "{rpim: {}, facets: {}}"),
+        "bad.yaml:18:36: contact.joint.master.surface: expected only one of facets, rpim, found facets and rpim");
+    expect_fault(
+        replaced(small_scene, "{rpim: {ring: 1}}", "{rpmi: {}}"),
+        "bad.yaml:18:37: contact.joint.master.surface.rpmi: expected one of the keys facets, rpim, found unknown "
+        "key 'rpmi' (did you mean 'rpim'?)");
+}
+
+TEST(BadScene, SupportsThatContradict) {
+    expect_fault(replaced(small_scene, "[x, y, z]", "[x, y, w]"),
+                 "bad.yaml:14:21: supports.bed.fix: expected a list of x, y, z, found 'w'");
+    expect_fault(replaced(small_scene, "{fix: [x, y, z]}", "{fix: [x], axes: [[1, 0, 0], [-2, 0, 0]]}"),
+                 "bad.yaml:14:25: supports.bed.axes: expected a list of two directions that are not parallel, found "
+                 "parallel directions");
+    expect_override_fault({"supports.bed.symmetry", "[0, 0, 0]"},
+                          "--set: supports.bed.symmetry: expected a list of three numbers, "
+                          "not all zero, found a zero vector");
+    expect_fault(replaced(small_scene, "top: {x: 1 mm}", "bed: {x: 1 mm}"),
+                 "bad.yaml:26:29: stages.load.displacement.bed.x: expected a component that supports.bed leaves free, "
+                 "found x, which is held");
+}
+
+TEST(BadScene, ShapesThatCannotBe) {
+    expect_override_fault({"bodies.cap.mesh", "{contactor: {width: 7 m}}"},
+                          "--set: bodies.cap.mesh.contactor.width: expected at most twice the radius, 6 m, found 7 m");
+    expect_override_fault(
+        {"bodies.cap.mesh.block", "{pattern: hybrid, element: tet4}"},
+        "--set: bodies.cap.mesh.block.pattern: expected pattern hybrid with element hex8, found another element");
+    expect_override_fault({"sets.top", "{body: cap, box: {min: [0, 0, 2], max: [1, 1, 1]}}"},
+                          "--set: sets.top.box: expected min at most max in every component, found min above max");
+}
+
+TEST(BadScene, FilesThatAreNotThere) {
+    const std::string part = (std::filesystem::current_path() / "part.vtu").string();
+    expect_override_fault({"bodies.cap.mesh", "{file: {path: part.vtu}}"},
+                          "--set: bodies.cap.mesh.file.path: expected a file that exists, found '" + part + "'");
+    EXPECT_THROW(static_cast<void>(read_scene("no_such_scene.yaml")), SceneError);
+}
+
+/// Aliases of aliases: ten to the sixth values from six lines.
+TEST(BadScene, BillionLaughs) {
+    std::string text = "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
+    for (char c = 'b'; c < 'i'; ++c) {
+        const std::string last(1, static_cast<char>(c - 1)), name(1, c);
+        text += name + ": &" + name + " [";
+        for (int i = 0; i < 10; ++i) text += "*" + last + (i < 9 ? ", " : "]\n");
+    }
+    EXPECT_FALSE(faults_of(text).empty());
+}
+
+} // namespace
+} // namespace osculate::scene

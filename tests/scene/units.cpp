@@ -1,0 +1,84 @@
+#include "osculate/scene/units.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
+
+namespace osculate::scene {
+namespace {
+
+// Every expected value below is the double that the decimal names: units are exact quotients, so equality is exact.
+void expect_quantity(const char* text, double value, Dimension dimension) {
+    const Quantity quantity = parse_quantity(text);
+    EXPECT_EQ(quantity.problem, "") << text;
+    EXPECT_EQ(quantity.value, value) << text;
+    EXPECT_EQ(quantity.dimension, dimension) << text;
+    EXPECT_TRUE(quantity.has_unit) << text;
+}
+
+TEST(Units, ReadPrefixesExactly) {
+    expect_quantity("30 MPa", 30e6, dimension::pressure);
+    expect_quantity("5 mm", 0.005, dimension::length);
+    expect_quantity("7mm", 0.007, dimension::length);
+    expect_quantity("-0.25 m", -0.25, dimension::length);
+    expect_quantity("+3 cm", 0.03, dimension::length);
+    expect_quantity("2 µm", 2e-6, dimension::length);
+    expect_quantity("2 um", 2e-6, dimension::length);
+    expect_quantity("1e-3 GPa", 1e6, dimension::pressure);
+    expect_quantity("4 kg", 4, Dimension{.mass = 1});
+    expect_quantity("4 g", 0.004, Dimension{.mass = 1});
+    expect_quantity("1.5 bar", 1.5e5, dimension::pressure);
+    expect_quantity("2 min", 120, dimension::time);
+    expect_quantity("180 deg", std::numbers::pi, dimension::angle);
+    expect_quantity("10 mrad", 0.01, dimension::angle);
+}
+
+TEST(Units, MultiplyDivideAndRaise) {
+    expect_quantity("2 kN/m^3", 2e3, dimension::force_per_volume);
+    expect_quantity("7850 kg/m^3", 7850, dimension::density);
+    expect_quantity("7.85 t/m^3", 7850, dimension::density);
+    expect_quantity("9.81 m/s^2", 9.81, dimension::acceleration);
+    expect_quantity("9.81 m s^-2", 9.81, dimension::acceleration);
+    expect_quantity("5 N/mm^2", 5e6, dimension::pressure);
+    expect_quantity("5 N / mm / mm", 5e6, dimension::pressure);
+    expect_quantity("3 kg*m/s^2", 3, dimension::force);
+    expect_quantity("1 kg m^-1 s^-2", 1, dimension::pressure);
+}
+
+TEST(Units, LeaveABareNumberBare) {
+    const Quantity quantity = parse_quantity(" 0.1 ");
+    EXPECT_EQ(quantity.problem, "");
+    EXPECT_EQ(quantity.value, 0.1);
+    EXPECT_FALSE(quantity.has_unit);
+}
+
+TEST(Units, RejectWhatIsNoQuantity) {
+    for (const char* text : {"", "m", "three m", "0,5 m", "5 m^", "5 m^0", "5 m^99", "5 /", "5 m//s", "5 m^1.5", "0x10",
+                             "1e999", "5 e", "1 2", "- 3"})
+        EXPECT_NE(parse_quantity(text).problem, "") << text;
+}
+
+TEST(Units, NameTheNearestUnit) {
+    const Quantity quantity = parse_quantity("30 Mpa");
+    EXPECT_EQ(quantity.problem, "unknown unit 'Mpa'");
+    EXPECT_EQ(quantity.nearest, "MPa");
+}
+
+TEST(Units, KeepAnAngleApartFromANumber) {
+    EXPECT_NE(parse_quantity("3 rad").dimension, dimension::none);
+}
+
+TEST(Units, ReadNotANumberAsSuch) {
+    EXPECT_TRUE(std::isnan(parse_quantity(".nan").value));
+    EXPECT_EQ(parse_quantity("-.inf").value, -std::numeric_limits<double>::infinity());
+}
+
+TEST(Units, HaveNames) {
+    EXPECT_EQ(name_of(dimension::force_per_volume), "force per volume");
+    EXPECT_EQ(unit_of(dimension::force_per_volume), "N/m^3");
+    EXPECT_EQ(name_of(Dimension{.length = 4, .time = 1}), "m^4 s");
+}
+
+} // namespace
+} // namespace osculate::scene

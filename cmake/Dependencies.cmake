@@ -10,7 +10,6 @@ find_package(SUNDIALS 6.4 REQUIRED COMPONENTS kinsol nvecserial)
 set(OSCULATE_VTK_READERS VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
 set(OSCULATE_VTK_WRITERS VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
-find_package(PkgConfig REQUIRED)
 
 # SuiteSparse 5 in Debian ships no CMake package.
 foreach(library cholmod umfpack)

@@ -1,6 +1,7 @@
 # Compiler settings shared by every target of Osculate, and by none of its dependencies.
 add_library(osculate_options INTERFACE)
-target_compile_options(osculate_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+target_compile_options(osculate_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                                 -Wno-restrict) # GCC 12 reports false overlaps inside std::string
 if(OSCULATE_WARNINGS_AS_ERRORS)
   target_compile_options(osculate_options INTERFACE -Werror)
 endif()

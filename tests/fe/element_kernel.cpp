@@ -134,6 +134,38 @@ TEST_P(Kernel, BodyForceOfAnAffineElementIsSharedEqually) {
     EXPECT_LT((f.colwise() - b * kernel->volume(affine) / n).norm(), round_off);
 }
 
+TEST_P(Kernel, BodyForceOfATaperedElementLeansToItsThickEnd) {
+    if (GetParam().type == mesh::CellType::tet4) GTEST_SKIP() << "a tetrahedron is always affine";
+    // the top shrinks to half: over a height z from 0 to 1 the section is A (1 - z/2)^2; with N = 1 - z and z its
+    // integrals are 17/48 A and 11/48 A
+    Eigen::Matrix3Xd tapered = reference_positions(GetParam().type);
+    const double straight = kernel->volume(tapered);
+    tapered.topRightCorner(2, n / 2) /= 2;
+    Eigen::Matrix3Xd f(3, n);
+    kernel->body_force(tapered, Vec3::UnitX(), f);
+    for (int a = 0; a < n; ++a) {
+        const double section = straight / (n / 2);
+        EXPECT_NEAR(f(0, a), section * (a < n / 2 ? 17 : 11) / 48, round_off) << "node " << a;
+    }
+}
+
+TEST_P(Kernel, StressLinearInSpaceIsExactAtTheNodesOfAStraightElement) {
+    if (GetParam().type == mesh::CellType::tet4 || GetParam().formulation != HexFormulation::full) {
+        GTEST_SKIP() << "strain is not the displacement's own, or constant";
+    }
+    const Eigen::Matrix3Xd straight = Vec3(2, 1.5, 0.5).asDiagonal() * reference_positions(GetParam().type);
+    Eigen::Matrix3Xd u = Eigen::Matrix3Xd::Zero(3, n);
+    u.row(0) = straight.row(0).cwiseProduct(straight.row(2)); // u = (x z, 0, 0): eps_xx = z, gamma_zx = x
+    Matrix stress(6, n);
+    kernel->nodal_stress(straight, u, stress);
+    for (int a = 0; a < n; ++a) {
+        Vec6 strain = Vec6::Zero();
+        strain[0] = straight(2, a);
+        strain[5] = straight(0, a);
+        EXPECT_LT((stress.col(a) - material.stress(strain)).norm(), round_off) << "node " << a;
+    }
+}
+
 TEST_P(Kernel, InvertedElementIsRefused) {
     const Eigen::Matrix3Xd mirrored = Vec3(1, 1, -1).asDiagonal() * X;
     Matrix K(3 * n, 3 * n);

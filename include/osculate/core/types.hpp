@@ -2,6 +2,7 @@
 /// Small linear algebra shared by every module: fixed-size Eigen types and the index type.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry> // cross products
 #include <cstdint>
 
 namespace osculate {

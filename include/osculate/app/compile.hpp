@@ -1,0 +1,41 @@
+#pragma once
+/// From a scene to the objects that run it, and to nothing else.
+
+#include "osculate/core/timing.hpp"
+#include "osculate/model/model.hpp"
+#include "osculate/scene/scene.hpp"
+#include "osculate/time/stepper.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osculate::app {
+
+/// A part of the plan that is there or left out, and why.
+struct PlanItem {
+    std::string part;
+    bool present = false;
+    std::string reason;
+};
+
+struct Plan {
+    model::Model model;
+    std::vector<time::Stage> stages;
+    time::StepperOptions stepper;
+    std::vector<Index> constrained_sets; ///< of model.sets, in the scene's order
+    std::vector<PlanItem> items;
+};
+
+/// Meshes of the scene's bodies, in its order. Throws SceneError for what cannot be generated or read.
+[[nodiscard]] std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene);
+
+/// Builds what the scene needs. Throws SceneError with every fault found: names without nodes or facets, bodies without
+/// support, initial overlaps, elements turned inside out.
+/// @param meshes  one per body; build_meshes(scene), or the same bodies numbered otherwise
+[[nodiscard]] Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings);
+
+/// Sizes, pairs, initial gaps and overlaps, in lines to print.
+[[nodiscard]] std::vector<std::string> report(const Plan& plan);
+
+} // namespace osculate::app

@@ -1,0 +1,49 @@
+#pragma once
+/// The master surface as contact sees it: the facets themselves, or a smooth surface through their nodes.
+
+#include "osculate/contact/contact_point.hpp"
+#include "osculate/contact/radial_basis.hpp"
+#include "osculate/contact/search.hpp"
+#include "osculate/mesh/half_edge_surface.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace osculate::contact {
+
+enum class PatchCoordinates {
+    tangential,  ///< orthogonal projection on the reference plane                     [Qian 2014, eq (21)]
+    equal_length ///< the same directions, true lengths
+};
+
+struct RpimOptions {
+    int ring = 2; ///< rings of facets around the temporary facet that make its domain of influence
+    Multiquadric basis;
+    int polynomial_terms = 6;
+    PatchCoordinates coordinates = PatchCoordinates::equal_length;
+};
+
+class MasterSurface {
+public:
+    virtual ~MasterSurface() = default;
+
+    /// Surface vertices that carry the patch of a facet.
+    [[nodiscard]] virtual std::span<const Index> patch_vertices(Index facet) const = 0;
+    /// Gap, normal, weights and first variations at slave point s above the facet of `hit`, vertices at x.
+    /// point.found is false where there is no contact partner: beyond the boundary, or no unique foot.
+    virtual void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x,
+                          ContactPoint& point) const = 0;
+    /// Facets that had to fall back to a smaller or simpler patch.
+    [[nodiscard]] virtual Index fallbacks() const { return 0; }
+};
+
+/// The finite element surface as it is, each facet extended past its edges.
+[[nodiscard]] std::unique_ptr<MasterSurface> make_facets_surface(const mesh::HalfEdgeSurface& surface);
+
+/// One frozen RPIM patch per facet, fitted at the reference positions X.         [Qian 2014, secs 3.1-3.2]
+/// A patch that would overlap itself in its plane (Fig. 5d) or is rank deficient takes one ring less, at last the facet.
+[[nodiscard]] std::unique_ptr<MasterSurface> make_rpim_surface(const mesh::HalfEdgeSurface& surface,
+                                                               const std::vector<Vec3>& X, const RpimOptions& options);
+
+} // namespace osculate::contact

@@ -1,0 +1,27 @@
+#pragma once
+/// Radial basis functions of the squared distance rho = |t - t_i|^2 in scaled natural coordinates.
+
+#include <cmath>
+
+namespace osculate::contact {
+
+/// Value and derivatives of a radial function with respect to rho.
+struct RadialValue {
+    double f = 0, df = 0, ddf = 0;
+};
+
+/// Multiquadric (rho + R^2)^q; R = 0, q = 2.5 is the polyharmonic r^5.                       [Qian 2014, eq (10)]
+struct Multiquadric {
+    double R = 1.42;
+    double q = 1.03;
+
+    [[nodiscard]] RadialValue operator()(double rho) const {
+        const double base = rho + R * R;
+        if (base <= 0) return {}; // R = 0 at its own centre: f and rho * ddf vanish there for q > 1
+        const double f = std::pow(base, q);
+        const double df = q * f / base;
+        return {f, df, (q - 1) * df / base};
+    }
+};
+
+} // namespace osculate::contact

@@ -1,0 +1,68 @@
+#pragma once
+/// Radial point interpolation on scattered nodes of a reference plane.
+
+#include "osculate/contact/radial_basis.hpp"
+#include "osculate/contact/surface_patch.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace osculate::contact {
+
+/// Plane through `origin` with orthonormal axes; axes.col(0) x axes.col(1) is its normal.
+struct ReferencePlane {
+    Vec3 origin = Vec3::Zero();
+    Matrix32 axes = Matrix32::Zero();
+
+    /// Plane with unit normal n, turned from the x1x2 plane by the shortest rotation.         [Qian 2014, eq (20)]
+    [[nodiscard]] static ReferencePlane through(const Vec3& origin, const Vec3& n);
+    /// Orthogonal projection of x, metres.                                                    [Qian 2014, eq (21)]
+    [[nodiscard]] Vec2 tangential(const Vec3& x) const { return axes.transpose() * (x - origin); }
+    /// The same direction, with the length of x - origin kept: an azimuthal equidistant chart. Strongly turned patches
+    /// do not fold, and normals come out several times more accurate than with eq (21).
+    [[nodiscard]] Vec2 equal_length(const Vec3& x) const;
+};
+
+/// Interpolation through n nodes with natural coordinates frozen at construction:
+///     t = (u - c)/dc,  Phi(u) = [r(t); p(t)]^T H,  X(u) = sum_i Phi_i(u) x_i               [Qian 2014, eqs (9)-(16)]
+/// so X is linear in the nodal positions and Phi is a constant of the run.
+class RpimPatch {
+public:
+    /// @param u      (n x 2) natural coordinates, m; at least three, not on one line
+    /// @param basis  radial function
+    /// @param m      terms of the polynomial basis, 3 or 6; 6 falls back to 3 where the nodes do not determine a quadratic
+    /// @returns nothing when the nodes do not even determine a plane.      Cost O(n^3).
+    [[nodiscard]] static std::optional<RpimPatch> fit(const MatrixX2& u, const Multiquadric& basis, int m);
+
+    [[nodiscard]] Index size() const { return static_cast<Index>(t_.rows()); }
+    [[nodiscard]] int polynomial_terms() const { return m_; }
+    [[nodiscard]] double node_distance() const { return dc_; } ///< dc, mean nearest-neighbour distance, m
+
+    /// Coefficients H x (n + m x 3) of the surface through nodal positions x (n x 3); they make point() O(n).
+    [[nodiscard]] MatrixX3 coefficients(const MatrixX3& x) const { return H_ * x; }
+    [[nodiscard]] PatchPoint point(const Vec2& u, const MatrixX3& coefficients) const;
+
+    /// Weights Phi (n) and their derivatives Phi,1 Phi,2 (n x 2). Phi_i(u_j) = delta_ij; they sum to 1.  Cost O(n^2).
+    void weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<MatrixX2> phi_a) const;
+    /// Second derivatives Phi,11 Phi,12 Phi,22 (n x 3).
+    [[nodiscard]] MatrixX3 second_derivatives(const Vec2& u) const;
+
+private:
+    struct BasisRow {
+        double value = 0;
+        Vec2 first = Vec2::Zero();
+        Vec3 second = Vec3::Zero(); // 11, 12, 22
+    };
+    RpimPatch() = default;
+    /// Calls f(k, row) for the n radial and m polynomial basis functions at u, derivatives with respect to u.
+    template <class F> void for_each_basis(const Vec2& u, F&& f) const;
+
+    MatrixX2 t_;
+    Vec2 c_ = Vec2::Zero();
+    double dc_ = 1;
+    Multiquadric basis_;
+    int m_ = 6;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> H_; // (n + m) x n, first n columns of G^-1
+};
+
+} // namespace osculate::contact

@@ -1,0 +1,47 @@
+#pragma once
+/// Which facet of a moving surface is closest to a point: once globally, then by following it.
+
+#include "osculate/core/types.hpp"
+#include "osculate/mesh/half_edge_surface.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace osculate::contact {
+
+/// Closest point of one facet to a slave point.
+struct FacetHit {
+    Index facet = -1;
+    Vec2 u = Vec2::Zero(); ///< natural coordinates of the (clamped) closest point, as in FacetPatch
+    double distance = 0;   ///< to the facet, m
+    double overhang = 0;   ///< how far the foot on the extended facet lies beyond its edge, m; 0 inside
+    bool boundary = false; ///< the closest point lies on the surface's boundary
+};
+
+/// Search over the facets of one surface; positions are those of the surface's vertices, local numbering.
+class FacetSearch {
+public:
+    explicit FacetSearch(const mesh::HalfEdgeSurface& surface);
+    ~FacetSearch();
+    FacetSearch(FacetSearch&&) noexcept;
+    FacetSearch& operator=(FacetSearch&&) noexcept;
+
+    [[nodiscard]] FacetHit closest_on(Index facet, const Vec3& s, const std::vector<Vec3>& x) const;
+
+    /// Bulk-loads the bounding boxes of all facets into an R-tree. O(n log n)
+    void build(const std::vector<Vec3>& x);
+    /// Closest facet of all, lowest number first among equals; build() must have been called at these positions. O(log n)
+    [[nodiscard]] FacetHit global(const Vec3& s, const std::vector<Vec3>& x) const;
+
+    /// Follows the point from facet `from` over facets that share a vertex. The old facet is kept until the point has left
+    /// it by `hysteresis` times its size, or another is closer by as much: without that, points on an edge flip-flop.
+    [[nodiscard]] FacetHit track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis) const;
+
+private:
+    struct Tree;
+    const mesh::HalfEdgeSurface* surface_;
+    std::vector<Index> neighbour_start_{0}, neighbours_; ///< facets that share a vertex with each facet
+    std::unique_ptr<Tree> tree_;
+};
+
+} // namespace osculate::contact

@@ -1,0 +1,39 @@
+#pragma once
+/// Loops over independent items on several threads.
+
+#include "osculate/core/types.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace osculate {
+
+/// Calls body(begin, end) on contiguous chunks of [0, n). Every item must write only its own results: then the result
+/// is bitwise the same for any number of threads. The first exception of a chunk is rethrown after all have ended.
+template <class Body> void parallel_for(int threads, Index n, Body&& body) {
+    const Index smallest_chunk = 32; // below this a thread costs more than it saves
+    const Index chunks = std::clamp<Index>(n / smallest_chunk, 1, std::max(threads, 1));
+    if (chunks == 1) {
+        body(Index{0}, n);
+        return;
+    }
+    std::vector<std::exception_ptr> errors(static_cast<std::size_t>(chunks));
+    {
+        std::vector<std::jthread> workers;
+        for (Index chunk = 0; chunk < chunks; ++chunk)
+            workers.emplace_back([&, chunk] {
+                try {
+                    body(static_cast<Index>(std::int64_t{n} * chunk / chunks),
+                         static_cast<Index>(std::int64_t{n} * (chunk + 1) / chunks));
+                } catch (...) {
+                    errors[static_cast<std::size_t>(chunk)] = std::current_exception();
+                }
+            });
+    }
+    for (const std::exception_ptr& error : errors)
+        if (error) std::rethrow_exception(error);
+}
+
+} // namespace osculate

@@ -1,0 +1,36 @@
+#pragma once
+/// Sparse matrix of 3 x 3 blocks over the nodes of all bodies.
+
+#include "osculate/core/types.hpp"
+
+#include <vector>
+
+namespace osculate::model {
+
+/// Compressed block rows, columns ascending; blocks are column-major 3 x 3.
+class BlockMatrix {
+public:
+    BlockMatrix() = default;
+    /// Pattern of all node pairs that share an element: `elements` lists the node numbers of each.
+    /// Cost O(nonzeros log(neighbours)).
+    BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements);
+
+    [[nodiscard]] Index rows() const { return static_cast<Index>(row_start_.size()) - 1; }
+    [[nodiscard]] Index row_begin(Index row) const { return row_start_[row]; }
+    [[nodiscard]] Index row_end(Index row) const { return row_start_[row + 1]; }
+    [[nodiscard]] Index column(Index slot) const { return column_[slot]; }
+    [[nodiscard]] const Mat3& block(Index slot) const { return block_[slot]; }
+    /// Adds an element matrix (3n x 3n) at its nodes.
+    void add(const std::vector<Index>& nodes, const Matrix& element);
+    /// y += A x over 3-vectors per node.
+    void multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const;
+
+private:
+    [[nodiscard]] Index slot(Index row, Index column) const;
+
+    std::vector<Index> row_start_{0};
+    std::vector<Index> column_;
+    std::vector<Mat3> block_;
+};
+
+} // namespace osculate::model

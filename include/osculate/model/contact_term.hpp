@@ -1,0 +1,96 @@
+#pragma once
+/// One contact pair: slave nodes against a master surface, node to surface, constraints exact.
+
+#include "osculate/contact/contact_point.hpp"
+#include "osculate/contact/coulomb.hpp"
+#include "osculate/contact/master_surface.hpp"
+#include "osculate/contact/search.hpp"
+#include "osculate/core/timing.hpp"
+#include "osculate/mesh/half_edge_surface.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osculate::model {
+
+/// What a pair carries from one accepted step to the next.
+struct ContactHistory {
+    std::vector<Vec3> lambda;            ///< (slaves) contact force on each slave node, N, global components
+    std::vector<contact::Status> status; ///< (slaves)
+    std::vector<Index> facet;            ///< (slaves) temporary contact facet, -1 not searched yet
+};
+
+/// Slave nodes of a pair with what belongs to each.
+struct SlaveNodes {
+    std::vector<Index> node;         ///< global
+    std::vector<double> area;        ///< tributary area in the reference configuration, m^2
+    std::vector<double> stiffness;   ///< c of the complementarity function, N/m
+    std::vector<mesh::Facet> facets; ///< slave surface, global nodes
+};
+
+struct ContactOptions {
+    double friction = 0;             ///< Coulomb's mu
+    double hysteresis = 0.03;        ///< of the facet size, see contact::FacetSearch::track
+    double closing_tolerance = 0.02; ///< of the facet size: how near counts as touching before anything is in contact
+};
+
+class ContactTerm {
+public:
+    /// @param master_nodes global node of every vertex of `surface`
+    ContactTerm(std::string name, SlaveNodes slaves, std::unique_ptr<mesh::HalfEdgeSurface> surface,
+                std::vector<Index> master_nodes, std::unique_ptr<contact::MasterSurface> master,
+                const ContactOptions& options);
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] Index size() const { return static_cast<Index>(slaves_.node.size()); }
+    [[nodiscard]] const SlaveNodes& slaves() const { return slaves_; }
+    [[nodiscard]] const mesh::HalfEdgeSurface& surface() const { return *surface_; }
+    [[nodiscard]] const contact::MasterSurface& master() const { return *master_; }
+    [[nodiscard]] const std::vector<Index>& master_nodes() const { return master_nodes_; }
+    [[nodiscard]] const ContactOptions& options() const { return options_; }
+    [[nodiscard]] ContactHistory initial_history() const;
+
+    /// Opens a step at nodal positions x: slips are measured from here. Nodes that are not closed are searched anew over
+    /// the whole surface. Returns nothing to undo: everything it sets is scratch of the attempt.
+    void begin_step(const std::vector<Vec3>& x, const ContactHistory& history, Timings& timings, int threads);
+    /// Evaluates every slave node at positions x, following each from its last facet.
+    void evaluate(const std::vector<Vec3>& x, Timings& timings, int threads);
+
+    [[nodiscard]] const contact::ContactPoint& point(Index j) const { return points_[j]; }
+    /// Global nodes of the patch of slave j, in the order of point(j).weights.
+    [[nodiscard]] const std::vector<Index>& point_nodes(Index j) const { return point_nodes_[j]; }
+    /// Global nodes of the patch that the facet of slave j would use, whether or not there is contact.
+    [[nodiscard]] std::vector<Index> patch_nodes(Index facet) const;
+    [[nodiscard]] contact::ContactState state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const;
+    [[nodiscard]] contact::Coulomb law(Index j) const { return {options_.friction, slaves_.stiffness[j]}; }
+    /// Derivative of the drift d of state() with respect to y = (slave, masters), 3 x 3+3n.
+    void drift_variation(Index j, const std::vector<Vec3>& x, Matrix& dd) const;
+
+    [[nodiscard]] const std::vector<Index>& facets() const { return facet_; }
+    /// Facet changes at the last evaluation.
+    [[nodiscard]] int facet_changes() const { return facet_changes_; }
+
+private:
+    [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const;
+
+    std::string name_;
+    SlaveNodes slaves_;
+    std::unique_ptr<mesh::HalfEdgeSurface> surface_;
+    std::vector<Index> master_nodes_;
+    std::unique_ptr<contact::MasterSurface> master_;
+    contact::FacetSearch search_;
+    ContactOptions options_;
+
+    // scratch of an attempt
+    std::vector<Vec3> x_start_;  ///< all nodes
+    std::vector<Vec3> vertices_; ///< master surface now
+    std::vector<Index> facet_;
+    std::vector<int> changes_; ///< facet changes of each slave in this attempt
+    std::vector<contact::FacetHit> hits_;
+    std::vector<contact::ContactPoint> points_;
+    std::vector<std::vector<Index>> point_nodes_;
+    int facet_changes_ = 0;
+};
+
+} // namespace osculate::model

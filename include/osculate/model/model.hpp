@@ -1,0 +1,56 @@
+#pragma once
+/// Everything that is fixed for a run: bodies, their stiffness, contact pairs, sets. Built once by compile.
+
+#include "osculate/fe/element_block.hpp"
+#include "osculate/mesh/mesh.hpp"
+#include "osculate/model/block_matrix.hpp"
+#include "osculate/model/contact_term.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osculate::model {
+
+struct Body {
+    std::string name;
+    mesh::Mesh mesh;
+    Index first_node = 0;                                    ///< global number of its node 0
+    std::vector<std::unique_ptr<fe::ElementKernel>> kernels; ///< one per element block
+
+    [[nodiscard]] Index nodes() const { return mesh.node_count(); }
+};
+
+/// A named part of one body, with global node numbers.
+struct Set {
+    std::string name;
+    Index body = -1;
+    std::vector<Index> nodes;
+    std::vector<mesh::Facet> facets;
+};
+
+struct Model {
+    std::vector<Body> bodies;
+    std::vector<Vec3> X; ///< reference positions of all nodes, m
+    std::vector<Set> sets;
+    std::vector<std::unique_ptr<ContactTerm>> pairs;
+    BlockMatrix K; ///< stiffness of all bodies, constant: small strain, linear elasticity
+
+    [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
+};
+
+/// Stiffness of all bodies.
+[[nodiscard]] BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
+/// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).
+void add_body_force(const Body& body, const Vec3& b, std::vector<Vec3>& f);
+/// Nodal stress of one body (nodes x 6, Pa, Voigt): element values averaged with the element volumes as weights.
+[[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Body& body, const std::vector<Vec3>& u);
+
+/// What an accepted step leaves behind, and a rejected one restores: plain values.
+struct State {
+    double time = 0;
+    std::vector<Vec3> u; ///< displacements, m
+    std::vector<ContactHistory> contact;
+};
+
+} // namespace osculate::model

@@ -1,0 +1,83 @@
+#pragma once
+/// The tangent of a step as one sparse matrix over free displacements and contact forces, written through a slot map.
+
+#include "osculate/model/block_matrix.hpp"
+#include "osculate/model/constraints.hpp"
+#include "osculate/solve/sparse_matrix.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace osculate::model {
+
+/// One slave node and the master nodes its contact may reach while the pattern lives.
+struct Coupling {
+    Index slave = -1;           ///< global node
+    std::vector<Index> masters; ///< global nodes, ascending; empty: an open node that presses on nothing
+};
+
+/// Unknowns: equation numbers of Constraints for the displacements, then three components of contact force per coupling, in
+/// the local frame of the slave node. A slave node's three equilibrium rows and its three contact rows change places, so
+/// that both keep a large diagonal: equilibrium is solved for the contact force, the contact law for the displacement.
+/// Where a displacement component is held it has no equilibrium row, and the contact row stays with the contact force.
+class SystemMatrix {
+public:
+    /// Without couplings the matrix is the symmetric stiffness of the free components.
+    SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings);
+
+    [[nodiscard]] Index size() const { return size_; }
+    [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
+    /// Whether every node of `masters` (global) is in the pattern of coupling j.
+    [[nodiscard]] bool covers(Index j, std::span<const Index> masters) const;
+    [[nodiscard]] const std::vector<Coupling>& couplings() const { return couplings_; }
+
+    /// Rows of the residual: equilibrium of component k of a node (or Constraints::held), contact law of coupling j.
+    [[nodiscard]] Index equilibrium_row(Index node, int k) const;
+    [[nodiscard]] Index contact_row(Index j, int k) const;
+    /// First unknown of the contact force of coupling j.
+    [[nodiscard]] Index multiplier(Index j) const { return displacement_equations_ + 3 * j; }
+
+    /// Sets the values to the stiffness and the unit columns of the contact forces.
+    void reset();
+    /// Contact tangent of coupling j in global components: contact rows, derivatives A (3 x 3+3n) by (slave, masters) and
+    /// D (3 x 3) by the contact force; master rows, force + phi_i lambda on node i: its derivatives phi_i by the force and
+    /// lambda (x) dphi_i, dphi (n x 3+3n).
+    void add_contact(Index j, std::span<const Index> masters, const Eigen::Ref<const Matrix>& A, const Mat3& D,
+                     const Vector& phi, const Vec3& lambda, const Eigen::Ref<const Matrix>& dphi);
+    /// Contact tangent of an open coupling without partner: D only.
+    void add_contact(Index j, const Mat3& D);
+    /// Declares the values complete.
+    void finish() { ++matrix_.revision; }
+
+private:
+    // Block rows and columns are nodes 0 .. N-1 and multipliers N .. N+M-1.
+    [[nodiscard]] Index first_unknown(Index block) const;
+    [[nodiscard]] Index width(Index block) const;
+    [[nodiscard]] Index offset(Index row_block, Index column_block) const;
+    [[nodiscard]] Index equilibrium_block(Index node) const;
+    [[nodiscard]] const Mat3& frame(Index block) const;
+    void build_pattern();
+    void fill_base();
+    /// Adds a 3 x 3 block, already in local frames, at scalar rows (or held) and a block column.
+    void add(const std::array<Index, 3>& rows, Index offset_in_row, Index column_block, const Mat3& value,
+             std::vector<double>& into) const;
+    [[nodiscard]] std::array<Index, 3> equilibrium_rows(Index node) const;
+    [[nodiscard]] std::array<Index, 3> contact_rows(Index j) const;
+    /// Offsets of the blocks (slave, masters, multiplier) in every row block that coupling j writes.
+    void map_slots();
+
+    const Constraints* constraints_;
+    const BlockMatrix* K_;
+    std::vector<Coupling> couplings_;
+    std::vector<Index> exchanged_; ///< (nodes) coupling that changes rows with the node, -1 none
+    Index displacement_equations_ = 0, size_ = 0;
+    std::vector<Index> first_;              ///< (blocks + 1) first unknown of each block
+    std::vector<Index> block_row_start_{0}; ///< (blocks + 1)
+    std::vector<Index> block_column_, block_offset_;
+    std::vector<std::vector<Index>> slots_; ///< per coupling, (masters + 1) x (masters + 2) offsets
+    std::vector<double> base_;
+    solve::SparseMatrix matrix_;
+};
+
+} // namespace osculate::model

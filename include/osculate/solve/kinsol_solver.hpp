@@ -1,0 +1,81 @@
+#pragma once
+/// SUNDIALS' KINSOL as the owner of the nonlinear solve, with our matrix and our factorisations behind its seams.
+
+#include "osculate/solve/direct_solver.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace osculate {
+class Timings;
+}
+
+namespace osculate::solve {
+
+/// F(z) = 0 with n unknowns, as KINSOL sees it.
+class NonlinearProblem {
+public:
+    enum class Verdict {
+        proceed,
+        shorten, ///< F cannot be evaluated here (recoverable): KINSOL halves the step
+        stop,    ///< this solve must end now, by our own decision
+    };
+    virtual ~NonlinearProblem() = default;
+    [[nodiscard]] virtual Index size() const = 0;
+    /// F (n) at z (n). KINSOL calls it once per Newton iterate, and more often within a line search.
+    [[nodiscard]] virtual Verdict residual(const double* z, double* F) = 0;
+    /// J = dF/dz at the z of the last residual.
+    [[nodiscard]] virtual const SparseMatrix& jacobian() = 0;
+};
+
+struct KinsolOptions {
+    double tolerance = 1e-9;   ///< largest |F_i| * residual_scale that counts as converged
+    double residual_scale = 1; ///< 1 / reference force, N^-1
+    Vector unknown_scale;      ///< (n) 1 / typical size of each unknown
+    int max_iterations = 30;
+    bool line_search = false;
+};
+
+enum class KinsolOutcome {
+    converged,
+    max_iterations,
+    stopped,       ///< the problem said stop
+    singular,      ///< the tangent could not be factorised
+    no_descent,    ///< line search failed
+    not_evaluable, ///< F had no value along the step
+    not_finite,    ///< F or the step held NaN or infinity
+};
+
+struct KinsolResult {
+    KinsolOutcome outcome = KinsolOutcome::converged;
+    int iterations = 0;
+    int factorisations = 0;
+    double residual = 0; ///< largest |F_i| * residual_scale at the end
+    int return_code = 0; ///< KINSOL's own
+    SparseIndex failing_equation = -1;
+};
+
+[[nodiscard]] std::string describe(KinsolOutcome outcome);
+
+/// One solver per problem size. Full Newton: every iteration factorises the tangent, unless its values are the same.
+/// What KINSOL's return codes are taken to mean: 0 and 1 converged; 2 (step test) only if the residual test holds too.
+class KinsolSolver {
+public:
+    KinsolSolver(Index size, Timings& timings);
+    ~KinsolSolver();
+    KinsolSolver(const KinsolSolver&) = delete;
+    KinsolSolver& operator=(const KinsolSolver&) = delete;
+
+    /// Solves F(z) = 0 from the start value in z (n), which holds the last iterate afterwards.
+    /// Rethrows whatever the problem's callbacks threw.
+    [[nodiscard]] KinsolResult solve(NonlinearProblem& problem, Vector& z, const KinsolOptions& options);
+    /// Factorisations over the life of this solver.
+    [[nodiscard]] long factorisations() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace osculate::solve

@@ -1,0 +1,31 @@
+#pragma once
+/// What is known of one attempted step, for the diary.
+
+#include "osculate/core/types.hpp"
+
+#include <string>
+
+namespace osculate::time {
+
+enum class Verdict { accept, retry, give_up };
+enum class Reason { none, interpenetration, solver, error, energy, collision, forced };
+
+/// A row of steps.csv.
+struct Attempt {
+    int attempt = 0;
+    double time = 0; ///< at the end of the step, s
+    double dt = 0;   ///< s
+    Verdict verdict = Verdict::accept;
+    Reason reason = Reason::none;
+    std::string body;  ///< of the governing node; empty when there is none
+    Index node = -1;   ///< local to the body
+    double value = 0;  ///< what decided: the relative residual for `solver`
+    double lambda = 1; ///< fraction of dt proposed for the next attempt
+    int iterations = 0;
+    std::string cause; ///< in words, for messages
+};
+
+[[nodiscard]] std::string name(Verdict verdict);
+[[nodiscard]] std::string name(Reason reason);
+
+} // namespace osculate::time

@@ -1,0 +1,99 @@
+#pragma once
+/// Static equilibrium with contact at the end of one step, as the nonlinear problem KINSOL sees.
+
+#include "osculate/model/constraints.hpp"
+#include "osculate/model/model.hpp"
+#include "osculate/model/system_matrix.hpp"
+#include "osculate/solve/kinsol_solver.hpp"
+
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace osculate::time {
+
+/// Loads and motions at the end of the step.
+struct StepLoad {
+    std::vector<Vec3> force;      ///< (nodes) external forces, N
+    std::vector<Vec3> prescribed; ///< (nodes) displacement of the held components, local axes, m
+};
+
+/// One line of iterations.csv.
+struct IterationRecord {
+    int iteration = 0;
+    double residual = 0; ///< L2 norm over the reference force
+    int status_changes = 0, open = 0, stick = 0, slip = 0, facet_changes = 0;
+};
+
+/// How contact statuses follow the iterate.
+enum class StatusRule {
+    natural, ///< named anew by the complementarity functions at every iterate: semismooth Newton
+    frozen   ///< as given; the problem is smooth
+};
+
+/// F(z) with z = (free displacements, contact forces): equilibrium of every free component and the contact law of every
+/// slave node, in the rows SystemMatrix assigns. Contact points are located anew at every z.
+///     equilibrium   f_int(u) - f_ext - f_contact = 0,   f_contact = lambda on the slave, -Phi_i lambda on master i
+///     contact law   see contact::Coulomb
+class Equilibrium final : public solve::NonlinearProblem {
+public:
+    Equilibrium(model::Model& model, const model::Constraints& constraints, Timings& timings, int threads);
+
+    /// Opens an attempt: slips and facets start from `state`, loads are those at the end of the step.
+    void begin_attempt(const model::State& state, StepLoad load);
+    /// Statuses for the next solve. With `natural` they hold for the first iterate only, where `force_first` asks for it.
+    void set_statuses(std::vector<std::vector<contact::Status>> statuses, StatusRule rule, bool force_first);
+    void set_reference_force(double force) { reference_force_ = force; }
+
+    [[nodiscard]] Index size() const override { return size_; }
+    [[nodiscard]] Verdict residual(const double* z, double* F) override;
+    [[nodiscard]] const solve::SparseMatrix& jacobian() override;
+
+    /// z from displacements and contact forces, and the state (time apart) from z.
+    [[nodiscard]] Vector unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const;
+    [[nodiscard]] model::State state(const Vector& z) const;
+
+    /// Statuses at the last residual, and what the complementarity functions say there.
+    [[nodiscard]] const std::vector<std::vector<contact::Status>>& statuses() const { return statuses_; }
+    [[nodiscard]] std::vector<std::vector<contact::Status>> natural_statuses() const;
+    /// Lines of iterations.csv since begin_attempt.
+    [[nodiscard]] const std::vector<IterationRecord>& records() const { return records_; }
+    /// f_int - f_ext - f_contact at the last residual: what the supports carry, and round-off elsewhere. (nodes) N
+    [[nodiscard]] const std::vector<Vec3>& unbalanced() const { return unbalanced_; }
+    [[nodiscard]] const std::vector<Vec3>& internal_force() const { return internal_; }
+    /// Node whose row holds the largest residual.
+    [[nodiscard]] Index worst_node() const { return worst_node_; }
+    [[nodiscard]] long patterns_built() const { return patterns_built_; }
+    [[nodiscard]] const model::Constraints& constraints() const { return constraints_; }
+
+private:
+    void unpack(const double* z);
+    void fill(double* F);
+    void record(const double* F, int status_changes);
+    [[nodiscard]] bool cycles(double residual);
+    void cover_patches();
+    [[nodiscard]] Mat3 symmetry_directions(Index node) const;
+
+    model::Model& model_;
+    const model::Constraints& constraints_;
+    Timings& timings_;
+    int threads_;
+    Index size_ = 0;
+    std::vector<Index> first_coupling_; ///< (pairs + 1)
+    std::unique_ptr<model::SystemMatrix> matrix_;
+    StepLoad load_;
+    double reference_force_ = 1;
+
+    std::vector<Vec3> u_, x_, internal_, unbalanced_;
+    std::vector<std::vector<Vec3>> lambda_;
+    std::vector<std::vector<contact::Status>> statuses_;
+    StatusRule rule_ = StatusRule::natural;
+    bool force_next_ = false;
+    std::vector<IterationRecord> records_;
+    std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> times seen, least residual
+    std::size_t last_configuration_ = 0;
+    Index worst_node_ = -1;
+    long patterns_built_ = 0;
+};
+
+} // namespace osculate::time

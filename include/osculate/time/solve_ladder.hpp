@@ -1,0 +1,37 @@
+#pragma once
+/// The deterministic ladder of nonlinear solves for one attempt: each rung is tried only when the one before it failed.
+
+#include "osculate/time/equilibrium.hpp"
+
+namespace osculate::time {
+
+struct LadderOptions {
+    double tolerance = 1e-9;
+    int max_iterations = 30;
+    double characteristic_length = 1; ///< m
+    double reference_force = 1;       ///< N
+};
+
+struct LadderResult {
+    solve::KinsolOutcome outcome = solve::KinsolOutcome::converged;
+    int iterations = 0;    ///< Newton iterations of all rungs
+    double residual = 0;   ///< largest residual component over the reference force
+    const char* rung = ""; ///< the rung that ended the attempt
+    solve::SparseIndex failing_equation = -1;
+
+    [[nodiscard]] bool converged() const { return outcome == solve::KinsolOutcome::converged; }
+};
+
+using Statuses = std::vector<std::vector<contact::Status>>;
+
+/// 1 semismooth Newton: statuses follow the iterate
+/// 2 statuses frozen per KINSOL call and settled between calls; a release that leaves the tangent singular is taken back
+///   by halves, so that no body loses its support
+/// A smaller step and a named failure are the stepper's.
+/// @param z            start values, last iterate afterwards
+/// @param start        statuses to start from
+/// @param force_first  they hold for the first iterate of rung 1, whatever the complementarity functions say
+[[nodiscard]] LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                                 const Statuses& start, bool force_first, const LadderOptions& options);
+
+} // namespace osculate::time

@@ -1,0 +1,72 @@
+#pragma once
+/// Takes the stages of a run step by step. A step is a transaction: it is accepted whole or leaves no trace.
+
+#include "osculate/time/attempt.hpp"
+#include "osculate/time/equilibrium.hpp"
+#include "osculate/time/solve_ladder.hpp"
+#include "osculate/time/stage.hpp"
+
+#include <memory>
+
+namespace osculate::time {
+
+struct StepperOptions {
+    double tolerance = 1e-9;
+    int max_iterations = 30;
+    double smallest_step = 1e-3; ///< of the stage's step
+    bool predictor = true;
+    int threads = 1;
+};
+
+/// An accepted step, valid during StepObserver::accepted only.
+struct AcceptedStep {
+    const model::State& state;
+    const Equilibrium& equilibrium; ///< evaluated at `state`
+    double dt = 0;
+    int iterations = 0;
+    const Stage& stage;
+};
+
+class StepObserver {
+public:
+    virtual ~StepObserver() = default;
+    virtual void attempted(const Attempt& attempt, const std::vector<IterationRecord>& iterations) = 0;
+    virtual void accepted(const AcceptedStep& step) = 0;
+};
+
+class Stepper {
+public:
+    Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings);
+
+    /// Runs every stage. Throws RunFailure with the cause in words when a step cannot be solved at its smallest size;
+    /// everything accepted before has been observed.
+    void run(StepObserver& observer);
+
+    [[nodiscard]] const model::State& state() const { return state_; }
+    [[nodiscard]] long factorisations() const { return factorisations_; }
+    [[nodiscard]] double end_time() const;
+
+private:
+    void run_stage(const Stage& stage, StepObserver& observer);
+    [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
+                                   const std::vector<Vec3>& prescribed_start, double fraction) const;
+    /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
+    void predict(const model::Constraints& constraints, const std::vector<Vec3>& prescribed,
+                 std::vector<Vec3>& u) const;
+    /// Statuses to start from; true where a pair is brought into contact by hand because nothing of it is closed yet.
+    [[nodiscard]] bool starting_statuses(Equilibrium& equilibrium, const Vector& z, Statuses& statuses) const;
+    [[nodiscard]] double reference_force(const StepLoad& load, const Equilibrium& equilibrium, const Vector& z) const;
+    [[nodiscard]] std::string explain(const LadderResult& result, const Equilibrium& equilibrium,
+                                      Attempt& attempt) const;
+
+    model::Model& model_;
+    std::vector<Stage> stages_;
+    StepperOptions options_;
+    Timings& timings_;
+    model::State state_;
+    int attempts_ = 0;
+    long factorisations_ = 0;
+    double characteristic_length_ = 1;
+};
+
+} // namespace osculate::time

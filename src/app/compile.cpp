@@ -1,0 +1,385 @@
+#include "osculate/app/compile.hpp"
+
+#include "app/gaps.hpp"
+#include "app/supports.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
+#include "osculate/mesh/generators.hpp"
+#include "osculate/mesh/quality.hpp"
+#include "osculate/mesh/select.hpp"
+#include "osculate/mesh/vtu_reader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <numeric>
+
+namespace osculate::app {
+
+namespace {
+
+template <class... F> struct Overloaded : F... { using F::operator()...; };
+template <class... F> Overloaded(F...) -> Overloaded<F...>;
+
+Fault fault(std::string key, std::string expected, std::string found) {
+    Fault f;
+    f.key = std::move(key);
+    f.expected = std::move(expected);
+    f.found = std::move(found);
+    return f;
+}
+
+mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory) {
+    mesh::Mesh m = std::visit(
+        Overloaded{
+            [](const scene::BlockMesh& b) {
+                return mesh::make_block(b.origin, b.size, b.divisions, b.element, b.pattern);
+            },
+            [](const scene::HalfTubeMesh& t) {
+                return mesh::make_half_tube(t.inner_radius, t.thickness, t.length, t.divisions, t.element);
+            },
+            [](const scene::ContactorMesh& c) {
+                return mesh::make_contactor(c.radius, c.width, c.length, c.height, c.rear, c.divisions, c.element);
+            },
+            [&](const scene::FileMesh& f) {
+                return mesh::read_vtu((std::filesystem::path(directory) / f.path).string());
+            },
+        },
+        spec.source);
+    const scene::Placement& p = spec.placement;
+    if (p.angle != 0 || p.scale != 1 || !p.translation.isZero(0))
+        mesh::place(m, p.axis, p.angle, p.translation, p.scale);
+    return m;
+}
+
+class Compiler {
+public:
+    Compiler(const scene::Scene& scene, int threads, Timings& timings)
+        : scene_(scene), threads_(threads), timings_(timings) {}
+
+    Plan run(std::vector<mesh::Mesh> meshes) {
+        require(meshes.size() == scene_.bodies.size(), "compile: one mesh per body");
+        add_bodies(std::move(meshes));
+        throw_faults(); // nothing below can be trusted on a broken mesh
+        add_sets();
+        throw_faults();
+        add_stages();
+        add_pairs();
+        throw_faults();
+        check_supports();
+        check_gaps();
+        throw_faults();
+        {
+            const ScopedTimer timer(timings_, Part::assembly);
+            plan_.model.K = model::assemble_stiffness(plan_.model.bodies, plan_.model.nodes());
+        }
+        plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, scene_.solver.smallest_step,
+                         scene_.solver.predictor, threads_};
+        add_items();
+        return std::move(plan_);
+    }
+
+private:
+    void throw_faults() {
+        if (!faults_.empty()) throw SceneError(std::move(faults_));
+    }
+
+    void add_bodies(std::vector<mesh::Mesh> meshes) {
+        for (std::size_t b = 0; b < meshes.size(); ++b) {
+            const auto& [name, spec] = scene_.bodies[b];
+            for (const std::string& what : mesh::faults(meshes[b]))
+                faults_.push_back(fault("bodies." + name + ".mesh", "a sound mesh", what));
+            model::Body body;
+            body.name = name;
+            body.mesh = std::move(meshes[b]);
+            body.first_node = plan_.model.nodes();
+            const auto& elastic = std::get<scene::LinearElastic>(spec.material);
+            for (const mesh::ElementBlock& block : body.mesh.blocks)
+                body.kernels.push_back(fe::make_kernel(block.type, formulation(spec.hex_formulation),
+                                                       material::LinearElastic{elastic.E, elastic.nu}));
+            plan_.model.X.insert(plan_.model.X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
+            exterior_.push_back(mesh::exterior_facets(body.mesh));
+            plan_.model.bodies.push_back(std::move(body));
+        }
+    }
+
+    static fe::HexFormulation formulation(scene::HexFormulation f) {
+        switch (f) {
+        case scene::HexFormulation::full: return fe::HexFormulation::full;
+        case scene::HexFormulation::b_bar: return fe::HexFormulation::b_bar;
+        case scene::HexFormulation::incompatible_modes: return fe::HexFormulation::incompatible_modes;
+        }
+        throw InternalError("unknown hex formulation");
+    }
+
+    Index body_index(const std::string& name) const {
+        for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
+            if (scene_.bodies[b].first == name) return static_cast<Index>(b);
+        throw InternalError("the scene names a body it does not have");
+    }
+
+    const model::Set& set(const std::string& name) const {
+        for (const model::Set& s : plan_.model.sets)
+            if (s.name == name) return s;
+        throw InternalError("the scene names a set it does not have");
+    }
+
+    void add_sets() {
+        for (const auto& [name, spec] : scene_.sets) {
+            const Index b = body_index(spec.body);
+            const mesh::Mesh& m = plan_.model.bodies[b].mesh;
+            const auto& exterior = exterior_[b];
+            const mesh::Region region = std::visit(
+                Overloaded{
+                    [&](const scene::SelectNamed& s) {
+                        auto named = mesh::select_named(m, exterior, s.name);
+                        if (named) return *named;
+                        std::string known;
+                        for (const auto& [surface, facets] : m.surfaces) known += (known.empty() ? "" : ", ") + surface;
+                        for (const auto& [nodes, list] : m.node_sets)
+                            if (!m.surfaces.contains(nodes)) known += (known.empty() ? "" : ", ") + nodes;
+                        faults_.push_back(fault(
+                            "sets." + name, "a surface or node set of body '" + spec.body + "' (it has " + known + ")",
+                            "'" + s.name + "'"));
+                        return mesh::Region{};
+                    },
+                    [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point, s.normal); },
+                    [&](const scene::SelectCylinder& s) {
+                        return mesh::select_cylinder(m, exterior, s.point, s.axis, s.radius);
+                    },
+                    [&](const scene::SelectBox& s) { return mesh::select_box(m, exterior, s.min, s.max); },
+                    [&](const scene::SelectNormal& s) {
+                        return mesh::select_normal(m, exterior, s.direction, s.angle);
+                    },
+                },
+                spec.select);
+            if (region.nodes.empty() && !std::holds_alternative<scene::SelectNamed>(spec.select))
+                faults_.push_back(fault("sets." + name, "at least one node of body '" + spec.body + "'",
+                                        "an empty set: nothing lies there"));
+            model::Set global{name, b, region.nodes, region.facets};
+            const Index shift = plan_.model.bodies[b].first_node;
+            for (Index& node : global.nodes) node += shift;
+            for (mesh::Facet& facet : global.facets)
+                for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += shift;
+            plan_.model.sets.push_back(std::move(global));
+        }
+    }
+
+    /// Held directions of every stage and external forces at its ends.
+    void add_stages() {
+        std::map<std::string, std::array<std::optional<double>, 3>> driven; // keeps its value in later stages
+        std::map<std::string, double> pressure;
+        std::map<std::string, Vec3> body_force;
+        std::vector<Vec3> force(plan_.model.X.size(), Vec3::Zero());
+        for (const auto& [name, spec] : scene_.stages) {
+            time::Stage stage;
+            stage.name = name;
+            stage.duration = spec.duration;
+            stage.steps = spec.steps;
+            stage.ramp = spec.ramp;
+            for (const auto& [set_name, components] : spec.displacement)
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (components[k]) driven[set_name][k] = components[k];
+            for (const auto& [set_name, value] : spec.pressure) pressure[set_name] = value;
+            for (const auto& [body, value] : spec.body_force) body_force[body] = value;
+            add_constraints(driven, stage.constraints);
+            stage.force_start = force;
+            force.assign(force.size(), Vec3::Zero());
+            for (const auto& [set_name, value] : pressure) {
+                const model::Set& s = set(set_name);
+                if (s.facets.empty())
+                    faults_.push_back(fault("stages." + name + ".pressure." + set_name, "a set with facets",
+                                            "a set of nodes that cover no facet"));
+                for (const mesh::Facet& facet : s.facets) {
+                    const auto f = fe::pressure_forces(facet, plan_.model.X, value);
+                    for (int c = 0; c < facet.count; ++c) force[facet.nodes[c]] += f[c];
+                }
+            }
+            for (const auto& [body, value] : body_force)
+                model::add_body_force(plan_.model.bodies[body_index(body)], value, force);
+            stage.force_end = force;
+            try {
+                (void)model::Constraints(plan_.model.nodes(), stage.constraints);
+            } catch (const std::invalid_argument& error) {
+                faults_.push_back(fault("supports", "compatible directions at every node", error.what()));
+            }
+            plan_.stages.push_back(std::move(stage));
+        }
+        for (std::size_t s = 0; s < plan_.model.sets.size(); ++s) {
+            const std::string& name = plan_.model.sets[s].name;
+            if (scene::find(scene_.supports, name) != nullptr || driven.contains(name))
+                plan_.constrained_sets.push_back(static_cast<Index>(s));
+        }
+    }
+
+    void add_constraints(const std::map<std::string, std::array<std::optional<double>, 3>>& driven,
+                         std::vector<model::NodeConstraint>& constraints) const {
+        for (std::size_t s = 0; s < plan_.model.sets.size(); ++s) {
+            const model::Set& group = plan_.model.sets[s];
+            const scene::Support* support = scene::find(scene_.supports, group.name);
+            const auto motion = driven.find(group.name);
+            const Mat3 axes = support != nullptr ? support->axes : Mat3::Identity();
+            for (int k = 0; k < 3; ++k) {
+                const bool moved = motion != driven.end() && motion->second[static_cast<std::size_t>(k)];
+                const bool fixed = support != nullptr &&
+                                   (support->fixed[static_cast<std::size_t>(k)] || (support->symmetry && k == 0));
+                if (!moved && !fixed) continue;
+                for (const Index node : group.nodes)
+                    constraints.push_back({node, axes.col(k),
+                                           moved ? *motion->second[static_cast<std::size_t>(k)] : 0.0, moved,
+                                           support != nullptr && support->symmetry, static_cast<Index>(s)});
+            }
+        }
+    }
+
+    void add_pairs() {
+        for (const auto& [name, spec] : scene_.contact) {
+            const model::Set& slave = set(spec.slave);
+            const model::Set& master = set(spec.master.set);
+            const std::string key = "contact." + name;
+            bool broken = false;
+            for (const auto& [part, group] : {std::pair{".slave", &slave}, std::pair{".master.set", &master}})
+                if (group->facets.empty()) {
+                    faults_.push_back(fault(key + part, "a set with facets", "a set of nodes that cover no facet"));
+                    broken = true;
+                }
+            if (!broken) plan_.model.pairs.push_back(make_pair(name, key, spec, slave, master));
+        }
+        std::erase(plan_.model.pairs, nullptr);
+    }
+
+    std::unique_ptr<model::ContactTerm> make_pair(const std::string& name, const std::string& key,
+                                                  const scene::Pair& spec, const model::Set& slave,
+                                                  const model::Set& master) {
+        const ScopedTimer timer(timings_, Part::patches);
+        const std::vector<Vec3>& X = plan_.model.X;
+        std::unique_ptr<mesh::HalfEdgeSurface> surface;
+        try {
+            surface = std::make_unique<mesh::HalfEdgeSurface>(master.facets, X);
+        } catch (const std::runtime_error& error) {
+            faults_.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
+            return nullptr;
+        }
+
+        model::SlaveNodes slaves;
+        slaves.facets = slave.facets;
+        std::map<Index, std::pair<double, double>> area_and_size; // tributary area, largest facet size at the node
+        for (const mesh::Facet& facet : slave.facets) {
+            const auto area = fe::tributary_areas(facet, X);
+            const double size = std::sqrt(std::accumulate(area.begin(), area.end(), 0.0));
+            for (int c = 0; c < facet.count; ++c) {
+                auto& [sum, largest] = area_and_size[facet.nodes[c]];
+                sum += area[static_cast<std::size_t>(c)];
+                largest = std::max(largest, size);
+            }
+        }
+        // c = E_slave * tributary area / h: the stiffness of the slave's own first layer, so free of units
+        const double E = std::get<scene::LinearElastic>(scene_.bodies[slave.body].second.material).E;
+        for (const auto& [node, values] : area_and_size) {
+            slaves.node.push_back(node);
+            slaves.area.push_back(values.first);
+            slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
+        }
+
+        const std::vector<Index> master_nodes = surface->vertex_nodes();
+        std::vector<Vec3> vertices;
+        for (const Index node : master_nodes) vertices.push_back(X[node]);
+        model::ContactOptions options{spec.friction, 0, spec.closing_tolerance};
+        std::unique_ptr<contact::MasterSurface> shape =
+            std::visit(Overloaded{
+                           [&](const scene::FacetsSurface& s) {
+                               options.hysteresis = s.hysteresis;
+                               return contact::make_facets_surface(*surface);
+                           },
+                           [&](const scene::RpimSurface& s) {
+                               options.hysteresis = s.hysteresis;
+                               return contact::make_rpim_surface(*surface, vertices,
+                                                                 {s.ring,
+                                                                  {s.R, s.q},
+                                                                  s.m,
+                                                                  s.coordinates == scene::PatchCoordinates::tangential
+                                                                      ? contact::PatchCoordinates::tangential
+                                                                      : contact::PatchCoordinates::equal_length});
+                           },
+                       },
+                       spec.master.surface);
+        return std::make_unique<model::ContactTerm>(name, std::move(slaves), std::move(surface), master_nodes,
+                                                    std::move(shape), options);
+    }
+
+    void check_supports() {
+        for (const std::string& body : unsupported_bodies(plan_))
+            faults_.push_back(fault("bodies." + body, "supports or contact that hold the body",
+                                    "free rigid-body motions: add supports, or a contact pair that touches it"));
+    }
+
+    void check_gaps() {
+        for (std::size_t p = 0; p < plan_.model.pairs.size(); ++p) {
+            const PairGaps gaps = initial_gaps(*plan_.model.pairs[p], plan_.model.X, timings_, threads_);
+            const double limit = scene_.contact[p].second.initial_overlap_limit;
+            if (gaps.largest_overlap > limit)
+                faults_.push_back(fault("contact." + scene_.contact[p].first,
+                                        "bodies that overlap by less than " + std::to_string(limit) +
+                                            " of the facet size at the start",
+                                        "an overlap of " + std::to_string(-gaps.least) + " m at slave node " +
+                                            std::to_string(gaps.worst_node) + ", " +
+                                            std::to_string(gaps.largest_overlap) + " of the facet size"));
+        }
+    }
+
+    void add_items();
+
+    const scene::Scene& scene_;
+    int threads_;
+    Timings& timings_;
+    Plan plan_;
+    std::vector<std::vector<mesh::Facet>> exterior_;
+    std::vector<Fault> faults_;
+};
+
+void Compiler::add_items() {
+    const auto say = [&](std::string part, bool present, std::string reason) {
+        plan_.items.push_back({std::move(part), present, std::move(reason)});
+    };
+    const bool contact = !plan_.model.pairs.empty();
+    bool friction = false, smooth = false;
+    for (const auto& [name, pair] : scene_.contact) {
+        friction = friction || pair.friction > 0;
+        smooth = smooth || std::holds_alternative<scene::RpimSurface>(pair.master.surface);
+    }
+    say("stiffness", true, "assembled once: small strain and linear elasticity keep it constant");
+    say("inertia, damping", false, "every stage is static");
+    say("contact", contact, contact ? std::to_string(scene_.contact.size()) + " pair(s)" : "the scene has no pair");
+    say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
+    say("smooth master surface", smooth, smooth ? "frozen RPIM patches" : "no pair asks for one");
+    say("Cholesky factorisation", !contact,
+        contact ? "contact makes the tangent unsymmetric" : "the tangent is symmetric positive definite");
+    say("LU factorisation", contact, contact ? "unsymmetric tangent with contact" : "not needed without contact");
+    const scene::Output& out = scene_.output;
+    say("nodal stresses",
+        std::any_of(out.body_fields.begin(), out.body_fields.end(),
+                    [](const std::string& f) { return f == "stress" || f == "von_mises"; }),
+        "output template '" + out.template_name + "'");
+    say("frames", out.frame_every > 0, "every " + std::to_string(out.frame_every) + " accepted step(s)");
+    say("iterations.csv", out.iterations, out.iterations ? "asked for" : "not asked for");
+}
+
+} // namespace
+
+std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene) {
+    std::vector<mesh::Mesh> meshes;
+    std::vector<Fault> faults;
+    for (const auto& [name, body] : scene.bodies) try {
+            meshes.push_back(generate(body.mesh, scene.directory));
+        } catch (const std::exception& error) {
+            faults.push_back(fault("bodies." + name + ".mesh", "a mesh that can be made", error.what()));
+        }
+    if (!faults.empty()) throw SceneError(std::move(faults));
+    return meshes;
+}
+
+Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings) {
+    return Compiler(scene, threads, timings).run(std::move(meshes));
+}
+
+} // namespace osculate::app

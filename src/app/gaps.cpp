@@ -1,0 +1,28 @@
+#include "app/gaps.hpp"
+
+#include <limits>
+
+namespace osculate::app {
+
+PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timings& timings, int threads) {
+    pair.begin_step(X, pair.initial_history(), timings, threads);
+    pair.evaluate(X, timings, threads);
+    PairGaps gaps;
+    gaps.least = std::numeric_limits<double>::max();
+    gaps.largest = -gaps.least;
+    for (Index j = 0; j < pair.size(); ++j) {
+        const contact::ContactPoint& point = pair.point(j);
+        if (!point.found && !point.behind) continue;
+        ++gaps.above;
+        gaps.largest = std::max(gaps.largest, point.gap);
+        if (point.gap < gaps.least) {
+            gaps.least = point.gap;
+            gaps.worst_node = pair.slaves().node[j];
+        }
+        gaps.largest_overlap = std::max(gaps.largest_overlap, -point.gap / pair.surface().facet_size(point.facet));
+    }
+    if (gaps.above == 0) gaps.least = gaps.largest = 0;
+    return gaps;
+}
+
+} // namespace osculate::app

@@ -1,0 +1,19 @@
+#pragma once
+/// Gaps of a pair in the reference configuration.
+
+#include "osculate/model/contact_term.hpp"
+
+namespace osculate::app {
+
+struct PairGaps {
+    Index above = 0;            ///< slave nodes with a contact partner below them
+    double least = 0;           ///< smallest gap, m
+    double largest = 0;         ///< largest gap, m
+    double largest_overlap = 0; ///< over the size of the facet concerned
+    Index worst_node = -1;      ///< global node with the smallest gap
+};
+
+[[nodiscard]] PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timings& timings,
+                                    int threads);
+
+} // namespace osculate::app

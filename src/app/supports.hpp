@@ -1,0 +1,11 @@
+#pragma once
+/// Which bodies nothing could hold.
+
+#include "osculate/app/compile.hpp"
+
+namespace osculate::app {
+
+/// Bodies that keep a rigid motion in the first stage: their supports leave one free and no contact pair has them.
+[[nodiscard]] std::vector<std::string> unsupported_bodies(const Plan& plan);
+
+} // namespace osculate::app

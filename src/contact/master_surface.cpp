@@ -1,0 +1,167 @@
+#include "osculate/contact/master_surface.hpp"
+
+#include "osculate/contact/facet_patch.hpp"
+#include "osculate/contact/projection.hpp"
+#include "osculate/contact/rpim_patch.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace osculate::contact {
+
+namespace {
+
+/// A foot beyond the boundary by more than this fraction of the facet's size is no contact; less is round-off of meshes
+/// that end together.
+constexpr double boundary_margin = 0.01;
+/// A point deeper than this many facet sizes is behind the surface, not in contact with it.
+constexpr double deepest = 2.0;
+/// Fig. 5d: facets turned further from the reference plane than this, or left with less of their area, overlap.
+constexpr double largest_turn = 80 * std::numbers::pi / 180;
+constexpr double smallest_projection = 0.05;
+
+bool beyond_boundary(const FacetHit& hit, double facet_size) {
+    return hit.facet < 0 || (hit.boundary && hit.overhang > boundary_margin * facet_size);
+}
+
+template <class Patch>
+bool evaluate_on(const Patch& patch, std::span<const Index> vertices, const Vec2& start, const Vec3& s,
+                 const std::vector<Vec3>& x, double facet_size, ContactPoint& point) {
+    MatrixX3 nodes(static_cast<Index>(vertices.size()), 3);
+    for (std::size_t i = 0; i < vertices.size(); ++i) nodes.row(static_cast<Index>(i)) = x[vertices[i]].transpose();
+    const auto foot = project(patch, patch.coefficients(nodes), s, start);
+    if (!foot) return false;
+    point.nodes.assign(vertices.begin(), vertices.end());
+    if (!vary(patch, *foot, s, point)) return false;
+    point.behind = point.gap <= -deepest * facet_size;
+    return !point.behind;
+}
+
+class FacetsSurface final : public MasterSurface {
+public:
+    explicit FacetsSurface(const mesh::HalfEdgeSurface& surface) : surface_(surface) {}
+
+    std::span<const Index> patch_vertices(Index facet) const override { return surface_.facet_vertices(facet); }
+
+    void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point) const override {
+        point.found = point.behind = false;
+        point.facet = hit.facet;
+        if (hit.facet < 0) return;
+        const double size = surface_.facet_size(hit.facet);
+        if (beyond_boundary(hit, size)) return;
+        const auto vertices = surface_.facet_vertices(hit.facet);
+        const FacetPatch patch(static_cast<int>(vertices.size()));
+        point.found = evaluate_on(patch, vertices, hit.u, s, x, size, point);
+    }
+
+private:
+    const mesh::HalfEdgeSurface& surface_;
+};
+
+class RpimSurface final : public MasterSurface {
+public:
+    RpimSurface(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const RpimOptions& options)
+        : surface_(surface), facets_(surface) {
+        domains_.reserve(static_cast<std::size_t>(surface.facet_count()));
+        for (Index f = 0; f < surface.facet_count(); ++f) domains_.push_back(make_domain(f, X, options));
+    }
+
+    std::span<const Index> patch_vertices(Index facet) const override {
+        const Domain& domain = domains_[facet];
+        return domain.patch ? std::span<const Index>(domain.vertices) : facets_.patch_vertices(facet);
+    }
+
+    void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point) const override {
+        point.found = point.behind = false;
+        point.facet = hit.facet;
+        if (hit.facet < 0) return;
+        const Domain& domain = domains_[hit.facet];
+        if (!domain.patch) return facets_.evaluate(s, hit, x, point);
+        const double size = surface_.facet_size(hit.facet);
+        if (beyond_boundary(hit, size)) return;
+        // start where the facet's own closest point lies in the patch's coordinates
+        const FacetPatch facet(static_cast<int>(domain.corners.rows()));
+        Vector phi(facet.size());
+        MatrixX2 phi_a(facet.size(), 2);
+        facet.weights(hit.u, phi, phi_a);
+        const Vec2 start = domain.corners.transpose() * phi;
+        point.found = evaluate_on(*domain.patch, domain.vertices, start, s, x, size, point);
+    }
+
+    Index fallbacks() const override { return fallbacks_; }
+
+private:
+    /// Domain of influence of a temporary facet: a frozen patch, or nothing where only the facet itself will do.
+    struct Domain {
+        std::vector<Index> vertices;
+        std::optional<RpimPatch> patch;
+        MatrixX2 corners; ///< natural coordinates of the facet's own corners
+    };
+
+    Domain make_domain(Index facet, const std::vector<Vec3>& X, const RpimOptions& options) {
+        const auto own = surface_.facet_vertices(facet);
+        const FacetPatch shape(static_cast<int>(own.size()));
+        MatrixX3 corners(shape.size(), 3);
+        for (Index b = 0; b < shape.size(); ++b) corners.row(b) = X[own[b]].transpose();
+        const PatchPoint centre = shape.point(shape.centre(), corners);
+        const ReferencePlane plane = ReferencePlane::through(centre.X, centre.normal());
+        const auto natural = [&](const Vec3& x) {
+            return options.coordinates == PatchCoordinates::tangential ? plane.tangential(x) : plane.equal_length(x);
+        };
+        for (int ring = options.ring; ring > 0; --ring) {
+            if (overlaps(facet, ring, plane, X)) continue;
+            Domain domain;
+            domain.vertices = surface_.facet_ring(facet, ring);
+            MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2);
+            for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[domain.vertices[i]]).transpose();
+            domain.patch = RpimPatch::fit(u, options.basis, options.polynomial_terms);
+            if (!domain.patch) continue;
+            domain.corners.resize(shape.size(), 2);
+            for (Index b = 0; b < shape.size(); ++b) domain.corners.row(b) = natural(X[own[b]]).transpose();
+            if (ring < options.ring) ++fallbacks_;
+            return domain;
+        }
+        ++fallbacks_;
+        return {};
+    }
+
+    /// Whether a facet of the ring folds over in the reference plane (Fig. 5d).
+    bool overlaps(Index facet, int ring, const ReferencePlane& plane, const std::vector<Vec3>& X) const {
+        const Vec3 up = plane.axes.col(0).cross(plane.axes.col(1));
+        for (const Index f : surface_.ring_facets(facet, ring)) {
+            const auto vertices = surface_.facet_vertices(f);
+            const std::size_t n = vertices.size();
+            Vec3 area = Vec3::Zero();
+            for (std::size_t b = 1; b + 1 < n; ++b)
+                area += (X[vertices[b]] - X[vertices[0]]).cross(X[vertices[b + 1]] - X[vertices[0]]);
+            const double projected = area.dot(up);
+            if (projected < std::cos(largest_turn) * area.norm() || projected < smallest_projection * area.norm())
+                return true;
+            for (std::size_t b = 0; b < n; ++b) { // corner Jacobians in the plane
+                const Vec3 here = X[vertices[b]];
+                const Vec3 corner = (X[vertices[(b + 1) % n]] - here).cross(X[vertices[(b + n - 1) % n]] - here);
+                if (corner.dot(up) < smallest_projection * corner.norm()) return true;
+            }
+        }
+        return false;
+    }
+
+    const mesh::HalfEdgeSurface& surface_;
+    FacetsSurface facets_;
+    std::vector<Domain> domains_;
+    Index fallbacks_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<MasterSurface> make_facets_surface(const mesh::HalfEdgeSurface& surface) {
+    return std::make_unique<FacetsSurface>(surface);
+}
+
+std::unique_ptr<MasterSurface> make_rpim_surface(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,
+                                                 const RpimOptions& options) {
+    return std::make_unique<RpimSurface>(surface, X, options);
+}
+
+} // namespace osculate::contact

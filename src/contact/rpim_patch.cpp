@@ -1,0 +1,150 @@
+#include "osculate/contact/rpim_patch.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <limits>
+
+namespace osculate::contact {
+
+ReferencePlane ReferencePlane::through(const Vec3& origin, const Vec3& n) {
+    // eq (20) with (1 - n3)/(n1^2 + n2^2) = 1/(1 + n3), which has no 0/0 at n = e3; mirrored for n3 < 0.
+    const double sign = n.z() < 0 ? -1 : 1;
+    const double k = 1 / (1 + sign * n.z());
+    ReferencePlane plane;
+    plane.origin = origin;
+    plane.axes.col(0) = Vec3(1 - n.x() * n.x() * k, -n.x() * n.y() * k, -sign * n.x());
+    plane.axes.col(1) = n.cross(plane.axes.col(0));
+    return plane;
+}
+
+Vec2 ReferencePlane::equal_length(const Vec3& x) const {
+    const Vec2 projected = tangential(x);
+    const double length = projected.norm();
+    if (length == 0) return projected;
+    return projected * ((x - origin).norm() / length);
+}
+
+namespace {
+
+/// Smallest ratio of singular values of the column-scaled polynomial matrix that still counts as full rank.
+constexpr double rank_tolerance = 1e-6;
+
+/// p(t) = [1 x y | xx xy yy]                                                              [Qian 2014, eqs (11)-(12)]
+Matrix polynomial_matrix(const MatrixX2& t, int m) {
+    Matrix D(t.rows(), m);
+    D.col(0).setOnes();
+    D.col(1) = t.col(0);
+    D.col(2) = t.col(1);
+    if (m == 6) {
+        D.col(3) = t.col(0).cwiseAbs2();
+        D.col(4) = t.col(0).cwiseProduct(t.col(1));
+        D.col(5) = t.col(1).cwiseAbs2();
+    }
+    return D;
+}
+
+bool full_rank(Matrix D) {
+    if (D.rows() < D.cols()) return false;
+    for (Index j = 0; j < D.cols(); ++j) {
+        const double norm = D.col(j).norm();
+        if (norm == 0) return false;
+        D.col(j) /= norm;
+    }
+    const Vector s = Eigen::JacobiSVD<Matrix>(D).singularValues();
+    return s(s.size() - 1) > rank_tolerance * s(0);
+}
+
+double mean_nearest_distance(const MatrixX2& u) {
+    double sum = 0;
+    for (Index i = 0; i < u.rows(); ++i) {
+        double nearest = std::numeric_limits<double>::max();
+        for (Index j = 0; j < u.rows(); ++j)
+            if (j != i) nearest = std::min(nearest, (u.row(i) - u.row(j)).squaredNorm());
+        sum += std::sqrt(nearest);
+    }
+    return sum / static_cast<double>(u.rows());
+}
+
+} // namespace
+
+std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& basis, int m) {
+    const Index n = static_cast<Index>(u.rows());
+    if (n < 3) return std::nullopt;
+    RpimPatch patch;
+    patch.basis_ = basis;
+    patch.c_ = u.colwise().mean().transpose();
+    patch.dc_ = mean_nearest_distance(u);
+    if (!(patch.dc_ > 0)) return std::nullopt;
+    patch.t_ = (u.rowwise() - patch.c_.transpose()) / patch.dc_;
+
+    const Index fewest_for_quadratic = 7;
+    patch.m_ = m == 6 && n >= fewest_for_quadratic && full_rank(polynomial_matrix(patch.t_, 6)) ? 6 : 3;
+    const Matrix D = polynomial_matrix(patch.t_, patch.m_);
+    if (patch.m_ == 3 && !full_rank(D)) return std::nullopt;
+
+    // G = [[C, D], [D^T, 0]]                                                            [Qian 2014, eqs (13)-(14)]
+    Matrix G = Matrix::Zero(n + patch.m_, n + patch.m_);
+    for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < n; ++j) G(i, j) = basis((patch.t_.row(i) - patch.t_.row(j)).squaredNorm()).f;
+    G.topRightCorner(n, patch.m_) = D;
+    G.bottomLeftCorner(patch.m_, n) = D.transpose();
+    patch.H_ = G.partialPivLu().solve(Matrix::Identity(n + patch.m_, n));
+    if (!patch.H_.allFinite()) return std::nullopt;
+    return patch;
+}
+
+template <class F> void RpimPatch::for_each_basis(const Vec2& u, F&& f) const {
+    const Vec2 t = (u - c_) / dc_;
+    const double a = 1 / dc_, b = a * a; // chain rule of t(u)
+    const Index n = size();
+    for (Index i = 0; i < n; ++i) {
+        const Vec2 d = t - t_.row(i).transpose();
+        const RadialValue r = basis_(d.squaredNorm());
+        BasisRow row;
+        row.value = r.f;
+        row.first = 2 * r.df * a * d;
+        row.second = b * Vec3(2 * r.df + 4 * r.ddf * d.x() * d.x(), 4 * r.ddf * d.x() * d.y(),
+                              2 * r.df + 4 * r.ddf * d.y() * d.y());
+        f(i, row);
+    }
+    f(n, BasisRow{1, Vec2::Zero(), Vec3::Zero()});
+    f(n + 1, BasisRow{t.x(), Vec2(a, 0), Vec3::Zero()});
+    f(n + 2, BasisRow{t.y(), Vec2(0, a), Vec3::Zero()});
+    if (m_ == 6) {
+        f(n + 3, BasisRow{t.x() * t.x(), Vec2(2 * a * t.x(), 0), Vec3(2 * b, 0, 0)});
+        f(n + 4, BasisRow{t.x() * t.y(), Vec2(a * t.y(), a * t.x()), Vec3(0, b, 0)});
+        f(n + 5, BasisRow{t.y() * t.y(), Vec2(0, 2 * a * t.y()), Vec3(0, 0, 2 * b)});
+    }
+}
+
+PatchPoint RpimPatch::point(const Vec2& u, const MatrixX3& coefficients) const {
+    PatchPoint p;
+    for_each_basis(u, [&](Index k, const BasisRow& row) {
+        const Vec3 a = coefficients.row(k).transpose();
+        p.X += row.value * a;
+        p.X_a.col(0) += row.first.x() * a;
+        p.X_a.col(1) += row.first.y() * a;
+        p.X_11 += row.second.x() * a;
+        p.X_12 += row.second.y() * a;
+        p.X_22 += row.second.z() * a;
+    });
+    return p;
+}
+
+void RpimPatch::weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<MatrixX2> phi_a) const {
+    phi.setZero();
+    phi_a.setZero();
+    for_each_basis(u, [&](Index k, const BasisRow& row) {
+        phi += row.value * H_.row(k).transpose();
+        phi_a.col(0) += row.first.x() * H_.row(k).transpose();
+        phi_a.col(1) += row.first.y() * H_.row(k).transpose();
+    });
+}
+
+MatrixX3 RpimPatch::second_derivatives(const Vec2& u) const {
+    MatrixX3 phi_ab = MatrixX3::Zero(size(), 3);
+    for_each_basis(u, [&](Index k, const BasisRow& row) { phi_ab += H_.row(k).transpose() * row.second.transpose(); });
+    return phi_ab;
+}
+
+} // namespace osculate::contact

@@ -1,0 +1,140 @@
+#include "osculate/contact/search.hpp"
+
+#include "osculate/contact/facet_patch.hpp"
+#include "osculate/contact/projection.hpp"
+
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <cmath>
+#include <limits>
+
+namespace osculate::contact {
+
+namespace bg = boost::geometry;
+namespace bgi = boost::geometry::index;
+
+namespace {
+using Point = bg::model::point<double, 3, bg::cs::cartesian>;
+using Box = bg::model::box<Point>;
+using Leaf = std::pair<Box, Index>;
+
+Point to_point(const Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+bool inside(const Vec2& u, int corners) {
+    if (corners == 4) return u.cwiseAbs().maxCoeff() <= 1;
+    return u.minCoeff() >= 0 && u.sum() <= 1;
+}
+
+/// Natural coordinates of the point at fraction t of edge b of a facet.
+Vec2 on_edge(int corners, int b, double t) {
+    static const Vec2 square[4] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    static const Vec2 triangle[3] = {{0, 0}, {1, 0}, {0, 1}};
+    const Vec2* corner = corners == 4 ? square : triangle;
+    return (1 - t) * corner[b] + t * corner[(b + 1) % corners];
+}
+} // namespace
+
+struct FacetSearch::Tree {
+    bgi::rtree<Leaf, bgi::rstar<16>> boxes;
+};
+
+FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface) : surface_(&surface) {
+    for (Index f = 0; f < surface.facet_count(); ++f) {
+        const std::vector<Index> around = surface.vertex_neighbours(f);
+        neighbours_.insert(neighbours_.end(), around.begin(), around.end());
+        neighbour_start_.push_back(static_cast<Index>(neighbours_.size()));
+    }
+}
+FacetSearch::~FacetSearch() = default;
+FacetSearch::FacetSearch(FacetSearch&&) noexcept = default;
+FacetSearch& FacetSearch::operator=(FacetSearch&&) noexcept = default;
+
+FacetHit FacetSearch::closest_on(Index facet, const Vec3& s, const std::vector<Vec3>& x) const {
+    const auto vertices = surface_->facet_vertices(facet);
+    const int corners = static_cast<int>(vertices.size());
+    Eigen::Matrix<double, 4, 3> storage;
+    for (int b = 0; b < corners; ++b) storage.row(b) = x[vertices[b]].transpose();
+    const FacetPatch patch(corners);
+    const MatrixX3 corner = storage.topRows(corners);
+    FacetHit hit;
+    hit.facet = facet;
+    const auto foot = project(patch, corner, s, patch.centre());
+    if (foot && inside(foot->u, corners)) {
+        hit.u = foot->u;
+        hit.distance = (s - foot->point.X).norm();
+        return hit;
+    }
+    hit.distance = std::numeric_limits<double>::max();
+    int edge = 0;
+    double fraction = 0;
+    for (int b = 0; b < corners; ++b) {
+        const Vec3 a = corner.row(b).transpose(), d = corner.row((b + 1) % corners).transpose() - a;
+        const double t = std::clamp(d.dot(s - a) / d.squaredNorm(), 0.0, 1.0);
+        const double distance = (s - a - t * d).norm();
+        if (distance < hit.distance) {
+            hit.distance = distance;
+            edge = b;
+            fraction = t;
+        }
+    }
+    hit.u = on_edge(corners, edge, fraction);
+    const PatchPoint p = patch.point(hit.u, corner);
+    const Vec3 d = s - p.X, n = p.normal();
+    hit.overhang = (d - n * n.dot(d)).norm();
+    const auto on_boundary = [&](int b) { return surface_->is_boundary_vertex(vertices[b % corners]); };
+    hit.boundary = fraction == 0   ? on_boundary(edge)
+                   : fraction == 1 ? on_boundary(edge + 1)
+                                   : surface_->is_boundary_edge(surface_->first_half_edge(facet) + edge);
+    return hit;
+}
+
+void FacetSearch::build(const std::vector<Vec3>& x) {
+    std::vector<Leaf> leaves;
+    leaves.reserve(static_cast<std::size_t>(surface_->facet_count()));
+    for (Index f = 0; f < surface_->facet_count(); ++f) {
+        Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+        for (const Index v : surface_->facet_vertices(f)) {
+            low = low.cwiseMin(x[v]);
+            high = high.cwiseMax(x[v]);
+        }
+        leaves.emplace_back(Box(to_point(low), to_point(high)), f);
+    }
+    tree_ = std::make_unique<Tree>();
+    tree_->boxes = decltype(tree_->boxes)(leaves.begin(), leaves.end());
+}
+
+FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x) const {
+    FacetHit best;
+    best.distance = std::numeric_limits<double>::max();
+    if (!tree_) return best;
+    const Point at = to_point(s);
+    const auto every = static_cast<unsigned>(surface_->facet_count());
+    for (auto leaf = tree_->boxes.qbegin(bgi::nearest(at, every)); leaf != tree_->boxes.qend(); ++leaf) {
+        // boxes come in order of distance: once a box is farther than the best facet, so is everything behind it
+        if (bg::distance(at, leaf->first) > best.distance) break;
+        const FacetHit hit = closest_on(leaf->second, s, x);
+        if (hit.distance < best.distance || (hit.distance == best.distance && hit.facet < best.facet)) best = hit;
+    }
+    return best;
+}
+
+FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis) const {
+    const FacetHit old = closest_on(from, s, x);
+    FacetHit best = old;
+    for (Index moves = 0; moves < surface_->facet_count(); ++moves) {
+        const Index centre = best.facet;
+        for (Index k = neighbour_start_[centre]; k < neighbour_start_[centre + 1]; ++k) {
+            const FacetHit hit = closest_on(neighbours_[k], s, x);
+            if (hit.distance < best.distance) best = hit;
+        }
+        if (best.facet == centre) break;
+    }
+    const double margin = hysteresis * surface_->facet_size(from);
+    return old.overhang <= margin && old.distance <= best.distance + margin ? old : best;
+}
+
+} // namespace osculate::contact

@@ -1,0 +1,112 @@
+#include "osculate/model/contact_term.hpp"
+
+#include "osculate/core/parallel.hpp"
+
+#include <utility>
+
+namespace osculate::model {
+
+namespace {
+/// After so many facet changes within one attempt a slave node stays on the facet it has: a point that hops between two
+/// facets is on their common edge, and either will do.
+constexpr int changes_before_latch = 4;
+} // namespace
+
+ContactTerm::ContactTerm(std::string name, SlaveNodes slaves, std::unique_ptr<mesh::HalfEdgeSurface> surface,
+                         std::vector<Index> master_nodes, std::unique_ptr<contact::MasterSurface> master,
+                         const ContactOptions& options)
+    : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
+      master_nodes_(std::move(master_nodes)), master_(std::move(master)), search_(*surface_), options_(options),
+      facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0), hits_(slaves_.node.size()),
+      points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {}
+
+ContactHistory ContactTerm::initial_history() const {
+    const std::size_t n = slaves_.node.size();
+    return {std::vector<Vec3>(n, Vec3::Zero()), std::vector<contact::Status>(n, contact::Status::open),
+            std::vector<Index>(n, -1)};
+}
+
+std::vector<Vec3> ContactTerm::vertices(const std::vector<Vec3>& x) const {
+    std::vector<Vec3> v(master_nodes_.size());
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = x[master_nodes_[i]];
+    return v;
+}
+
+void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& history, Timings& timings, int threads) {
+    x_start_ = x;
+    facet_ = history.facet;
+    std::fill(changes_.begin(), changes_.end(), 0);
+    const ScopedTimer timer(timings, Part::search);
+    vertices_ = vertices(x);
+    search_.build(vertices_);
+    parallel_for(threads, size(), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j)
+            if (facet_[j] < 0 || !contact::is_closed(history.status[j]))
+                facet_[j] = search_.global(x[slaves_.node[j]], vertices_).facet;
+    });
+}
+
+void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int threads) {
+    {
+        const ScopedTimer timer(timings, Part::search);
+        vertices_ = vertices(x);
+        parallel_for(threads, size(), [&](Index begin, Index end) {
+            for (Index j = begin; j < end; ++j) {
+                const Vec3& s = x[slaves_.node[j]];
+                hits_[j] = changes_[j] < changes_before_latch
+                               ? search_.track(s, facet_[j], vertices_, options_.hysteresis)
+                               : search_.closest_on(facet_[j], s, vertices_);
+            }
+        });
+        facet_changes_ = 0;
+        for (Index j = 0; j < size(); ++j)
+            if (hits_[j].facet != facet_[j]) {
+                facet_[j] = hits_[j].facet;
+                ++changes_[j];
+                ++facet_changes_;
+            }
+    }
+    const ScopedTimer timer(timings, Part::contact);
+    parallel_for(threads, size(), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j) {
+            contact::ContactPoint& point = points_[j];
+            master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, point);
+            point_nodes_[j].clear();
+            if (!point.found) continue;
+            for (const Index v : point.nodes) point_nodes_[j].push_back(master_nodes_[v]);
+        }
+    });
+}
+
+std::vector<Index> ContactTerm::patch_nodes(Index facet) const {
+    std::vector<Index> nodes;
+    for (const Index v : master_->patch_vertices(facet)) nodes.push_back(master_nodes_[v]);
+    return nodes;
+}
+
+contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const {
+    // drift d = (s - s_start) - sum_i Phi_i (x_i - x_i,start)                                   [Qian 2014, eq (8)]
+    const contact::ContactPoint& point = points_[j];
+    Vec3 drift = x[slaves_.node[j]] - x_start_[slaves_.node[j]];
+    for (std::size_t i = 0; i < point_nodes_[j].size(); ++i) {
+        const Index node = point_nodes_[j][i];
+        drift -= point.weights(static_cast<Index>(i)) * (x[node] - x_start_[node]);
+    }
+    return {lambda, point.gap, point.normal, drift};
+}
+
+void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, Matrix& dd) const {
+    // dd = ds - Phi_i dx_i - (x_i - x_i,start) Phi_i,a du_a
+    const contact::ContactPoint& point = points_[j];
+    const auto n = static_cast<Index>(point_nodes_[j].size());
+    contact::Matrix32 stretch = contact::Matrix32::Zero();
+    for (Index i = 0; i < n; ++i) {
+        const Index node = point_nodes_[j][i];
+        stretch += (x[node] - x_start_[node]) * point.weight_gradient.row(i);
+    }
+    dd = -stretch * point.du;
+    dd.leftCols<3>() += Mat3::Identity();
+    for (Index i = 0; i < n; ++i) dd.middleCols<3>(3 + 3 * i) -= point.weights(i) * Mat3::Identity();
+}
+
+} // namespace osculate::model

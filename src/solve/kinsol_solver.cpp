@@ -1,0 +1,231 @@
+#include "osculate/solve/kinsol_solver.hpp"
+
+#include "osculate/core/error.hpp"
+#include "osculate/core/timing.hpp"
+
+#include <cmath>
+#include <exception>
+#include <kinsol/kinsol.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.hpp>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
+
+namespace osculate::solve {
+
+std::string describe(KinsolOutcome outcome) {
+    switch (outcome) {
+    case KinsolOutcome::converged: return "converged";
+    case KinsolOutcome::max_iterations: return "iterations exhausted";
+    case KinsolOutcome::stopped: return "contact statuses cycle";
+    case KinsolOutcome::singular: return "singular tangent";
+    case KinsolOutcome::no_descent: return "no descent along the Newton direction";
+    case KinsolOutcome::not_evaluable: return "residual cannot be evaluated along the step";
+    case KinsolOutcome::not_finite: return "residual is not finite";
+    }
+    return "unknown";
+}
+
+namespace {
+struct VectorDeleter {
+    void operator()(N_Vector v) const { N_VDestroy(v); }
+};
+using VectorPtr = std::unique_ptr<std::remove_pointer_t<N_Vector>, VectorDeleter>;
+
+constexpr int recoverable = 1, fatal = -1;
+} // namespace
+
+struct KinsolSolver::Impl {
+    Impl(Index n, Timings& t) : size(n), timings(t) {
+        z.reset(N_VNew_Serial(n, context));
+        u_scale.reset(N_VNew_Serial(n, context));
+        f_scale.reset(N_VNew_Serial(n, context));
+        matrix = SUNMatNewEmpty(context);
+        matrix->content = this;
+        matrix->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
+        matrix->ops->zero = [](SUNMatrix) { return 0; }; // the problem rewrites every value
+        matrix->ops->destroy = [](SUNMatrix A) { SUNMatFreeEmpty(A); };
+        linear = SUNLinSolNewEmpty(context);
+        linear->content = this;
+        linear->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; };
+        linear->ops->getid = [](SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; };
+        linear->ops->initialize = [](SUNLinearSolver) { return 0; };
+        linear->ops->setup = [](SUNLinearSolver S, SUNMatrix) { return static_cast<Impl*>(S->content)->setup(); };
+        linear->ops->solve = [](SUNLinearSolver S, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+            return static_cast<Impl*>(S->content)->linear_solve(b, x);
+        };
+        linear->ops->free = [](SUNLinearSolver S) {
+            SUNLinSolFreeEmpty(S);
+            return 0;
+        };
+    }
+    ~Impl() {
+        if (memory != nullptr) KINFree(&memory);
+        SUNLinSolFree(linear);
+        SUNMatDestroy(matrix);
+    }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    /// Runs a callback's body; an exception is kept for solve() to rethrow and becomes a fatal return.
+    template <class Body> int guarded(Body&& body) noexcept {
+        try {
+            return body();
+        } catch (...) {
+            if (!error) error = std::current_exception();
+            return fatal;
+        }
+    }
+
+    int residual(N_Vector at, N_Vector F) {
+        return guarded([&] {
+            double* f = N_VGetArrayPointer(F);
+            const auto verdict = problem->residual(N_VGetArrayPointer(at), f);
+            if (verdict == NonlinearProblem::Verdict::stop) {
+                stopped = true;
+                return fatal;
+            }
+            if (verdict == NonlinearProblem::Verdict::shorten) return recoverable;
+            double largest = 0;
+            for (Index i = 0; i < size; ++i) {
+                if (!std::isfinite(f[i])) {
+                    not_finite = true;
+                    return fatal;
+                }
+                largest = std::max(largest, std::abs(f[i]));
+            }
+            last_residual = largest * residual_scale;
+            return 0;
+        });
+    }
+
+    int setup() {
+        return guarded([&] {
+            const SparseMatrix& A = problem->jacobian();
+            if (direct != nullptr && A.pattern == factored_pattern && A.revision == factored_revision) return 0;
+            const ScopedTimer timer(timings, Part::factor);
+            if (direct == nullptr || A.symmetric_positive_definite != is_cholesky) {
+                is_cholesky = A.symmetric_positive_definite;
+                direct = is_cholesky ? make_cholesky() : make_lu();
+            }
+            factored_pattern = 0;
+            const FactorStatus status = direct->factorise(A);
+            ++factorisations;
+            if (status != FactorStatus::ok) {
+                singular = true;
+                failing_equation = direct->failing_equation();
+                return fatal;
+            }
+            factored_pattern = A.pattern;
+            factored_revision = A.revision;
+            return 0;
+        });
+    }
+
+    int linear_solve(N_Vector b, N_Vector x) {
+        return guarded([&] {
+            const ScopedTimer timer(timings, Part::solve);
+            direct->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+            for (Index i = 0; i < size; ++i)
+                if (!std::isfinite(N_VGetArrayPointer(x)[i])) {
+                    singular = true;
+                    return fatal;
+                }
+            return 0;
+        });
+    }
+
+    /// KINSOL keeps counters and scalings between calls; a fresh memory block per solve keeps calls independent.
+    void create(const KinsolOptions& options) {
+        if (memory != nullptr) KINFree(&memory);
+        memory = KINCreate(context);
+        require(memory != nullptr, "KINSOL could not be created");
+        const auto call = [](int code) { require(code == KIN_SUCCESS, "KINSOL rejected an option"); };
+        call(KINInit(
+            memory, [](N_Vector at, N_Vector F, void* self) { return static_cast<Impl*>(self)->residual(at, F); },
+            z.get()));
+        call(KINSetUserData(memory, this));
+        call(KINSetErrHandlerFn(
+            memory, [](int, const char*, const char*, char*, void*) {}, nullptr)); // outcomes carry the cause
+        call(KINSetLinearSolver(memory, linear, matrix));
+        call(KINSetJacFn(memory, [](N_Vector, N_Vector, SUNMatrix, void*, N_Vector, N_Vector) { return 0; }));
+        call(KINSetMaxSetupCalls(memory, 1));    // full Newton
+        call(KINSetMaxNewtonStep(memory, 1e30)); // the default cuts every step from u = 0 to length 1
+        call(KINSetFuncNormTol(memory, options.tolerance));
+        call(KINSetScaledStepTol(memory, 1e-30)); // the step test must never claim convergence
+        call(KINSetNumMaxIters(memory, options.max_iterations));
+    }
+
+    sundials::Context context;
+    Index size;
+    Timings& timings;
+    VectorPtr z, u_scale, f_scale;
+    SUNMatrix matrix = nullptr;
+    SUNLinearSolver linear = nullptr;
+    void* memory = nullptr;
+
+    NonlinearProblem* problem = nullptr;
+    std::unique_ptr<DirectSolver> direct;
+    bool is_cholesky = false;
+    std::uint64_t factored_pattern = 0, factored_revision = 0;
+    double residual_scale = 1, last_residual = 0;
+    long factorisations = 0;
+    bool stopped = false, singular = false, not_finite = false;
+    SparseIndex failing_equation = -1;
+    std::exception_ptr error;
+};
+
+KinsolSolver::KinsolSolver(Index size, Timings& timings) : impl_(std::make_unique<Impl>(size, timings)) {}
+KinsolSolver::~KinsolSolver() = default;
+
+long KinsolSolver::factorisations() const {
+    return impl_->factorisations;
+}
+
+KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, const KinsolOptions& options) {
+    Impl& s = *impl_;
+    require(problem.size() == s.size && unknowns.size() == s.size && options.unknown_scale.size() == s.size,
+            "KinsolSolver: sizes differ");
+    s.problem = &problem;
+    s.residual_scale = options.residual_scale;
+    s.stopped = s.singular = s.not_finite = false;
+    s.failing_equation = -1;
+    s.error = nullptr;
+    const long factorisations_before = s.factorisations;
+    Eigen::Map<Vector>(N_VGetArrayPointer(s.z.get()), s.size) = unknowns;
+    Eigen::Map<Vector>(N_VGetArrayPointer(s.u_scale.get()), s.size) = options.unknown_scale;
+    N_VConst(options.residual_scale, s.f_scale.get());
+    s.create(options);
+
+    KinsolResult result;
+    result.return_code =
+        KINSol(s.memory, s.z.get(), options.line_search ? KIN_LINESEARCH : KIN_NONE, s.u_scale.get(), s.f_scale.get());
+    if (s.error) std::rethrow_exception(s.error);
+    unknowns = Eigen::Map<const Vector>(N_VGetArrayPointer(s.z.get()), s.size);
+    long iterations = 0;
+    KINGetNumNonlinSolvIters(s.memory, &iterations);
+    result.iterations = static_cast<int>(iterations);
+    result.factorisations = static_cast<int>(s.factorisations - factorisations_before);
+    result.residual = s.last_residual;
+    result.failing_equation = s.failing_equation;
+    const bool small = s.last_residual <= options.tolerance;
+    if (s.stopped)
+        result.outcome = KinsolOutcome::stopped;
+    else if (s.not_finite)
+        result.outcome = KinsolOutcome::not_finite;
+    else if (s.singular)
+        result.outcome = KinsolOutcome::singular;
+    else if (result.return_code == KIN_SUCCESS || result.return_code == KIN_INITIAL_GUESS_OK ||
+             (result.return_code == KIN_STEP_LT_STPTOL && small))
+        result.outcome = KinsolOutcome::converged;
+    else if (result.return_code == KIN_MAXITER_REACHED)
+        result.outcome = KinsolOutcome::max_iterations;
+    else if (result.return_code == KIN_LINESEARCH_NONCONV || result.return_code == KIN_LINESEARCH_BCFAIL ||
+             result.return_code == KIN_STEP_LT_STPTOL)
+        result.outcome = KinsolOutcome::no_descent;
+    else
+        result.outcome = KinsolOutcome::not_evaluable;
+    return result;
+}
+
+} // namespace osculate::solve

@@ -1,0 +1,73 @@
+#include "osculate/core/error.hpp"
+#include "osculate/solve/direct_solver.hpp"
+
+#include <array>
+#include <cmath>
+#include <umfpack.h>
+
+namespace osculate::solve {
+namespace {
+
+/// Reciprocal condition estimate (smallest over largest pivot) below which the matrix counts as singular.
+constexpr double singular_rcond = 1e-16;
+
+class Lu final : public DirectSolver {
+public:
+    Lu() {
+        umfpack_dl_defaults(control_.data());
+        control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+        control_[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
+        control_[UMFPACK_PRL] = 0;
+        control_[UMFPACK_IRSTEP] = 1;
+    }
+    ~Lu() override {
+        umfpack_dl_free_numeric(&numeric_);
+        umfpack_dl_free_symbolic(&symbolic_);
+    }
+    Lu(const Lu&) = delete;
+    Lu& operator=(const Lu&) = delete;
+
+    FactorStatus factorise(const SparseMatrix& A) override {
+        if (symbolic_ == nullptr || A.pattern != pattern_) {
+            umfpack_dl_free_symbolic(&symbolic_);
+            // UMFPACK takes columns: it is given A^T, and solve() asks for the transposed system
+            const long status = umfpack_dl_symbolic(A.rows(), A.rows(), A.row_start.data(), A.column.data(),
+                                                    A.value.data(), &symbolic_, control_.data(), info_.data());
+            if (status == UMFPACK_ERROR_out_of_memory) throw RunFailure("out of memory in a sparse factorisation");
+            require(status == UMFPACK_OK, "UMFPACK could not analyse the matrix");
+            pattern_ = A.pattern;
+        }
+        umfpack_dl_free_numeric(&numeric_);
+        const long status = umfpack_dl_numeric(A.row_start.data(), A.column.data(), A.value.data(), symbolic_,
+                                               &numeric_, control_.data(), info_.data());
+        if (status == UMFPACK_ERROR_out_of_memory) throw RunFailure("out of memory in a sparse factorisation");
+        require(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "UMFPACK factorisation failed");
+        // iterative refinement in solve() reads the matrix again
+        matrix_ = &A;
+        const double rcond = info_[UMFPACK_RCOND];
+        return status == UMFPACK_WARNING_singular_matrix || !(rcond > singular_rcond) ? FactorStatus::singular
+                                                                                      : FactorStatus::ok;
+    }
+
+    void solve(const double* b, double* x) override {
+        require(numeric_ != nullptr, "solve before factorise");
+        umfpack_dl_solve(UMFPACK_At, matrix_->row_start.data(), matrix_->column.data(), matrix_->value.data(), x, b,
+                         numeric_, control_.data(), info_.data());
+    }
+
+private:
+    std::array<double, UMFPACK_CONTROL> control_{};
+    std::array<double, UMFPACK_INFO> info_{};
+    void* symbolic_ = nullptr;
+    void* numeric_ = nullptr;
+    const SparseMatrix* matrix_ = nullptr;
+    std::uint64_t pattern_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<DirectSolver> make_lu() {
+    return std::make_unique<Lu>();
+}
+
+} // namespace osculate::solve

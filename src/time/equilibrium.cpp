@@ -1,0 +1,251 @@
+#include "osculate/time/equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osculate::time {
+
+using contact::Status;
+using model::Constraints;
+
+Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, Timings& timings, int threads)
+    : model_(model), constraints_(constraints), timings_(timings), threads_(threads), first_coupling_{0} {
+    std::vector<model::Coupling> couplings;
+    for (const auto& pair : model.pairs) {
+        for (const Index node : pair->slaves().node) couplings.push_back({node, {}});
+        first_coupling_.push_back(static_cast<Index>(couplings.size()));
+        lambda_.emplace_back(pair->slaves().node.size(), Vec3::Zero());
+        statuses_.emplace_back(pair->slaves().node.size(), Status::open);
+    }
+    const ScopedTimer timer(timings_, Part::assembly);
+    matrix_ = std::make_unique<model::SystemMatrix>(constraints_, model_.K, std::move(couplings));
+    size_ = matrix_->size();
+    const auto n = static_cast<std::size_t>(model.nodes());
+    u_.assign(n, Vec3::Zero());
+    x_ = internal_ = unbalanced_ = u_;
+}
+
+void Equilibrium::begin_attempt(const model::State& state, StepLoad load) {
+    load_ = std::move(load);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = model_.X[i] + state.u[i];
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
+        model_.pairs[p]->begin_step(x_, state.contact[p], timings_, threads_);
+    records_.clear();
+    visits_.clear();
+    last_configuration_ = 0;
+}
+
+void Equilibrium::set_statuses(std::vector<std::vector<Status>> statuses, StatusRule rule, bool force_first) {
+    statuses_ = std::move(statuses);
+    rule_ = rule;
+    force_next_ = force_first;
+    visits_.clear();
+}
+
+void Equilibrium::unpack(const double* z) {
+    constraints_.scatter(z, load_.prescribed, u_);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = model_.X[i] + u_[i];
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
+        for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
+            const double* force = z + matrix_->multiplier(first_coupling_[p] + j);
+            lambda_[p][j] =
+                constraints_.to_global(model_.pairs[p]->slaves().node[j], Vec3(force[0], force[1], force[2]));
+        }
+}
+
+Vector Equilibrium::unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const {
+    Vector z(size_);
+    constraints_.gather(u, z.data());
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
+        for (Index j = 0; j < model_.pairs[p]->size(); ++j)
+            z.segment<3>(matrix_->multiplier(first_coupling_[p] + j)) =
+                constraints_.to_local(model_.pairs[p]->slaves().node[j], contact[p].lambda[j]);
+    return z;
+}
+
+model::State Equilibrium::state(const Vector& z) const {
+    model::State state;
+    state.u.assign(u_.size(), Vec3::Zero());
+    constraints_.scatter(z.data(), load_.prescribed, state.u);
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        model::ContactHistory history{std::vector<Vec3>(statuses_[p].size()), statuses_[p], pair.facets()};
+        for (Index j = 0; j < pair.size(); ++j) {
+            const Vec3 local = z.segment<3>(matrix_->multiplier(first_coupling_[p] + j));
+            history.lambda[j] = constraints_.to_global(pair.slaves().node[j], local);
+            // open nodes carry nothing: what is left is the solver's round-off
+            if (statuses_[p][j] == Status::open) history.lambda[j].setZero();
+        }
+        state.contact.push_back(std::move(history));
+    }
+    return state;
+}
+
+std::vector<std::vector<Status>> Equilibrium::natural_statuses() const {
+    std::vector<std::vector<Status>> statuses;
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        auto& list = statuses.emplace_back(static_cast<std::size_t>(pair.size()), Status::open);
+        for (Index j = 0; j < pair.size(); ++j)
+            if (pair.point(j).found) list[j] = pair.law(j).status(pair.state(j, x_, lambda_[p][j]));
+    }
+    return statuses;
+}
+
+Mat3 Equilibrium::symmetry_directions(Index node) const {
+    Mat3 sum = Mat3::Zero();
+    for (int k = 0; k < 3; ++k)
+        if (const auto* c = constraints_.constraint(node, k); c != nullptr && c->symmetry) {
+            const Vec3 e = constraints_.frame(node).col(k);
+            sum += e * e.transpose();
+        }
+    return sum;
+}
+
+solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* F) {
+    unpack(z);
+    for (auto& pair : model_.pairs) pair->evaluate(x_, timings_, threads_);
+
+    int status_changes = 0;
+    if (rule_ == StatusRule::natural && !force_next_) {
+        auto statuses = natural_statuses();
+        for (std::size_t p = 0; p < statuses.size(); ++p)
+            for (std::size_t j = 0; j < statuses[p].size(); ++j) status_changes += statuses[p][j] != statuses_[p][j];
+        statuses_ = std::move(statuses);
+    }
+    // a status that was imposed cannot hold where there is no contact partner
+    for (std::size_t p = 0; p < statuses_.size(); ++p)
+        for (Index j = 0; j < model_.pairs[p]->size(); ++j)
+            if (!model_.pairs[p]->point(j).found) statuses_[p][j] = Status::open;
+    force_next_ = false;
+
+    fill(F);
+    record(F, status_changes);
+    return rule_ == StatusRule::natural && cycles(records_.back().residual) ? Verdict::stop : Verdict::proceed;
+}
+
+void Equilibrium::fill(double* F) {
+    const ScopedTimer timer(timings_, Part::assembly);
+    std::fill(internal_.begin(), internal_.end(), Vec3::Zero());
+    model_.K.multiply_add(u_, internal_, threads_);
+    for (std::size_t i = 0; i < internal_.size(); ++i) unbalanced_[i] = internal_[i] - load_.force[i];
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        for (Index j = 0; j < pair.size(); ++j) {
+            const Vec3& lambda = lambda_[p][j];
+            const Index slave = pair.slaves().node[j], coupling = first_coupling_[p] + j;
+            unbalanced_[slave] -= lambda;
+            const contact::ContactPoint& point = pair.point(j);
+            if (point.found)
+                for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i)
+                    unbalanced_[pair.point_nodes(j)[i]] += point.weights(static_cast<Index>(i)) * lambda;
+            const auto law = pair.law(j).residual(pair.state(j, x_, lambda), statuses_[p][j]);
+            const Mat3 mirrored = symmetry_directions(slave);
+            const Vec3 value = constraints_.to_local(slave, Vec3(law.value - mirrored * law.value + mirrored * lambda));
+            for (int k = 0; k < 3; ++k) F[matrix_->contact_row(coupling, k)] = value(k);
+        }
+    }
+    double worst = -1;
+    for (Index node = 0; node < model_.nodes(); ++node) {
+        const Vec3 local = constraints_.to_local(node, unbalanced_[node]);
+        for (int k = 0; k < 3; ++k)
+            if (const Index row = matrix_->equilibrium_row(node, k); row != Constraints::held) {
+                F[row] = local(k);
+                if (std::abs(local(k)) > worst) {
+                    worst = std::abs(local(k));
+                    worst_node_ = node;
+                }
+            }
+    }
+}
+
+void Equilibrium::record(const double* F, int status_changes) {
+    IterationRecord line;
+    line.iteration = static_cast<int>(records_.size());
+    line.residual = Eigen::Map<const Vector>(F, size_).norm() / reference_force_;
+    line.status_changes = status_changes;
+    for (std::size_t p = 0; p < statuses_.size(); ++p) {
+        for (const Status status : statuses_[p]) {
+            line.open += status == Status::open;
+            line.stick += status == Status::stick;
+            line.slip += status == Status::slip || status == Status::glide;
+        }
+        line.facet_changes += model_.pairs[p]->facet_changes();
+    }
+    records_.push_back(line);
+}
+
+bool Equilibrium::cycles(double residual) {
+    // the iteration goes round when it comes back to a contact configuration it has left, for the second time and
+    // without having gained anything
+    std::size_t configuration = 1469598103934665603ULL;
+    const auto mix = [&](std::size_t value) { configuration = (configuration ^ value) * 1099511628211ULL; };
+    for (std::size_t p = 0; p < statuses_.size(); ++p)
+        for (std::size_t j = 0; j < statuses_[p].size(); ++j) mix(static_cast<std::size_t>(statuses_[p][j]) + 1);
+    auto& [times, least] = visits_.try_emplace(configuration, 0, residual).first->second;
+    bool round = false;
+    if (configuration != last_configuration_ && times > 0) {
+        round = times > 1 && residual > 0.5 * least;
+        ++times;
+    } else if (times == 0) {
+        times = 1;
+    }
+    least = std::min(least, residual);
+    last_configuration_ = configuration;
+    return round;
+}
+
+void Equilibrium::cover_patches() {
+    bool covered = true;
+    const auto reaches = [&](std::size_t p, Index j) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        return pair.point(j).found && (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0));
+    };
+    for (std::size_t p = 0; p < model_.pairs.size() && covered; ++p)
+        for (Index j = 0; j < model_.pairs[p]->size() && covered; ++j)
+            covered = !reaches(p, j) || matrix_->covers(first_coupling_[p] + j, model_.pairs[p]->point_nodes(j));
+    if (covered) return;
+
+    std::vector<model::Coupling> couplings = matrix_->couplings();
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
+        for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
+            auto& masters = couplings[static_cast<std::size_t>(first_coupling_[p] + j)].masters;
+            if (reaches(p, j)) masters = model_.pairs[p]->point_nodes(j);
+            std::sort(masters.begin(), masters.end());
+        }
+    matrix_ = std::make_unique<model::SystemMatrix>(constraints_, model_.K, std::move(couplings));
+    ++patterns_built_;
+}
+
+const solve::SparseMatrix& Equilibrium::jacobian() {
+    if (model_.pairs.empty()) return matrix_->matrix(); // constant: factorised once
+    const ScopedTimer timer(timings_, Part::assembly);
+    cover_patches();
+    matrix_->reset();
+    Matrix dd, A, dphi;
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        for (Index j = 0; j < pair.size(); ++j) {
+            const Vec3& lambda = lambda_[p][j];
+            const Index slave = pair.slaves().node[j], coupling = first_coupling_[p] + j;
+            const Status status = statuses_[p][j];
+            const contact::ContactPoint& point = pair.point(j);
+            const auto law = pair.law(j).residual(pair.state(j, x_, lambda), status);
+            const Mat3 mirrored = symmetry_directions(slave), kept = Mat3::Identity() - mirrored;
+            const Mat3 D = kept * law.by_lambda + mirrored;
+            if (!point.found || (status == Status::open && lambda.isZero(0))) {
+                matrix_->add_contact(coupling, D);
+                continue;
+            }
+            pair.drift_variation(j, x_, dd);
+            A.noalias() = law.by_gap * point.dg + law.by_normal * point.dn + law.by_drift * dd;
+            A = kept * A;
+            dphi.noalias() = point.weight_gradient * point.du;
+            matrix_->add_contact(coupling, pair.point_nodes(j), A, D, point.weights, lambda, dphi);
+        }
+    }
+    matrix_->finish();
+    return matrix_->matrix();
+}
+
+} // namespace osculate::time

@@ -1,0 +1,82 @@
+#include "osculate/time/solve_ladder.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace osculate::time {
+
+using contact::Status;
+using solve::KinsolOutcome;
+
+namespace {
+
+constexpr int most_settlings = 40; ///< KINSOL calls of rung 2
+
+/// Closes every second one of the nodes that `now` has open and `before` had closed; false when there are none.
+bool take_back_half(const Statuses& before, Statuses& now) {
+    std::vector<std::pair<std::size_t, std::size_t>> released;
+    for (std::size_t p = 0; p < now.size(); ++p)
+        for (std::size_t j = 0; j < now[p].size(); ++j)
+            if (now[p][j] == Status::open && before[p][j] != Status::open) released.emplace_back(p, j);
+    if (released.empty()) return false;
+    for (std::size_t k = 0; k < released.size(); k += 2) {
+        const auto [p, j] = released[k];
+        now[p][j] = before[p][j];
+    }
+    return true;
+}
+
+LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, Statuses statuses,
+                    const solve::KinsolOptions& kinsol) {
+    LadderResult result;
+    result.rung = "frozen statuses";
+    std::set<Statuses> seen;
+    Statuses last = statuses;
+    Vector last_z = z;
+    for (int settling = 0; settling < most_settlings; ++settling) {
+        equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+        z = last_z;
+        const auto solved = solver.solve(equilibrium, z, kinsol);
+        result.iterations += solved.iterations;
+        result.outcome = solved.outcome;
+        result.residual = solved.residual;
+        result.failing_equation = solved.failing_equation;
+        if (solved.outcome == KinsolOutcome::singular && take_back_half(last, statuses)) continue;
+        if (solved.outcome != KinsolOutcome::converged) return result;
+        last = equilibrium.statuses();
+        last_z = z;
+        Statuses next = equilibrium.natural_statuses();
+        if (next == last) return result;
+        if (!seen.insert(next).second) break;
+        statuses = std::move(next);
+    }
+    result.outcome = KinsolOutcome::stopped;
+    return result;
+}
+
+} // namespace
+
+LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Statuses& start,
+                   bool force_first, const LadderOptions& options) {
+    solve::KinsolOptions kinsol;
+    kinsol.tolerance = options.tolerance;
+    kinsol.max_iterations = options.max_iterations;
+    kinsol.residual_scale = 1 / options.reference_force;
+    kinsol.unknown_scale = Vector::Constant(z.size(), 1 / options.reference_force);
+    kinsol.unknown_scale.head(equilibrium.constraints().equations()).setConstant(1 / options.characteristic_length);
+    equilibrium.set_reference_force(options.reference_force);
+
+    const Vector z_start = z;
+    equilibrium.set_statuses(start, StatusRule::natural, force_first);
+    const auto newton = solver.solve(equilibrium, z, kinsol);
+    LadderResult result{newton.outcome, newton.iterations, newton.residual, "semismooth Newton",
+                        newton.failing_equation};
+    if (result.converged() || start.empty()) return result;
+
+    z = z_start;
+    LadderResult settled = settle(equilibrium, solver, z, start, kinsol);
+    settled.iterations += result.iterations;
+    return settled;
+}
+
+} // namespace osculate::time

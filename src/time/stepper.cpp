@@ -1,0 +1,225 @@
+#include "osculate/time/stepper.hpp"
+
+#include "osculate/core/error.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osculate::time {
+
+using contact::Status;
+using model::Constraints;
+
+Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
+    : model_(model), stages_(std::move(stages)), options_(options), timings_(timings) {
+    state_.u.assign(model.X.size(), Vec3::Zero());
+    for (const auto& pair : model.pairs) state_.contact.push_back(pair->initial_history());
+    Vec3 low = model.X.front(), high = low;
+    for (const Vec3& X : model.X) {
+        low = low.cwiseMin(X);
+        high = high.cwiseMax(X);
+    }
+    characteristic_length_ = (high - low).norm();
+}
+
+double Stepper::end_time() const {
+    double time = 0;
+    for (const Stage& stage : stages_) time += stage.duration;
+    return time;
+}
+
+void Stepper::run(StepObserver& observer) {
+    for (const Stage& stage : stages_) run_stage(stage, observer);
+}
+
+StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, const std::vector<Vec3>& prescribed_start,
+                          double fraction) const {
+    const double ramp = stage.ramp ? fraction : 1;
+    StepLoad load;
+    load.force.resize(model_.X.size());
+    for (std::size_t i = 0; i < load.force.size(); ++i)
+        load.force[i] = stage.force_start[i] + ramp * (stage.force_end[i] - stage.force_start[i]);
+    load.prescribed = prescribed_start;
+    for (Index node = 0; node < model_.nodes(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (const auto* c = constraints.constraint(node, k); c != nullptr && c->driven) {
+                const double start = prescribed_start[node](k);
+                load.prescribed[node](k) = start + ramp * (c->target - start);
+            }
+    return load;
+}
+
+void Stepper::predict(const Constraints& constraints, const std::vector<Vec3>& prescribed, std::vector<Vec3>& u) const {
+    for (const model::Body& body : model_.bodies) {
+        Vec3 centre = Vec3::Zero();
+        for (const Vec3& X : body.mesh.nodes) centre += X / static_cast<double>(body.nodes());
+        double size = 0;
+        for (const Vec3& X : body.mesh.nodes) size = std::max(size, (X - centre).norm());
+
+        // increments d . (t + w x r) = delta of every held component; r in units of the body's size
+        std::vector<Eigen::Matrix<double, 1, 6>> rows;
+        std::vector<double> increments;
+        for (Index i = 0; i < body.nodes(); ++i) {
+            const Index node = body.first_node + i;
+            const Vec3 now = constraints.to_local(node, u[node]);
+            for (int k = 0; k < 3; ++k) {
+                if (constraints.constraint(node, k) == nullptr) continue;
+                const Vec3 d = constraints.frame(node).col(k), r = (body.mesh.nodes[i] + u[node] - centre) / size;
+                rows.emplace_back();
+                rows.back() << d.transpose(), r.cross(d).transpose();
+                increments.push_back(prescribed[node](k) - now(k));
+            }
+        }
+        double largest = 0;
+        for (const double delta : increments) largest = std::max(largest, std::abs(delta));
+        if (largest == 0) continue;
+        Eigen::Matrix<double, Eigen::Dynamic, 6> M(static_cast<Index>(rows.size()), 6);
+        for (std::size_t i = 0; i < rows.size(); ++i) M.row(static_cast<Index>(i)) = rows[i];
+        const Vector delta = Eigen::Map<const Vector>(increments.data(), static_cast<Index>(increments.size()));
+        const Vector motion = M.completeOrthogonalDecomposition().solve(delta); // the smallest that fits
+        constexpr double fit = 1e-8;
+        if ((M * motion - delta).cwiseAbs().maxCoeff() > fit * largest) continue;
+        const Vec3 t = motion.head<3>(), w = motion.tail<3>() / size;
+        for (Index i = 0; i < body.nodes(); ++i) {
+            Vec3& ui = u[body.first_node + i];
+            ui += t + w.cross(Vec3(body.mesh.nodes[i] + ui - centre));
+        }
+    }
+}
+
+bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statuses& statuses) const {
+    statuses.clear();
+    bool any = false;
+    for (const auto& history : state_.contact) {
+        statuses.push_back(history.status);
+        any = any || std::none_of(history.status.begin(), history.status.end(), contact::is_closed);
+    }
+    if (!any) return false;
+
+    Vector F(z.size());
+    equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+    (void)equilibrium.residual(z.data(), F.data());
+    bool forced = false;
+    for (std::size_t p = 0; p < statuses.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        if (std::any_of(statuses[p].begin(), statuses[p].end(), contact::is_closed)) continue;
+        // "closed where g < 0" would start a smooth master, which leaves a small gap everywhere, without any support
+        double least = std::numeric_limits<double>::max();
+        for (Index j = 0; j < pair.size(); ++j)
+            if (pair.point(j).found) least = std::min(least, pair.point(j).gap);
+        for (Index j = 0; j < pair.size(); ++j) {
+            if (!pair.point(j).found) continue;
+            const double tolerance = pair.options().closing_tolerance * pair.surface().facet_size(pair.point(j).facet);
+            if (least > tolerance || pair.point(j).gap > std::max(least, 0.0) + tolerance) continue;
+            // a held slave node that starts sticking over-constrains the master
+            const bool free = equilibrium.constraints().free_components(pair.slaves().node[j]) == 3;
+            statuses[p][j] = free && pair.options().friction > 0 ? Status::stick : Status::glide;
+            forced = true;
+        }
+    }
+    return forced;
+}
+
+double Stepper::reference_force(const StepLoad& load, const Equilibrium& equilibrium, const Vector& z) const {
+    const auto norm = [](const std::vector<Vec3>& f) {
+        double sum = 0;
+        for (const Vec3& v : f) sum += v.squaredNorm();
+        return std::sqrt(sum);
+    };
+    std::vector<Vec3> internal(model_.X.size(), Vec3::Zero());
+    model_.K.multiply_add(state_.u, internal, options_.threads);
+    const double carried = std::max(norm(load.force), norm(internal));
+    if (carried > 0) return carried;
+    const model::State predicted = equilibrium.state(z);
+    std::fill(internal.begin(), internal.end(), Vec3::Zero());
+    model_.K.multiply_add(predicted.u, internal, options_.threads);
+    const double driven = norm(internal);
+    return driven > 0 ? driven : 1;
+}
+
+std::string Stepper::explain(const LadderResult& result, const Equilibrium& equilibrium, Attempt& attempt) const {
+    Index node = equilibrium.worst_node();
+    if (result.failing_equation >= 0)
+        for (Index i = 0; i < model_.nodes(); ++i)
+            for (int k = 0; k < 3; ++k)
+                if (equilibrium.constraints().equation(i, k) == result.failing_equation) node = i;
+    for (const model::Body& body : model_.bodies)
+        if (node >= body.first_node && node < body.first_node + body.nodes()) {
+            attempt.body = body.name;
+            attempt.node = node - body.first_node;
+        }
+    attempt.value = result.residual;
+    std::string text = std::string(result.rung) + ": " + solve::describe(result.outcome) + " after " +
+                       std::to_string(result.iterations) + " iterations, relative residual " +
+                       std::to_string(result.residual);
+    if (!attempt.body.empty())
+        text += ", worst at node " + std::to_string(attempt.node) + " of body '" + attempt.body + "'";
+    if (result.outcome == solve::KinsolOutcome::singular)
+        text += "; a body is held by nothing: add a support, or check that it touches another at the start";
+    return text;
+}
+
+void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
+    const Constraints constraints(model_.nodes(), stage.constraints);
+    Equilibrium equilibrium(model_, constraints, timings_, options_.threads);
+    solve::KinsolSolver solver(equilibrium.size(), timings_);
+    std::vector<Vec3> prescribed_start(model_.X.size());
+    for (Index node = 0; node < model_.nodes(); ++node)
+        prescribed_start[node] = constraints.to_local(node, state_.u[node]);
+
+    const double t_start = state_.time, step = stage.duration / stage.steps;
+    for (int k = 0; k < stage.steps; ++k) {
+        const double begin = t_start + k * step, end = t_start + (k + 1) * step; // times that are hit exactly
+        double dt = end - begin;
+        while (state_.time < end) {
+            const double left = end - state_.time;
+            const bool to_end = dt >= left * (1 - 1e-9);
+            const double time = to_end ? end : state_.time + dt;
+            if (to_end) dt = left;
+
+            StepLoad load = load_at(stage, constraints, prescribed_start, (time - t_start) / stage.duration);
+            std::vector<Vec3> u = state_.u;
+            if (options_.predictor) predict(constraints, load.prescribed, u);
+            equilibrium.begin_attempt(state_, load);
+            Vector z = equilibrium.unknowns(u, state_.contact);
+            LadderOptions ladder{options_.tolerance, options_.max_iterations, characteristic_length_,
+                                 reference_force(load, equilibrium, z)};
+            Statuses statuses;
+            equilibrium.set_reference_force(ladder.reference_force);
+            const bool forced = starting_statuses(equilibrium, z, statuses);
+            equilibrium.begin_attempt(state_, std::move(load));
+            const long factorised = solver.factorisations();
+            const LadderResult result = climb(equilibrium, solver, z, statuses, forced, ladder);
+            factorisations_ += solver.factorisations() - factorised;
+
+            Attempt attempt;
+            attempt.attempt = ++attempts_;
+            attempt.time = time;
+            attempt.dt = dt;
+            attempt.iterations = result.iterations;
+            if (result.converged()) {
+                attempt.value = result.residual;
+                state_ = equilibrium.state(z);
+                state_.time = time;
+                observer.attempted(attempt, equilibrium.records());
+                observer.accepted({state_, equilibrium, dt, result.iterations, stage});
+                dt = std::min(2 * dt, step);
+                continue;
+            }
+            attempt.reason = Reason::solver;
+            attempt.lambda = 0.5;
+            attempt.cause = explain(result, equilibrium, attempt);
+            const bool last = 0.5 * dt < options_.smallest_step * step;
+            attempt.verdict = last ? Verdict::give_up : Verdict::retry;
+            observer.attempted(attempt, equilibrium.records());
+            if (last)
+                throw RunFailure("stage '" + stage.name + "', time " + std::to_string(time) +
+                                 ": the smallest step was tried and failed. " + attempt.cause);
+            dt *= 0.5;
+        }
+    }
+}
+
+} // namespace osculate::time

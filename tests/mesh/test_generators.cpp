@@ -149,6 +149,18 @@ TEST(Block, TrianglePatternHasAlternatingDiagonals) {
               mesh.blocks[0].connectivity);
 }
 
+TEST(Block, TetrahedraHaveAlternatingDiagonalsOnEverySide) {
+    const Mesh mesh = make_block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, CellType::tet4);
+    for (const auto& [name, facets] : mesh.surfaces) {
+        std::map<Index, int> uses;
+        for (const Facet& facet : facets)
+            for (const Index node : facet) ++uses[node];
+        int most = 0;
+        for (const auto& [node, count] : uses) most = std::max(most, count);
+        EXPECT_EQ(most, 8) << name << ": the middle node is a corner of every triangle";
+    }
+}
+
 TEST(Block, HybridPatternMixesAboutHalfOfEachReproducibly) {
     const auto make = [] {
         return make_block({0, 0, 0}, {1, 1, 1}, {25, 25, 2}, CellType::hex8, BlockPattern::hybrid);

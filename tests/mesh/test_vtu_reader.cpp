@@ -217,15 +217,18 @@ TEST_F(VtuReader, SaysWhyAFileIsBad) {
 }
 
 TEST_F(VtuReader, RefusesPointNumbersAndOffsetsThatDoNotExist) {
-    const auto file = [](const std::string& connectivity, const std::string& offset) {
+    const auto file = [](const std::string& connectivity, const std::string& offsets, int cells = 1) {
+        std::string types;
+        for (int c = 0; c < cells; ++c) types += "10 ";
         return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\"><UnstructuredGrid>"
-               "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points>"
-               "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
+               "<Piece NumberOfPoints=\"4\" NumberOfCells=\"" +
+               std::to_string(cells) +
+               "\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
                "0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells>"
                "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">" +
-               connectivity + "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">" + offset +
-               "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray>"
-               "</Cells></Piece></UnstructuredGrid></VTKFile>";
+               connectivity + "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">" + offsets +
+               "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">" + types +
+               "</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
     };
     write(file("0 1 2 3", "4"));
     EXPECT_EQ(error(), "");
@@ -237,6 +240,8 @@ TEST_F(VtuReader, RefusesPointNumbersAndOffsetsThatDoNotExist) {
     EXPECT_NE(error(), "");
     write(file("0 1 2 3", "400"));
     EXPECT_NE(error(), "");
+    write(file("0 1 2 3 0 1 2 3 0 1 2 3", "400 404 12", 3));
+    EXPECT_THAT(error(), HasSubstr("offsets"));
 }
 
 } // namespace

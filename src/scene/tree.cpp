@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 namespace osculate::scene {
@@ -86,6 +87,25 @@ private:
     bool overflow_ = false;
 };
 
+/// Remembers where the last document began.
+class DocumentStart final : public YAML::EventHandler {
+public:
+    [[nodiscard]] const YAML::Mark& mark() const { return mark_; }
+
+    void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+    void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+    void OnSequenceEnd() override {}
+    void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+    void OnMapEnd() override {}
+
+private:
+    YAML::Mark mark_ = YAML::Mark::null_mark();
+};
+
 } // namespace
 
 const Tree* Tree::find(std::string_view name) const {
@@ -126,13 +146,17 @@ std::string join(const std::vector<std::string>& words, const char* separator) {
 
 Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fault>& faults) {
     try {
-        const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-        if (documents.empty()) return {.place = {file, 1, 1}};
-        Copier copier(file, faults);
-        if (documents.size() > 1)
-            faults.push_back(fault_at({file, documents[1].Mark().line + 1, 1}, "", "one YAML document",
-                                      std::to_string(documents.size())));
-        Tree tree = copier.copy(documents.front(), "");
+        std::istringstream stream(text);
+        YAML::Parser parser(stream);
+        DocumentStart start;
+        parser.HandleNextDocument(start);
+        if (parser) { // YAML::LoadAll never returns from some such texts, YAML::Load drops what follows
+            parser.HandleNextDocument(start);
+            faults.push_back(fault_at({file, start.mark().line + 1, start.mark().column + 1}, "",
+                                      "the end of the document", "more text"));
+            return {.place = {file, 1, 1}};
+        }
+        Tree tree = Copier(file, faults).copy(YAML::Load(text), "");
         if (tree.place.line == 0) tree.place = {file, 1, 1};
         return tree;
     } catch (const YAML::Exception& error) {

@@ -92,6 +92,14 @@ TEST(BadScene, SyntaxStandsAlone) {
                  "bad.yaml:2:5: expected valid YAML, found end of sequence flow not found");
 }
 
+TEST(BadScene, TextAfterTheDocument) {
+    expect_fault(small_scene + "---\nname: second\n",
+                 "bad.yaml:28:1: expected the end of the document, found more text");
+    expect_fault(replaced(small_scene, "[2, 2, 1]}}", "[2, 2, 1]}}}"),
+                 "bad.yaml:3:65: expected valid YAML, found illegal flow end");
+    expect_fault("," + small_scene, "bad.yaml:1:1: expected the end of the document, found more text");
+}
+
 TEST(BadScene, NotANumber) {
     expect_fault(replaced(small_scene, "friction: 0.3", "friction: .nan"),
                  "bad.yaml:19:15: contact.joint.friction: expected a number >= 0, found '.nan' (not finite)");

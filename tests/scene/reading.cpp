@@ -179,6 +179,16 @@ TEST(Writer, GivesAnEqualSceneBack) {
     EXPECT_EQ(write_scene(again(scene)), write_scene(scene));
 }
 
+TEST(Writer, GivesAxesBackToTheLastBit) {
+    for (int i = 1; i <= 200; ++i) {
+        const auto text = [&](int a) { return "[" + std::to_string(a) + ", " + std::to_string(7 - a) + ", 3.1]"; };
+        const Scene scene = read_small({{"supports.top.symmetry", text(i)},
+                                        {"supports.under.axes", "[" + text(i) + ", " + text(2 * i + 1) + "]"},
+                                        {"stages.load.displacement", "{}"}});
+        ASSERT_EQ(again(scene), scene) << write_scene(scene);
+    }
+}
+
 TEST(Writer, FillsInEveryDefault) {
     const std::string text = write_scene(read_small());
     for (const char* line : {"closing_tolerance: 0.02", "hex_formulation: full", "ramp: linear", "E: 3.0e+07",

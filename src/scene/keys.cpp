@@ -94,7 +94,7 @@ private:
             text_ += "; one of " + choice;
         else if (key.required)
             text_ += "; required";
-        else
+        else if (key.default_text || !value.empty())
             text_ += "; default " + std::string(key.default_text ? key.default_text : value);
         text_ += ". ";
         text_ += key.meaning;

@@ -202,6 +202,7 @@ TEST(Keys, AreListedWithUnitRangeAndDefault) {
     EXPECT_THAT(describe_keys("solver"),
                 HasSubstr("solver.max_iterations\n    whole number, in [1, 1000]; default 30"));
     EXPECT_EQ(describe_keys("contact.p.surface.rpim"), describe_keys("contact.<pair>.master.surface.rpim"));
+    EXPECT_THAT(describe_keys("solver"), HasSubstr("solver\n    map. Nonlinear solution."));
     EXPECT_EQ(describe_keys("no.such.key"), "");
 }
 

@@ -7,7 +7,7 @@ Status Coulomb::status(const ContactState& state) const {
     const double L_N = state.lambda.dot(n) - c_ * state.gap;
     if (!(L_N > 0)) return Status::open;
     if (mu_ == 0) return Status::glide;
-    const Vec3 v = state.lambda - c_ * state.drift;
+    const Vec3 v = trial(state);
     const Vec3 L_T = v - n * n.dot(v);
     return L_T.norm() <= mu_ * L_N ? Status::stick : Status::slip;
 }
@@ -27,13 +27,6 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
     const auto by_normal_of_Tv = [&](const Vec3& v) -> Mat3 {
         return -n.dot(v) * Mat3::Identity() - n * v.transpose();
     };
-    if (status == Status::stick) {
-        R.value = c * (g * n + T * state.drift);
-        R.by_gap = c * n;
-        R.by_normal = c * (g * Mat3::Identity() + by_normal_of_Tv(state.drift));
-        R.by_drift = c * T;
-        return R;
-    }
     // lambda - L_N n = T lambda + c g n
     R.value = T * lambda + c * g * n;
     R.by_lambda = T;
@@ -41,18 +34,25 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
     R.by_normal = by_normal_of_Tv(lambda) + c * g * Mat3::Identity();
     if (status == Status::glide) return R;
 
-    const double L_N = lambda.dot(n) - c * g;
-    const Vec3 v = lambda - c * state.drift;
+    const Vec3 v = trial(state);
     const Vec3 L_T = T * v;
+    if (status == Status::stick) {
+        R.value -= L_T;
+        R.by_lambda -= follow_ * T;
+        R.by_normal -= by_normal_of_Tv(v);
+        R.by_drift = spring_ * T;
+        return R;
+    }
+    const double L_N = lambda.dot(n) - c * g;
     const double length = L_T.norm();
     if (!(length > 0)) return R; // no direction to slip in yet
     const Vec3 e = L_T / length;
     const Mat3 turn = mu_ * L_N / length * (Mat3::Identity() - e * e.transpose()); // mu L_N de/dL_T
     R.value -= mu_ * L_N * e;
-    R.by_lambda -= mu_ * e * n.transpose() + turn * T;
+    R.by_lambda -= mu_ * e * n.transpose() + follow_ * turn * T;
     R.by_gap += mu_ * c * e;
     R.by_normal -= mu_ * e * lambda.transpose() + turn * by_normal_of_Tv(v);
-    R.by_drift += c * turn * T;
+    R.by_drift = spring_ * turn * T;
     return R;
 }
 

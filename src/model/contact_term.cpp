@@ -10,13 +10,15 @@ namespace {
 /// After so many facet changes within one attempt a slave node stays on the facet it has: a point that hops between two
 /// facets is on their common edge, and either will do.
 constexpr int changes_before_latch = 4;
+/// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
+constexpr double held_stick_stiffness = 100;
 } // namespace
 
 ContactTerm::ContactTerm(std::string name, SlaveNodes slaves, std::unique_ptr<mesh::HalfEdgeSurface> surface,
                          std::vector<Index> master_nodes, std::unique_ptr<contact::MasterSurface> master,
                          const ContactOptions& options)
     : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
-      master_nodes_(std::move(master_nodes)), master_(std::move(master)), search_(*surface_), options_(options),
+      master_nodes_(std::move(master_nodes)), master_(std::move(master)), search_(*surface_), options_(options), held_(slaves_.node.size(), 0),
       facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0), hits_(slaves_.node.size()),
       points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {}
 
@@ -35,6 +37,7 @@ std::vector<Vec3> ContactTerm::vertices(const std::vector<Vec3>& x) const {
 void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& history, Timings& timings, int threads) {
     x_start_ = x;
     facet_ = history.facet;
+    lambda_start_ = history.lambda;
     std::fill(changes_.begin(), changes_.end(), 0);
     const ScopedTimer timer(timings, Part::search);
     vertices_ = vertices(x);
@@ -76,6 +79,12 @@ void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int thr
             for (const Index v : point.nodes) point_nodes_[j].push_back(master_nodes_[v]);
         }
     });
+}
+
+contact::Coulomb ContactTerm::law(Index j) const {
+    const double c = slaves_.stiffness[j];
+    if (held_[j] == 0) return {options_.friction, c};
+    return contact::Coulomb::elastic(options_.friction, c, held_stick_stiffness * c, lambda_start_[j]);
 }
 
 std::vector<Index> ContactTerm::patch_nodes(Index facet) const {

@@ -11,8 +11,16 @@ using model::Constraints;
 Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, Timings& timings, int threads)
     : model_(model), constraints_(constraints), timings_(timings), threads_(threads), first_coupling_{0} {
     std::vector<model::Coupling> couplings;
-    for (const auto& pair : model.pairs) {
-        for (const Index node : pair->slaves().node) couplings.push_back({node, {}});
+    for (auto& pair : model.pairs) {
+        std::vector<char> held;
+        for (const Index node : pair->slaves().node) {
+            couplings.push_back({node, {}});
+            bool any = false;
+            for (int k = 0; k < 3; ++k)
+                if (const auto* c = constraints.constraint(node, k)) any = any || !c->symmetry;
+            held.push_back(any);
+        }
+        pair->hold(std::move(held));
         first_coupling_.push_back(static_cast<Index>(couplings.size()));
         lambda_.emplace_back(pair->slaves().node.size(), Vec3::Zero());
         statuses_.emplace_back(pair->slaves().node.size(), Status::open);

@@ -113,9 +113,7 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
             if (!pair.point(j).found) continue;
             const double tolerance = pair.options().closing_tolerance * pair.surface().facet_size(pair.point(j).facet);
             if (least > tolerance || pair.point(j).gap > std::max(least, 0.0) + tolerance) continue;
-            // a held slave node that starts sticking over-constrains the master
-            const bool free = equilibrium.constraints().free_components(pair.slaves().node[j]) == 3;
-            statuses[p][j] = free && pair.options().friction > 0 ? Status::stick : Status::glide;
+            statuses[p][j] = pair.options().friction > 0 ? Status::stick : Status::glide;
             forced = true;
         }
     }

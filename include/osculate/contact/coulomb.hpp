@@ -29,23 +29,41 @@ struct ContactResidual {
     Vec3 by_gap = Vec3::Zero();
 };
 
-/// With T = I - n n^T, augmented force L_N = lambda . n - c g and L_T = T (lambda - c d):
+/// With T = I - n n^T, augmented normal force L_N = lambda . n - c g and tangential trial force L_T = T v:
 ///     open   L_N <= 0              R = lambda
-///     stick  |L_T| <= mu L_N       R = lambda - L_N n - L_T               ( = c (g n + T d) )
+///     stick  |L_T| <= mu L_N       R = lambda - L_N n - L_T
 ///     slip   otherwise             R = lambda - L_N n - mu L_N L_T / |L_T|
 ///     glide  mu = 0                R = lambda - L_N n
-/// R = 0 is exactly p_N >= 0, g >= 0, p_N g = 0 and Coulomb's law; c > 0 (N/m) scales the rows, never the solution.
+/// Exact:    v = lambda - c d, so that stick is c (g n + T d) = 0. R = 0 is then exactly p_N >= 0, g >= 0, p_N g = 0 and
+///           Coulomb's law; c > 0 (N/m) scales the rows, never the solution.
+/// Elastic:  v = lambda_start - k d: stick gives way by the small spring k. For slave nodes that are held or driven along a
+///           tangent: several of them sticking to one master facet would fix its motion more than once, and the
+///           tangent would be singular.
 class Coulomb {
 public:
-    /// @param mu coefficient of friction  @param c complementarity parameter, N/m
-    Coulomb(double mu, double c) : mu_(mu), c_(c) {}
+    /// The exact law. @param mu coefficient of friction  @param c complementarity parameter, N/m
+    Coulomb(double mu, double c) : mu_(mu), c_(c), follow_(1), spring_(c), anchor_(Vec3::Zero()) {}
+    /// The elastic law. @param k stiffness of stick, N/m  @param lambda_start contact force at the start of the step, N
+    [[nodiscard]] static Coulomb elastic(double mu, double c, double k, const Vec3& lambda_start) {
+        Coulomb law(mu, c);
+        law.follow_ = 0;
+        law.spring_ = k;
+        law.anchor_ = lambda_start;
+        return law;
+    }
 
     [[nodiscard]] Status status(const ContactState& state) const;
     /// Value and derivatives of the branch `status`, whether or not it is the one status() names.
     [[nodiscard]] ContactResidual residual(const ContactState& state, Status status) const;
 
 private:
-    double mu_, c_;
+    /// v = follow lambda + anchor - spring d
+    [[nodiscard]] Vec3 trial(const ContactState& state) const {
+        return follow_ * state.lambda + anchor_ - spring_ * state.drift;
+    }
+
+    double mu_, c_, follow_, spring_;
+    Vec3 anchor_;
 };
 
 } // namespace osculate::contact

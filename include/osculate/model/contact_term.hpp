@@ -63,7 +63,9 @@ public:
     /// Global nodes of the patch that the facet of slave j would use, whether or not there is contact.
     [[nodiscard]] std::vector<Index> patch_nodes(Index facet) const;
     [[nodiscard]] contact::ContactState state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const;
-    [[nodiscard]] contact::Coulomb law(Index j) const { return {options_.friction, slaves_.stiffness[j]}; }
+    /// Declares which slave nodes are held or driven along some direction: their stick is elastic, see contact::Coulomb.
+    void hold(std::vector<char> held) { held_ = std::move(held); }
+    [[nodiscard]] contact::Coulomb law(Index j) const;
     /// Derivative of the drift d of state() with respect to y = (slave, masters), 3 x 3+3n.
     void drift_variation(Index j, const std::vector<Vec3>& x, Matrix& dd) const;
 
@@ -82,7 +84,9 @@ private:
     contact::FacetSearch search_;
     ContactOptions options_;
 
+    std::vector<char> held_; ///< (slaves) of the current stage
     // scratch of an attempt
+    std::vector<Vec3> lambda_start_;
     std::vector<Vec3> x_start_;  ///< all nodes
     std::vector<Vec3> vertices_; ///< master surface now
     std::vector<Index> facet_;

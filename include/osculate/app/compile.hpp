@@ -35,7 +35,4 @@ struct Plan {
 /// @param meshes  one per body; build_meshes(scene), or the same bodies numbered otherwise
 [[nodiscard]] Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings);
 
-/// Sizes, pairs, initial gaps and overlaps, in lines to print.
-[[nodiscard]] std::vector<std::string> report(const Plan& plan);
-
 } // namespace osculate::app

@@ -1,0 +1,22 @@
+#pragma once
+/// From a scene file to its plan.
+
+#include "osculate/app/compile.hpp"
+#include "osculate/scene/reader.hpp"
+
+#include <string>
+#include <vector>
+
+namespace osculate::app {
+
+struct LoadedScene {
+    scene::Scene scene;
+    Plan plan;
+};
+
+/// Reads and compiles a scene file.
+/// @throws SceneError with file, line and column for every fault that has a place in the file
+[[nodiscard]] LoadedScene load(const std::string& path, const std::vector<scene::Override>& overrides, int threads,
+                               Timings& timings);
+
+} // namespace osculate::app

@@ -1,0 +1,34 @@
+#pragma once
+/// The fields a frame can hold, one row each.
+
+#include "osculate/output/snapshot.hpp"
+#include "osculate/output/vtk_file.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace osculate::output {
+
+enum class FieldPlace { body, slave, master };
+
+struct Field {
+    const char* name; ///< in scenes and in files
+    FieldPlace where;
+    int components;
+    const char* unit; ///< SI; empty for numbers without one
+    bool integer;
+    /// Values point by point: of a body's nodes, a pair's slave nodes or its master's vertices.
+    std::vector<double> (*values)(const Snapshot&, Index body_or_pair);
+};
+
+/// Every field, in the order of the reference.
+[[nodiscard]] std::span<const Field> all_fields();
+
+/// The field of that name. @throws InternalError when there is none
+[[nodiscard]] const Field& field(FieldPlace where, const std::string& name);
+
+/// Its values as an array of a VTK file.
+[[nodiscard]] Array evaluate(const Field& field, const Snapshot& snapshot, Index body_or_pair);
+
+} // namespace osculate::output

@@ -1,0 +1,34 @@
+#pragma once
+/// history.csv: resultants of every contact pair and constrained set, a row per accepted step.
+
+#include "osculate/model/constraints.hpp"
+#include "osculate/output/csv_table.hpp"
+#include "osculate/output/snapshot.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace osculate::output {
+
+/// What supports and driven motions exert on each node, N: the unbalanced force along its held directions.
+[[nodiscard]] std::vector<Vec3> nodal_reactions(const model::Constraints& constraints,
+                                                const std::vector<Vec3>& unbalanced);
+
+class History {
+public:
+    /// @param pairs  whether the pairs have columns
+    /// @param sets   of model.sets, those that have reaction columns
+    /// @throws std::runtime_error with path and reason, as row() does
+    History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets);
+
+    /// A direction that several sets hold at one node counts for the set that Constraints names, so that the sets'
+    /// reactions add up to the whole.
+    void row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations);
+
+private:
+    std::size_t pairs_;
+    std::vector<Index> sets_;
+    CsvTable table_;
+};
+
+} // namespace osculate::output

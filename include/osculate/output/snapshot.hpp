@@ -1,0 +1,38 @@
+#pragma once
+/// One accepted state, as fields and tables look at it.
+
+#include "osculate/model/model.hpp"
+
+#include <map>
+#include <vector>
+
+namespace osculate::output {
+
+/// Model and state must outlive it, and the model's contact points must have been evaluated at that state.
+class Snapshot {
+public:
+    using Stress = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+
+    /// @param reactions  (nodes) what supports and driven motions exert on each node, N
+    Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions);
+
+    [[nodiscard]] const model::Model& model() const { return model_; }
+    [[nodiscard]] const model::State& state() const { return state_; }
+    [[nodiscard]] const std::vector<Vec3>& reactions() const { return reactions_; }
+    /// Current positions x = X + u of all nodes, m.
+    [[nodiscard]] const std::vector<Vec3>& x() const { return x_; }
+    /// Nodal stress of a body (nodes x 6), Pa; computed when first asked for.
+    [[nodiscard]] const Stress& stress(Index body) const;
+    /// Contact state of a slave node at x: gap, normal, force, drift of the step.
+    [[nodiscard]] contact::ContactState contact(Index pair, Index slave) const;
+    /// Whether the master has a point that the slave node can touch, or has passed.
+    [[nodiscard]] bool has_partner(Index pair, Index slave) const;
+
+private:
+    const model::Model& model_;
+    const model::State& state_;
+    std::vector<Vec3> reactions_, x_;
+    mutable std::map<Index, Stress> stress_;
+};
+
+} // namespace osculate::output

@@ -1,0 +1,137 @@
+#include "osculate/app/command_line.hpp"
+
+#include "app/blas_threads.hpp"
+#include "osculate/app/load.hpp"
+#include "osculate/app/report.hpp"
+#include "osculate/app/run.hpp"
+#include "osculate/app/version.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/scene/keys.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <new>
+#include <thread>
+
+namespace osculate::app {
+
+namespace {
+
+enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
+
+struct Arguments {
+    std::string scene, output, key_path;
+    std::vector<std::string> changes;
+    int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    bool quiet = false;
+
+    [[nodiscard]] std::vector<scene::Override> overrides() const {
+        std::vector<scene::Override> list;
+        for (const std::string& change : changes) {
+            const std::size_t equals = change.find('=');
+            list.push_back({change.substr(0, equals), change.substr(equals + 1)});
+        }
+        return list;
+    }
+};
+
+std::string assignment(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    return equals != std::string::npos && equals > 0 ? "" : "expected key.path=value, found '" + text + "'";
+}
+
+CLI::App* add_scene_command(CLI::App& program, const std::string& name, const std::string& what, Arguments& arguments) {
+    CLI::App* command = program.add_subcommand(name, what);
+    command->add_option("SCENE", arguments.scene, "Scene file")->required();
+    command
+        ->add_option("--set", arguments.changes,
+                     "Change a value of the scene: --set key.path=value, any number of them")
+        ->type_name("KEY=VALUE")
+        ->check(assignment)
+        ->allow_extra_args(false);
+    return command;
+}
+
+void print(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void run_scene(const Arguments& arguments) {
+    const output::Summary summary =
+        run(arguments.scene, arguments.overrides(), {arguments.output, arguments.threads, arguments.quiet});
+    if (arguments.quiet) return;
+    const std::string folder = arguments.output.empty() ? "out/" + summary.scene : arguments.output;
+    print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}/series.pvd and {}/history.csv\n",
+                      summary.scene, summary.steps.accepted, summary.iterations, summary.total_seconds, folder,
+                      folder));
+}
+
+ExitCode show_keys(const std::string& path) {
+    const std::string keys = scene::describe_keys(path);
+    if (keys.empty()) {
+        fmt::print(stderr, "no key is called '{}'\n", path);
+        return bad_scene;
+    }
+    print(keys);
+    return done;
+}
+
+ExitCode run_command(int argc, char** argv) {
+    Arguments arguments;
+    CLI::App program("Deformable bodies in frictional contact on smooth surfaces.", "osculate");
+    program.set_version_flag("--version", std::string("osculate ") + version);
+    program.require_subcommand(1);
+    CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
+    run->add_option("-o,--output", arguments.output, "Folder of the run's files [out/<scene name>]")->type_name("DIR");
+    run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
+    CLI::App* check = add_scene_command(program, "check",
+                                        "Validate a scene; show sizes, pairs, initial gaps and overlaps", arguments);
+    add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
+    CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
+    keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return program.exit(error) == 0 ? done : bad_scene; // --help and --version come this way too
+    }
+
+    if (*run) {
+        run_scene(arguments);
+    } else if (*keys) {
+        return show_keys(arguments.key_path);
+    } else {
+        Timings unused;
+        const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
+        print(*check ? report(loaded.plan, arguments.threads) : app::explain(loaded.plan));
+    }
+    return done;
+}
+
+} // namespace
+
+int command_line(int argc, char** argv) {
+    limit_blas_threads();
+    try {
+        return run_command(argc, argv);
+    } catch (const SceneError& error) {
+        for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
+        return bad_scene;
+    } catch (const RunFailure& error) {
+        fmt::print(stderr, "the run gave up: {}\n", error.what());
+        return gave_up;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "the run gave up: there is not enough memory for a scene of this size\n");
+        return gave_up;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "a bug in osculate {}, please report it with the scene: {}\n", version, error.what());
+    } catch (...) {
+        fmt::print(stderr, "a bug in osculate {}, please report it with the scene\n", version);
+    }
+    return bug;
+}
+
+} // namespace osculate::app

@@ -1,0 +1,71 @@
+#include "osculate/app/report.hpp"
+
+#include "app/gaps.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <iterator>
+
+namespace osculate::app {
+
+namespace {
+
+/// "node 12 of tube" for a global node.
+std::string node_name(const Plan& plan, Index node) {
+    for (const model::Body& body : plan.model.bodies)
+        if (node >= body.first_node && node < body.first_node + body.nodes())
+            return fmt::format("node {} of {}", node - body.first_node, body.name);
+    return "no node";
+}
+
+} // namespace
+
+Index degrees_of_freedom(const Plan& plan) {
+    Index most = 0;
+    for (const time::Stage& stage : plan.stages)
+        most = std::max(most, model::Constraints(plan.model.nodes(), stage.constraints).equations());
+    return most;
+}
+
+std::string report(const Plan& plan, int threads) {
+    fmt::memory_buffer text;
+    const auto out = std::back_inserter(text);
+    for (const model::Body& body : plan.model.bodies)
+        fmt::format_to(out, "body {}: {} nodes, {} elements\n", body.name, body.nodes(), body.mesh.element_count());
+    fmt::format_to(out, "degrees of freedom: {}\n", degrees_of_freedom(plan));
+    Timings unused;
+    for (const auto& pair : plan.model.pairs) {
+        fmt::format_to(out, "pair {}: {} slave nodes, {} master facets\n", pair->name(), pair->size(),
+                       pair->surface().facet_count());
+        const PairGaps gaps = initial_gaps(*pair, plan.model.X, unused, threads);
+        if (gaps.above > 0)
+            fmt::format_to(out, "  {} slave nodes above the master, initial gap {:.4g} m to {:.4g} m\n", gaps.above,
+                           gaps.least, gaps.largest);
+        else
+            fmt::format_to(out, "  no slave node above the master\n");
+        if (gaps.least < 0)
+            fmt::format_to(out, "  worst overlap {:.4g} m at {}, {:.3g} of the facet size\n", -gaps.least,
+                           node_name(plan, gaps.worst_node), gaps.largest_overlap);
+        else
+            fmt::format_to(out, "  no overlap\n");
+        if (const Index fallbacks = pair->master().fallbacks(); fallbacks > 0)
+            fmt::format_to(out, "  {} patches had to be smaller or simpler than asked for\n", fallbacks);
+    }
+    for (const time::Stage& stage : plan.stages)
+        fmt::format_to(out, "stage {}: {} step(s) in {:.6g} s\n", stage.name, stage.steps, stage.duration);
+    return fmt::to_string(text);
+}
+
+std::string explain(const Plan& plan) {
+    std::size_t width = 0;
+    for (const PlanItem& item : plan.items) width = std::max(width, item.part.size());
+    std::string text;
+    for (const bool present : {true, false}) {
+        text += present ? "in the plan\n" : "left out\n";
+        for (const PlanItem& item : plan.items)
+            if (item.present == present) text += fmt::format("  {:{}}  {}\n", item.part, width, item.reason);
+    }
+    return text;
+}
+
+} // namespace osculate::app

@@ -1,0 +1,159 @@
+#include "app/run_recorder.hpp"
+
+#include "app/gaps.hpp"
+#include "osculate/app/report.hpp"
+#include "osculate/app/version.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/scene/writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sys/resource.h>
+#include <utility>
+
+namespace osculate::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Runs `write`, at the expense of output. A file that cannot be written ends the run as a failure, not as a bug.
+template <class F> void on_disk(Timings& timings, F&& write) {
+    const ScopedTimer timer(timings, Part::output);
+    try {
+        write();
+    } catch (const std::runtime_error& error) {
+        throw RunFailure(error.what());
+    }
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw std::runtime_error("cannot write " + path.string());
+}
+
+double seconds(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+} // namespace
+
+RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time::Stepper& stepper, Timings& timings,
+                         Settings settings)
+    : scene_(scene), plan_(plan), stepper_(stepper), timings_(timings), settings_(std::move(settings)),
+      progress_(0, stepper.end_time(),
+                settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)) {
+    const scene::Output& out = scene.output;
+    const fs::path& folder = settings_.directory;
+    const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
+    needs_reactions_ = reactions || std::ranges::count(out.body_fields, "reaction") > 0;
+    describe_plan();
+    on_disk(timings_, [&] {
+        fs::create_directories(folder);
+        write_text(folder / "scene.yaml", scene::write_scene(scene));
+        const bool frames = out.frame_every > 0;
+        frames_ = std::make_unique<output::Frames>(
+            folder,
+            frames ? output::FrameFields{out.body_fields, out.slave_fields, out.master_fields} : output::FrameFields{},
+            plan.model);
+        history_ = std::make_unique<output::History>(folder / "history.csv", plan.model, out.history_pairs,
+                                                     reactions ? plan.constrained_sets : std::vector<Index>{});
+        steps_ = std::make_unique<output::CsvTable>(
+            folder / "steps.csv", std::vector<std::string>{"attempt", "time", "dt", "verdict", "reason", "body", "node",
+                                                           "value", "lambda", "iterations"});
+        fs::remove(folder / "iterations.csv");
+        if (out.iterations)
+            iterations_ = std::make_unique<output::CsvTable>(
+                folder / "iterations.csv",
+                std::vector<std::string>{"attempt", "iteration", "residual", "status_changes", "open", "stick", "slip",
+                                         "facet_changes"});
+    });
+    write_initial_frame();
+    write_summary();
+}
+
+void RunRecorder::describe_plan() {
+    summary_.version = version;
+    summary_.scene = scene_.name;
+    summary_.status = "running";
+    summary_.dofs = degrees_of_freedom(plan_);
+    summary_.threads = settings_.threads;
+    for (const model::Body& body : plan_.model.bodies)
+        summary_.bodies.push_back({body.name, body.nodes(), body.mesh.element_count()});
+    for (const auto& pair : plan_.model.pairs) {
+        const scene::Pair& spec = *scene::find(scene_.contact, pair->name());
+        const bool rpim = std::holds_alternative<scene::RpimSurface>(spec.master.surface);
+        summary_.pairs.push_back({pair->name(), pair->size(), pair->surface().facet_count(), rpim ? "rpim" : "facets"});
+    }
+    for (const PlanItem& item : plan_.items)
+        if (item.present) summary_.plan.push_back(item.part);
+}
+
+void RunRecorder::write_initial_frame() {
+    if (scene_.output.frame_every == 0) return;
+    for (const auto& pair : plan_.model.pairs)
+        (void)initial_gaps(*pair, plan_.model.X, timings_, settings_.threads); // evaluates the contact points
+    on_disk(timings_, [&] {
+        const std::vector<Vec3> none(plan_.model.X.size(), Vec3::Zero());
+        frames_->write({plan_.model, stepper_.state(), none}, 0);
+    });
+}
+
+void RunRecorder::attempted(const time::Attempt& a, const std::vector<time::IterationRecord>& iterations) {
+    ++(a.verdict == time::Verdict::accept ? summary_.steps.accepted : summary_.steps.rejected);
+    summary_.iterations += a.iterations;
+    on_disk(timings_, [&] {
+        const output::Cell node = a.node < 0 ? output::Cell{std::string()} : output::Cell{long{a.node}};
+        steps_->row({long{a.attempt}, a.time, a.dt, name(a.verdict), name(a.reason), a.body, node, a.value, a.lambda,
+                     long{a.iterations}});
+        if (!iterations_) return;
+        for (const time::IterationRecord& i : iterations)
+            iterations_->row({long{a.attempt}, long{i.iteration}, i.residual, long{i.status_changes}, long{i.open},
+                              long{i.stick}, long{i.slip}, long{i.facet_changes}});
+    });
+}
+
+void RunRecorder::accepted(const time::AcceptedStep& step) {
+    const model::Constraints& constraints = step.equilibrium.constraints();
+    on_disk(timings_, [&] {
+        const output::Snapshot snapshot(plan_.model, step.state,
+                                        needs_reactions_
+                                            ? output::nodal_reactions(constraints, step.equilibrium.unbalanced())
+                                            : std::vector<Vec3>(plan_.model.X.size(), Vec3::Zero()));
+        history_->row(snapshot, constraints, step.dt, step.iterations);
+        const int every = scene_.output.frame_every;
+        const double end = stepper_.end_time();
+        const bool last = step.state.time >= end * (1 - 1e-12);
+        if (every > 0 && (summary_.steps.accepted % every == 0 || last))
+            frames_->write(snapshot, summary_.steps.accepted);
+    });
+    write_summary();
+    long contacts = 0;
+    for (const model::ContactHistory& history : step.state.contact)
+        contacts += std::ranges::count_if(history.status, contact::is_closed);
+    progress_.update({summary_.steps.accepted, step.state.time, step.dt, step.iterations, contacts});
+}
+
+void RunRecorder::finish(const std::string& status, const std::string& failure) {
+    progress_.finish();
+    summary_.status = status;
+    summary_.failure = failure;
+    write_summary();
+}
+
+void RunRecorder::write_summary() {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - settings_.begin;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    summary_.total_seconds = elapsed.count();
+    summary_.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    summary_.peak_memory_bytes = usage.ru_maxrss * 1024; // Linux counts in kB
+    summary_.factorisations = stepper_.factorisations();
+    summary_.timings = timings_;
+    on_disk(timings_, [&] { output::write_summary(settings_.directory / "summary.json", summary_); });
+}
+
+} // namespace osculate::app

@@ -1,0 +1,58 @@
+#pragma once
+/// Writes the files of a run while it goes.
+
+#include "osculate/app/compile.hpp"
+#include "osculate/output/csv_table.hpp"
+#include "osculate/output/frames.hpp"
+#include "osculate/output/history.hpp"
+#include "osculate/output/progress.hpp"
+#include "osculate/output/summary.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+namespace osculate::app {
+
+/// history.csv, steps.csv, iterations.csv and frames of a run, its summary.json and the line of progress. What the scene
+/// does not name is neither written nor computed. Every member throws RunFailure when a file cannot be written.
+class RunRecorder final : public time::StepObserver {
+public:
+    struct Settings {
+        std::filesystem::path directory;
+        int threads = 1;
+        bool quiet = false;
+        std::chrono::steady_clock::time_point begin; ///< of the run, its reading included
+    };
+
+    /// Replaces what an earlier run left in the folder, writes the resolved scene and the state before the first step.
+    /// Scene, plan, stepper and timings must outlive it.
+    RunRecorder(const scene::Scene& scene, const Plan& plan, const time::Stepper& stepper, Timings& timings,
+                Settings settings);
+
+    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override;
+    void accepted(const time::AcceptedStep& step) override;
+
+    /// Says how the run ended.
+    void finish(const std::string& status, const std::string& failure = {});
+    [[nodiscard]] const output::Summary& summary() const { return summary_; }
+
+private:
+    void describe_plan();
+    void write_initial_frame();
+    void write_summary();
+
+    const scene::Scene& scene_;
+    const Plan& plan_;
+    const time::Stepper& stepper_;
+    Timings& timings_;
+    Settings settings_;
+    bool needs_reactions_ = false;
+    output::Summary summary_;
+    std::unique_ptr<output::CsvTable> steps_, iterations_;
+    std::unique_ptr<output::History> history_;
+    std::unique_ptr<output::Frames> frames_;
+    output::Progress progress_;
+};
+
+} // namespace osculate::app

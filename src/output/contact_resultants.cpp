@@ -1,0 +1,29 @@
+#include "osculate/output/contact_resultants.hpp"
+
+#include <algorithm>
+
+namespace osculate::output {
+
+ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
+    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    const std::vector<contact::Status>& status = snapshot.state().contact[pair].status;
+    ContactResultants sum;
+    for (Index j = 0; j < term.size(); ++j) {
+        const contact::ContactState contact = snapshot.contact(pair, j);
+        if (snapshot.has_partner(pair, j)) sum.penetration = std::max(sum.penetration, -contact.gap);
+        if (!contact::is_closed(status[j])) {
+            ++sum.open;
+            continue;
+        }
+        ++(status[j] == contact::Status::stick ? sum.stick : sum.slip);
+        const double p_N = contact.lambda.dot(contact.normal);
+        sum.force += contact.lambda;
+        sum.moment += snapshot.x()[term.slaves().node[j]].cross(contact.lambda);
+        sum.normal += p_N;
+        sum.friction += (contact.lambda - p_N * contact.normal).norm();
+        sum.area += term.slaves().area[j];
+    }
+    return sum;
+}
+
+} // namespace osculate::output

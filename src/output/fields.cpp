@@ -1,0 +1,154 @@
+#include "osculate/output/fields.hpp"
+
+#include "osculate/core/error.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace osculate::output {
+
+namespace {
+
+using Values = std::vector<double>;
+
+void append(Values& values, const Vec3& v) {
+    values.insert(values.end(), v.data(), v.data() + 3);
+}
+
+/// Nodal vectors of one body.
+Values of_body(const Snapshot& snapshot, Index body, const std::vector<Vec3>& nodal) {
+    const model::Body& part = snapshot.model().bodies[body];
+    Values values;
+    for (Index i = 0; i < part.nodes(); ++i) append(values, nodal[part.first_node + i]);
+    return values;
+}
+
+/// f(slave, contact state, whether it is closed) for every slave node of a pair.
+template <class F> void for_each_slave(const Snapshot& snapshot, Index pair, F&& f) {
+    const model::ContactHistory& history = snapshot.state().contact[pair];
+    for (Index j = 0; j < snapshot.model().pairs[pair]->size(); ++j)
+        f(j, snapshot.contact(pair, j), contact::is_closed(history.status[j]));
+}
+
+Values displacement(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.state().u);
+}
+
+Values reaction(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.reactions());
+}
+
+Values stress(const Snapshot& snapshot, Index body) {
+    const Snapshot::Stress& sigma = snapshot.stress(body);
+    Values values;
+    for (Index i = 0; i < sigma.rows(); ++i)
+        for (int c = 0; c < 6; ++c) values.push_back(sigma(i, c));
+    return values;
+}
+
+Values von_mises(const Snapshot& snapshot, Index body) {
+    // sqrt(((s_xx - s_yy)^2 + (s_yy - s_zz)^2 + (s_zz - s_xx)^2) / 2 + 3 (s_xy^2 + s_yz^2 + s_zx^2))
+    const Snapshot::Stress& sigma = snapshot.stress(body);
+    Values values;
+    for (Index i = 0; i < sigma.rows(); ++i) {
+        const Vec6 s = sigma.row(i);
+        const Vec3 difference(s(0) - s(1), s(1) - s(2), s(2) - s(0));
+        values.push_back(std::sqrt(difference.squaredNorm() / 2 + 3 * s.tail<3>().squaredNorm()));
+    }
+    return values;
+}
+
+Values gap(const Snapshot& snapshot, Index pair) {
+    Values values;
+    for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool) {
+        values.push_back(snapshot.has_partner(pair, j) ? contact.gap : std::numeric_limits<double>::quiet_NaN());
+    });
+    return values;
+}
+
+Values contact_force(const Snapshot& snapshot, Index pair) {
+    Values values;
+    for (const Vec3& lambda : snapshot.state().contact[pair].lambda) append(values, lambda);
+    return values;
+}
+
+Values normal_stress(const Snapshot& snapshot, Index pair) {
+    const std::vector<double>& area = snapshot.model().pairs[pair]->slaves().area;
+    Values values;
+    for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool closed) {
+        values.push_back(closed ? contact.lambda.dot(contact.normal) / area[j] : 0);
+    });
+    return values;
+}
+
+Values slip(const Snapshot& snapshot, Index pair) {
+    Values values;
+    for_each_slave(snapshot, pair, [&](Index, const contact::ContactState& contact, bool closed) {
+        const Vec3& n = contact.normal;
+        append(values, closed ? Vec3(contact.drift - n * n.dot(contact.drift)) : Vec3::Zero());
+    });
+    return values;
+}
+
+Values status(const Snapshot& snapshot, Index pair) {
+    Values values;
+    for (const contact::Status s : snapshot.state().contact[pair].status)
+        values.push_back(s == contact::Status::open ? 0 : s == contact::Status::stick ? 1 : 2);
+    return values;
+}
+
+Values normal(const Snapshot& snapshot, Index pair) {
+    Values values;
+    for (Index j = 0; j < snapshot.model().pairs[pair]->size(); ++j) {
+        const contact::ContactPoint& point = snapshot.model().pairs[pair]->point(j);
+        append(values, point.found ? point.normal : Vec3::Zero());
+    }
+    return values;
+}
+
+Values master_contact_force(const Snapshot& snapshot, Index pair) {
+    // f_i = -sum_j Phi_i lambda_j
+    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    std::vector<Vec3> force(term.master_nodes().size(), Vec3::Zero());
+    for (Index j = 0; j < term.size(); ++j) {
+        const contact::ContactPoint& point = term.point(j);
+        if (!point.found) continue;
+        for (std::size_t i = 0; i < point.nodes.size(); ++i)
+            force[point.nodes[i]] -= point.weights(static_cast<Index>(i)) * snapshot.state().contact[pair].lambda[j];
+    }
+    Values values;
+    for (const Vec3& f : force) append(values, f);
+    return values;
+}
+
+constexpr Field table[] = {
+    {"displacement", FieldPlace::body, 3, "m", false, displacement},
+    {"stress", FieldPlace::body, 6, "Pa", false, stress},
+    {"von_mises", FieldPlace::body, 1, "Pa", false, von_mises},
+    {"reaction", FieldPlace::body, 3, "N", false, reaction},
+    {"gap", FieldPlace::slave, 1, "m", false, gap}, // NaN without a partner
+    {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
+    {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress}, // > 0 in compression
+    {"slip", FieldPlace::slave, 3, "m", false, slip},                    // of the step; 0 where open
+    {"status", FieldPlace::slave, 1, "", true, status},                  // 0 open, 1 stick, 2 slip
+    {"normal", FieldPlace::slave, 3, "", false, normal},                 // out of the master; 0 without a partner
+    {"contact_force", FieldPlace::master, 3, "N", false, master_contact_force},
+};
+
+} // namespace
+
+std::span<const Field> all_fields() {
+    return table;
+}
+
+const Field& field(FieldPlace where, const std::string& name) {
+    for (const Field& row : table)
+        if (row.where == where && name == row.name) return row;
+    throw InternalError("no field is called '" + name + "' there");
+}
+
+Array evaluate(const Field& field, const Snapshot& snapshot, Index body_or_pair) {
+    return {field.name, field.components, field.values(snapshot, body_or_pair), field.integer};
+}
+
+} // namespace osculate::output

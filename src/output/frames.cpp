@@ -1,0 +1,95 @@
+#include "osculate/output/frames.hpp"
+
+#include "output/files.hpp"
+
+#include <fmt/format.h>
+#include <unordered_map>
+#include <utility>
+
+namespace osculate::output {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<const Field*> chosen(FieldPlace where, const std::vector<std::string>& names) {
+    std::vector<const Field*> fields;
+    for (const std::string& name : names) fields.push_back(&field(where, name));
+    return fields;
+}
+
+void remove_frames(const fs::path& folder) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) return;
+    std::vector<fs::path> old;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+        if (entry.path().extension() == ".vtu" || entry.path().extension() == ".vtp") old.push_back(entry.path());
+    for (const fs::path& path : old) {
+        fs::remove(path, error);
+        if (error) throw_unwritable(path, error);
+    }
+}
+
+Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& u) {
+    Array array{"displacement", 3, {}};
+    for (const Index node : nodes) array.values.insert(array.values.end(), u[node].data(), u[node].data() + 3);
+    return array;
+}
+
+} // namespace
+
+Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model& model)
+    : directory_(std::move(directory)), body_fields_(chosen(FieldPlace::body, fields.body)), series_(directory_) {
+    remove_frames(directory_ / "frames"); // after series.pvd has forgotten them
+    const auto slave = chosen(FieldPlace::slave, fields.slave), master = chosen(FieldPlace::master, fields.master);
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model.pairs[p];
+        const auto number = static_cast<Index>(p);
+        add_surface(model, pair.name() + ".slave", number, pair.slaves().node, pair.slaves().facets, slave);
+        add_surface(model, pair.name() + ".master", number, pair.master_nodes(), pair.surface().facets(), master);
+    }
+}
+
+void Frames::add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
+                         const std::vector<mesh::Facet>& facets, std::vector<const Field*> fields) {
+    if (fields.empty()) return;
+    Surface surface{std::move(name), pair, nodes, {}, facets, std::move(fields)};
+    std::unordered_map<Index, Index> point_of;
+    for (const Index node : nodes) {
+        point_of.emplace(node, static_cast<Index>(surface.points.size()));
+        surface.points.push_back(model.X[node]);
+    }
+    for (mesh::Facet& facet : surface.facets)
+        for (int c = 0; c < facet.count; ++c) {
+            Index& corner = facet.nodes[static_cast<std::size_t>(c)];
+            corner = point_of.at(corner);
+        }
+    surfaces_.push_back(std::move(surface));
+}
+
+std::string Frames::file(const std::string& part, long number, const char* extension) {
+    return fmt::format("frames/{}_{:05}.{}", part, number, extension);
+}
+
+void Frames::write(const Snapshot& snapshot, long number) {
+    const double time = snapshot.state().time;
+    const model::Model& model = snapshot.model();
+    for (std::size_t b = 0; b < model.bodies.size() && !body_fields_.empty(); ++b) {
+        const model::Body& body = model.bodies[b];
+        std::vector<Array> arrays;
+        for (const Field* f : body_fields_) arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));
+        const std::string name = file(body.name, number, "vtu");
+        write_vtu(directory_ / name, body.mesh.nodes, body.mesh.blocks, arrays, time);
+        series_.add(time, body.name, name);
+    }
+    for (const Surface& surface : surfaces_) {
+        std::vector<Array> arrays{displacement_of(surface.nodes, snapshot.state().u)};
+        for (const Field* f : surface.fields) arrays.push_back(evaluate(*f, snapshot, surface.pair));
+        const std::string name = file(surface.name, number, "vtp");
+        write_vtp(directory_ / name, surface.points, surface.facets, arrays, time);
+        series_.add(time, surface.name, name);
+    }
+    series_.flush();
+}
+
+} // namespace osculate::output

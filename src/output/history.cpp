@@ -1,0 +1,74 @@
+#include "osculate/output/history.hpp"
+
+#include "osculate/output/contact_resultants.hpp"
+
+#include <utility>
+
+namespace osculate::output {
+
+namespace {
+
+constexpr const char* axes[] = {"_x", "_y", "_z"};
+
+std::vector<std::string> columns(const model::Model& model, bool pairs, const std::vector<Index>& sets) {
+    std::vector<std::string> names{"time", "dt", "iterations"};
+    const auto vector = [&](const std::string& name) {
+        for (const char* axis : axes) names.push_back(name + axis);
+    };
+    if (pairs)
+        for (const auto& pair : model.pairs) {
+            const std::string prefix = "pair." + pair->name() + ".";
+            vector(prefix + "force");
+            for (const char* name : {"normal", "friction"}) names.push_back(prefix + name);
+            vector(prefix + "moment");
+            for (const char* name : {"area", "open", "stick", "slip", "penetration"}) names.push_back(prefix + name);
+        }
+    for (const Index set : sets) vector("set." + model.sets[set].name + ".reaction");
+    return names;
+}
+
+void append(std::vector<Cell>& cells, const Vec3& v) {
+    for (int k = 0; k < 3; ++k) cells.emplace_back(v(k));
+}
+
+std::vector<Vec3> set_reactions(const Snapshot& snapshot, const model::Constraints& constraints) {
+    std::vector<Vec3> sum(snapshot.model().sets.size(), Vec3::Zero());
+    for (Index node = 0; node < constraints.nodes(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (const model::NodeConstraint* held = constraints.constraint(node, k);
+                held != nullptr && held->set >= 0) {
+                const Vec3 axis = constraints.frame(node).col(k);
+                sum[held->set] += axis * axis.dot(snapshot.reactions()[node]);
+            }
+    return sum;
+}
+
+} // namespace
+
+std::vector<Vec3> nodal_reactions(const model::Constraints& constraints, const std::vector<Vec3>& unbalanced) {
+    std::vector<Vec3> reactions(unbalanced.size());
+    for (Index node = 0; node < constraints.nodes(); ++node)
+        reactions[node] = constraints.reaction(node, unbalanced[node]);
+    return reactions;
+}
+
+History::History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets)
+    : pairs_(pairs ? model.pairs.size() : 0), sets_(std::move(sets)), table_(path, columns(model, pairs, sets_)) {}
+
+void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations) {
+    std::vector<Cell> cells{snapshot.state().time, dt, long{iterations}};
+    for (std::size_t p = 0; p < pairs_; ++p) {
+        const ContactResultants sum = contact_resultants(snapshot, static_cast<Index>(p));
+        append(cells, sum.force);
+        cells.insert(cells.end(), {sum.normal, sum.friction});
+        append(cells, sum.moment);
+        cells.insert(cells.end(), {sum.area, sum.open, sum.stick, sum.slip, sum.penetration});
+    }
+    if (!sets_.empty()) {
+        const std::vector<Vec3> reactions = set_reactions(snapshot, constraints);
+        for (const Index set : sets_) append(cells, reactions[set]);
+    }
+    table_.row(cells);
+}
+
+} // namespace osculate::output

@@ -1,0 +1,27 @@
+#include "osculate/output/snapshot.hpp"
+
+#include <utility>
+
+namespace osculate::output {
+
+Snapshot::Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions)
+    : model_(model), state_(state), reactions_(std::move(reactions)), x_(model.X) {
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state.u[i];
+}
+
+const Snapshot::Stress& Snapshot::stress(Index body) const {
+    auto known = stress_.find(body);
+    if (known == stress_.end()) known = stress_.emplace(body, model::nodal_stress(model_.bodies[body], state_.u)).first;
+    return known->second;
+}
+
+contact::ContactState Snapshot::contact(Index pair, Index slave) const {
+    return model_.pairs[pair]->state(slave, x_, state_.contact[pair].lambda[slave]);
+}
+
+bool Snapshot::has_partner(Index pair, Index slave) const {
+    const contact::ContactPoint& point = model_.pairs[pair]->point(slave);
+    return point.found || point.behind;
+}
+
+} // namespace osculate::output

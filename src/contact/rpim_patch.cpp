@@ -28,6 +28,8 @@ namespace {
 
 /// Smallest ratio of singular values of the column-scaled polynomial matrix that still counts as full rank.
 constexpr double rank_tolerance = 1e-6;
+/// Nodes closer than this fraction of dc count as one: their two rows of G are the same but for round-off.
+constexpr double same_node = 0.01;
 
 /// p(t) = [1 x y | xx xy yy]                                                              [Qian 2014, eqs (11)-(12)]
 Matrix polynomial_matrix(const MatrixX2& t, int m) {
@@ -54,15 +56,16 @@ bool full_rank(Matrix D) {
     return s(s.size() - 1) > rank_tolerance * s(0);
 }
 
-double mean_nearest_distance(const MatrixX2& u) {
-    double sum = 0;
+/// Distance of every node to the nearest other one.
+Vector nearest_distances(const MatrixX2& u) {
+    Vector distance(u.rows());
     for (Index i = 0; i < u.rows(); ++i) {
         double nearest = std::numeric_limits<double>::max();
         for (Index j = 0; j < u.rows(); ++j)
             if (j != i) nearest = std::min(nearest, (u.row(i) - u.row(j)).squaredNorm());
-        sum += std::sqrt(nearest);
+        distance(i) = std::sqrt(nearest);
     }
-    return sum / static_cast<double>(u.rows());
+    return distance;
 }
 
 } // namespace
@@ -73,8 +76,9 @@ std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& b
     RpimPatch patch;
     patch.basis_ = basis;
     patch.c_ = u.colwise().mean().transpose();
-    patch.dc_ = mean_nearest_distance(u);
-    if (!(patch.dc_ > 0)) return std::nullopt;
+    const Vector nearest = nearest_distances(u);
+    patch.dc_ = nearest.mean();
+    if (!(nearest.minCoeff() > same_node * patch.dc_)) return std::nullopt;
     patch.t_ = (u.rowwise() - patch.c_.transpose()) / patch.dc_;
 
     const Index fewest_for_quadratic = 7;

@@ -31,7 +31,7 @@ public:
     /// @param u      (n x 2) natural coordinates, m; at least three, not on one line
     /// @param basis  radial function
     /// @param m      terms of the polynomial basis, 3 or 6; 6 falls back to 3 where the nodes do not determine a quadratic
-    /// @returns nothing when the nodes do not even determine a plane.      Cost O(n^3).
+    /// @returns nothing when the nodes do not even determine a plane, or two of them coincide.      Cost O(n^3).
     [[nodiscard]] static std::optional<RpimPatch> fit(const MatrixX2& u, const Multiquadric& basis, int m);
 
     [[nodiscard]] Index size() const { return static_cast<Index>(t_.rows()); }

@@ -8,9 +8,11 @@
 #include "osculate/mesh/quality.hpp"
 #include "osculate/mesh/select.hpp"
 #include "osculate/mesh/vtu_reader.hpp"
+#include "osculate/scene/nearest.hpp"
 
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include <map>
 #include <numeric>
 
@@ -124,25 +126,32 @@ private:
         throw InternalError("the scene names a set it does not have");
     }
 
+    /// A part that the mesh names; one fault when it does not.
+    mesh::Region select(const std::string& set_name, const std::string& body, const scene::SelectNamed& s,
+                        const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
+        if (auto named = mesh::select_named(m, exterior, s.name)) return *named;
+        std::vector<std::string> known;
+        for (const auto& [surface, facets] : m.surfaces) known.push_back(surface);
+        for (const auto& [nodes, list] : m.node_sets)
+            if (!m.surfaces.contains(nodes)) known.push_back(nodes);
+        std::string names;
+        for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+        faults_.push_back(fault("sets." + set_name + (s.nodes ? ".nodes" : ".surface"),
+                                "a surface or node set of body '" + body + "' (it has " + names + ")",
+                                "'" + s.name + "'"));
+        faults_.back().nearest = scene::nearest(s.name, known);
+        return {};
+    }
+
     void add_sets() {
         for (const auto& [name, spec] : scene_.sets) {
             const Index b = body_index(spec.body);
             const mesh::Mesh& m = plan_.model.bodies[b].mesh;
             const auto& exterior = exterior_[b];
+            const std::size_t before = faults_.size();
             const mesh::Region region = std::visit(
                 Overloaded{
-                    [&](const scene::SelectNamed& s) {
-                        auto named = mesh::select_named(m, exterior, s.name);
-                        if (named) return *named;
-                        std::string known;
-                        for (const auto& [surface, facets] : m.surfaces) known += (known.empty() ? "" : ", ") + surface;
-                        for (const auto& [nodes, list] : m.node_sets)
-                            if (!m.surfaces.contains(nodes)) known += (known.empty() ? "" : ", ") + nodes;
-                        faults_.push_back(fault(
-                            "sets." + name, "a surface or node set of body '" + spec.body + "' (it has " + known + ")",
-                            "'" + s.name + "'"));
-                        return mesh::Region{};
-                    },
+                    [&](const scene::SelectNamed& s) { return select(name, spec.body, s, m, exterior); },
                     [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point, s.normal); },
                     [&](const scene::SelectCylinder& s) {
                         return mesh::select_cylinder(m, exterior, s.point, s.axis, s.radius);
@@ -153,7 +162,7 @@ private:
                     },
                 },
                 spec.select);
-            if (region.nodes.empty() && !std::holds_alternative<scene::SelectNamed>(spec.select))
+            if (region.nodes.empty() && faults_.size() == before)
                 faults_.push_back(fault("sets." + name, "at least one node of body '" + spec.body + "'",
                                         "an empty set: nothing lies there"));
             model::Set global{name, b, region.nodes, region.facets};
@@ -318,12 +327,11 @@ private:
             const PairGaps gaps = initial_gaps(*plan_.model.pairs[p], plan_.model.X, timings_, threads_);
             const double limit = scene_.contact[p].second.initial_overlap_limit;
             if (gaps.largest_overlap > limit)
-                faults_.push_back(fault("contact." + scene_.contact[p].first,
-                                        "bodies that overlap by less than " + std::to_string(limit) +
-                                            " of the facet size at the start",
-                                        "an overlap of " + std::to_string(-gaps.least) + " m at slave node " +
-                                            std::to_string(gaps.worst_node) + ", " +
-                                            std::to_string(gaps.largest_overlap) + " of the facet size"));
+                faults_.push_back(
+                    fault("contact." + scene_.contact[p].first,
+                          fmt::format("bodies that overlap by less than {:.3g} of the facet size at the start", limit),
+                          fmt::format("an overlap of {:.4g} m at slave {}, {:.3g} of the facet size", -gaps.least,
+                                      node_name(plan_.model, gaps.worst_node), gaps.largest_overlap)));
         }
     }
 

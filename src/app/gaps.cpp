@@ -25,4 +25,11 @@ PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timi
     return gaps;
 }
 
+std::string node_name(const model::Model& model, Index node) {
+    for (const model::Body& body : model.bodies)
+        if (node >= body.first_node && node < body.first_node + body.nodes())
+            return "node " + std::to_string(node - body.first_node) + " of body '" + body.name + "'";
+    return "no node";
+}
+
 } // namespace osculate::app

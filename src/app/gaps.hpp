@@ -1,7 +1,9 @@
 #pragma once
 /// Gaps of a pair in the reference configuration.
 
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/model.hpp"
+
+#include <string>
 
 namespace osculate::app {
 
@@ -15,5 +17,8 @@ struct PairGaps {
 
 [[nodiscard]] PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timings& timings,
                                     int threads);
+
+/// "node 12 of body 'cap'" for a global node.
+[[nodiscard]] std::string node_name(const model::Model& model, Index node);
 
 } // namespace osculate::app

@@ -8,18 +8,6 @@
 
 namespace osculate::app {
 
-namespace {
-
-/// "node 12 of tube" for a global node.
-std::string node_name(const Plan& plan, Index node) {
-    for (const model::Body& body : plan.model.bodies)
-        if (node >= body.first_node && node < body.first_node + body.nodes())
-            return fmt::format("node {} of {}", node - body.first_node, body.name);
-    return "no node";
-}
-
-} // namespace
-
 Index degrees_of_freedom(const Plan& plan) {
     Index most = 0;
     for (const time::Stage& stage : plan.stages)
@@ -45,7 +33,7 @@ std::string report(const Plan& plan, int threads) {
             fmt::format_to(out, "  no slave node above the master\n");
         if (gaps.least < 0)
             fmt::format_to(out, "  worst overlap {:.4g} m at {}, {:.3g} of the facet size\n", -gaps.least,
-                           node_name(plan, gaps.worst_node), gaps.largest_overlap);
+                           node_name(plan.model, gaps.worst_node), gaps.largest_overlap);
         else
             fmt::format_to(out, "  no overlap\n");
         if (const Index fallbacks = pair->master().fallbacks(); fallbacks > 0)

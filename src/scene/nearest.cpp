@@ -1,4 +1,4 @@
-#include "scene/nearest.hpp"
+#include "osculate/scene/nearest.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,8 +1,8 @@
 #include "osculate/scene/reader.hpp"
 
+#include "osculate/scene/nearest.hpp"
 #include "scene/checks.hpp"
 #include "scene/describe.hpp"
-#include "scene/nearest.hpp"
 #include "scene/overrides.hpp"
 #include "scene/templates.hpp"
 #include "scene/tree_reader.hpp"

@@ -1,7 +1,7 @@
 #include "scene/tree_reader.hpp"
 
+#include "osculate/scene/nearest.hpp"
 #include "scene/frame.hpp"
-#include "scene/nearest.hpp"
 
 #include <algorithm>
 #include <cctype>

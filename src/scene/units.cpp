@@ -1,6 +1,6 @@
 #include "osculate/scene/units.hpp"
 
-#include "scene/nearest.hpp"
+#include "osculate/scene/nearest.hpp"
 
 #include <array>
 #include <cctype>

@@ -1,4 +1,5 @@
 #pragma once
+/// The name that was meant.
 
 #include <string>
 #include <string_view>

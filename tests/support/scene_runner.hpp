@@ -1,0 +1,124 @@
+#pragma once
+/// Runs a scene in memory and keeps what the claims of the verification tests need.
+
+#include "osculate/app/compile.hpp"
+#include "osculate/scene/reader.hpp"
+#include "osculate/time/stepper.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osculate::support {
+
+/// Forces of one pair at one accepted step.
+struct PairForces {
+    Vec3 on_slave = Vec3::Zero(), on_master = Vec3::Zero();
+    Vec3 moment_on_slave = Vec3::Zero(), moment_on_master = Vec3::Zero(); ///< about the origin
+    double normal = 0, friction = 0;
+    double penetration = 0; ///< worst, >= 0
+};
+
+struct RunStep {
+    double time = 0;
+    int iterations = 0;
+    std::vector<time::IterationRecord> records;
+    std::vector<PairForces> pairs;
+    std::vector<Vec3> reactions; ///< per constrained set
+    Vec3 load = Vec3::Zero();    ///< sum of external forces
+    model::State state;
+};
+
+struct SceneRun {
+    app::Plan plan;
+    Timings timings;
+    std::vector<RunStep> steps;
+    int attempts = 0;
+};
+
+/// Meshes may be changed between generation and compilation: `edit(meshes)`.
+template <class Edit>
+void run_scene(SceneRun& run, const std::string& path, const std::vector<scene::Override>& overrides, Edit&& edit,
+               int threads = 1);
+
+inline void run_scene(SceneRun& run, const std::string& path, const std::vector<scene::Override>& overrides = {},
+                      int threads = 1);
+
+/// Path of a shipped scene.
+inline std::string shipped(const std::string& name) { return std::string(OSCULATE_SOURCE_DIR) + "/configs/" + name; }
+
+namespace detail {
+
+class Keeper final : public time::StepObserver {
+public:
+    explicit Keeper(SceneRun& run) : run_(run) {}
+
+    void attempted(const time::Attempt&, const std::vector<time::IterationRecord>& records) override {
+        ++run_.attempts;
+        records_ = records;
+    }
+
+    void accepted(const time::AcceptedStep& step) override {
+        const model::Model& model = run_.plan.model;
+        RunStep kept;
+        kept.time = step.state.time;
+        kept.iterations = step.iterations;
+        kept.records = records_;
+        kept.state = step.state;
+        const auto x = [&](Index node) -> Vec3 { return model.X[node] + step.state.u[node]; };
+        for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+            const model::ContactTerm& pair = *model.pairs[p];
+            PairForces forces;
+            for (Index j = 0; j < pair.size(); ++j) {
+                const Vec3& lambda = step.state.contact[p].lambda[j];
+                const contact::ContactPoint& point = pair.point(j);
+                const Index slave = pair.slaves().node[j];
+                forces.on_slave += lambda;
+                forces.moment_on_slave += x(slave).cross(lambda);
+                if (!point.found) continue;
+                const double normal = lambda.dot(point.normal);
+                forces.normal += normal;
+                forces.friction += (lambda - normal * point.normal).norm();
+                forces.penetration = std::max(forces.penetration, -point.gap);
+                for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i) {
+                    const Vec3 f = -point.weights(static_cast<Index>(i)) * lambda;
+                    forces.on_master += f;
+                    forces.moment_on_master += x(pair.point_nodes(j)[i]).cross(f);
+                }
+            }
+            kept.pairs.push_back(forces);
+        }
+        for (const Index s : run_.plan.constrained_sets) {
+            Vec3 sum = Vec3::Zero();
+            for (const Index node : model.sets[s].nodes)
+                sum += step.equilibrium.constraints().reaction(node, step.equilibrium.unbalanced()[node]);
+            kept.reactions.push_back(sum);
+        }
+        for (const Vec3& f : step.stage.force_end) kept.load += f;
+        run_.steps.push_back(std::move(kept));
+    }
+
+private:
+    SceneRun& run_;
+    std::vector<time::IterationRecord> records_;
+};
+
+} // namespace detail
+
+template <class Edit>
+void run_scene(SceneRun& run, const std::string& path, const std::vector<scene::Override>& overrides, Edit&& edit,
+               int threads) {
+    const scene::Scene scene = scene::read_scene(path, overrides);
+    std::vector<mesh::Mesh> meshes = app::build_meshes(scene);
+    edit(meshes);
+    run.plan = app::compile(scene, std::move(meshes), threads, run.timings);
+    time::Stepper stepper(run.plan.model, run.plan.stages, run.plan.stepper, run.timings);
+    detail::Keeper keeper(run);
+    stepper.run(keeper);
+}
+
+inline void run_scene(SceneRun& run, const std::string& path, const std::vector<scene::Override>& overrides, int threads) {
+    run_scene(run, path, overrides, [](std::vector<mesh::Mesh>&) {}, threads);
+}
+
+} // namespace osculate::support

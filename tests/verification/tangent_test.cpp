@@ -1,0 +1,117 @@
+/// The consistent tangent of the whole step problem is the derivative of its residual, for every element, master surface
+/// and contact status.
+
+#include "support/scene_runner.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace osculate {
+namespace {
+
+using contact::Status;
+
+struct Case {
+    const char* name;
+    const char* element;
+    const char* formulation;
+    const char* surface;
+    const char* support; ///< of the driven face
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+class Tangent : public testing::TestWithParam<Case> {};
+
+/// Largest difference between a column of J and the central difference of F, over the largest entry of the column.
+/// Truncation h^2 and round-off eps/h balance near h = 1e-5 of the scale, at 1e-9 to 1e-8 for residuals of order one.
+constexpr double difference_step = 1e-5;
+constexpr double tolerance = 1e-6;
+
+TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
+    const Case& c = GetParam();
+    const std::vector<scene::Override> overrides{
+        {"bodies.tube.mesh.half_tube.divisions", "[7, 5, 1]"},
+        {"bodies.contactor.mesh.contactor.divisions", "[4, 5, 1]"},
+        {"bodies.tube.mesh.half_tube.element", c.element},
+        {"bodies.contactor.mesh.contactor.element", c.element},
+        {"bodies.tube.hex_formulation", c.formulation},
+        {"bodies.contactor.hex_formulation", c.formulation},
+        {"contact.sliding.surface", c.surface},
+        {"contact.sliding.friction", "0.3"},
+        {"supports.rear", c.support},
+    };
+    const scene::Scene scene = scene::read_scene(support::shipped("paper/half_tube.yaml"), overrides);
+    Timings timings;
+    app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
+    const model::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
+    time::Equilibrium equilibrium(plan.model, constraints, timings, 1);
+
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto shake = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+
+    // a start state, and a trial state that has slid and been shaken out of every symmetry
+    model::State state;
+    state.u.assign(plan.model.X.size(), Vec3::Zero());
+    for (const auto& pair : plan.model.pairs) state.contact.push_back(pair->initial_history());
+    const model::Body& contactor = plan.model.bodies[1];
+    std::vector<Vec3> u(plan.model.X.size());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const bool slides = static_cast<Index>(i) >= contactor.first_node;
+        u[i] = 0.02 * shake() + (slides ? Vec3(0.03, 0.13, -0.01) : Vec3::Zero());
+    }
+    const double force = 1e5;
+    time::Statuses statuses(1);
+    for (Index j = 0; j < plan.model.pairs[0]->size(); ++j) {
+        state.contact[0].lambda[j] = force * (Vec3(0, 0, 1) + 0.5 * shake());
+        statuses[0].push_back(static_cast<Status>(j % 4));
+    }
+    time::StepLoad load{std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
+    equilibrium.begin_attempt(state, load);
+    equilibrium.set_statuses(statuses, time::StatusRule::frozen, false);
+    Vector z = equilibrium.unknowns(u, state.contact);
+
+    Vector F(z.size()), plus(z.size()), minus(z.size());
+    for (int settle = 0; settle < 3; ++settle) (void)equilibrium.residual(z.data(), F.data()); // facets tracked
+    const solve::SparseMatrix& J = equilibrium.jacobian();
+    Matrix dense = Matrix::Zero(z.size(), z.size());
+    for (Index i = 0; i < J.rows(); ++i)
+        for (auto k = J.row_start[i]; k < J.row_start[i + 1]; ++k) dense(i, J.column[k]) += J.value[k];
+
+    double worst = 0;
+    int closed = 0;
+    for (Index j = 0; j < plan.model.pairs[0]->size(); ++j)
+        closed += contact::is_closed(equilibrium.statuses()[0][j]);
+    ASSERT_GT(closed, plan.model.pairs[0]->size() / 2) << "the trial state must touch";
+    for (Index k = 0; k < z.size(); ++k) {
+        const double scale = k < constraints.equations() ? 1 : force, h = difference_step * scale;
+        Vector moved = z;
+        moved(k) += h;
+        (void)equilibrium.residual(moved.data(), plus.data());
+        moved(k) = z(k) - h;
+        (void)equilibrium.residual(moved.data(), minus.data());
+        const Vector difference = (plus - minus) / (2 * h);
+        const double largest = std::max(dense.col(k).cwiseAbs().maxCoeff(), 1e-3 * 1e6 / scale);
+        worst = std::max(worst, (difference - dense.col(k)).cwiseAbs().maxCoeff() / largest);
+    }
+    EXPECT_LT(worst, tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Tangent,
+    testing::Values(Case{"hex8_facets", "hex8", "full", "facets", "{fix: [x]}"},
+                    Case{"hex8_b_bar_rpim", "hex8", "b_bar", "{rpim: {ring: 2}}", "{fix: [x]}"},
+                    Case{"hex8_incompatible_rpim_tangential", "hex8", "incompatible_modes",
+                         "{rpim: {ring: 1, coordinates: tangential}}", "{fix: [x]}"},
+                    Case{"wedge6_facets", "wedge6", "full", "facets", "{fix: [x]}"},
+                    Case{"wedge6_rpim", "wedge6", "full", "{rpim: {ring: 1}}", "{fix: [x]}"},
+                    Case{"tet4_facets", "tet4", "full", "facets", "{fix: [x]}"},
+                    Case{"tet4_rpim", "tet4", "full", "{rpim: {ring: 2, m: 3}}", "{fix: [x]}"},
+                    Case{"turned_support", "hex8", "full", "{rpim: {ring: 1}}", "{axes: [[0.6, 0.8, 0], [-0.8, 0.6, 0]]}"},
+                    Case{"symmetry", "hex8", "full", "{rpim: {ring: 1}}", "{symmetry: [0.6, 0, 0.8]}"}),
+    [](const auto& tested) { return tested.param.name; });
+
+} // namespace
+} // namespace osculate

@@ -17,7 +17,8 @@ std::vector<Fault> locate(std::vector<Fault> faults, const std::string& path, co
         for (const std::string& name : split_path(fault.key)) {
             node = node->find(name);
             if (node == nullptr) break;
-            place = node->key_place;
+            const bool in_place = node->kind == Tree::Kind::scalar || node->place.file == override_file;
+            place = in_place ? node->place : node->key_place; // a map or list starts at its key, for a reader
         }
         fault.file = place.file;
         fault.line = place.line;

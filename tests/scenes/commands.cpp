@@ -1,0 +1,74 @@
+#include "scenes/program.hpp"
+
+#include <gmock/gmock.h>
+
+namespace osculate::scenes {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string press = scene_file("tests/scenes/press.yaml");
+
+class Command : public Program {};
+
+TEST_F(Command, CheckReportsSizesPairsAndGaps) {
+    const Outcome outcome = osculate({"check", press, "--set", "bodies.cap.mesh.block.origin=[0.3 m, 0.45 m, 1.02 m]"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out,
+              "body base: 75 nodes, 32 elements\n"
+              "body cap: 48 nodes, 18 elements\n"
+              "degrees of freedom: 272\n" // 3 * 123, less 3 * 25 of the bed, 10 of the side, 12 of the rear
+              "pair joint: 16 slave nodes, 16 master facets\n"
+              "  16 slave nodes above the master, initial gap 0.02 m to 0.02 m\n"
+              "  no overlap\n"
+              "stage press: 1 step(s) in 1 s\n"
+              "stage pull: 3 step(s) in 3 s\n");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST_F(Command, CheckReportsOverlapsAndNodesBesideTheMaster) {
+    const Outcome outcome = osculate({"check", press, "--set", "bodies.cap.mesh.block.origin=[1.5 m, 0.45 m, 0.98 m]"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    // of the cap's columns at x = 1.5, 1.83, 2.17 and 2.5 the last two hang over
+    EXPECT_THAT(outcome.out,
+                AllOf(HasSubstr("  8 slave nodes above the master, initial gap -0.02 m to -0.02 m\n"),
+                      HasSubstr("  worst overlap 0.02 m at node 0 of body 'cap', 0.04 of the facet size\n")));
+}
+
+TEST_F(Command, ExplainSaysWhatIsThereAndWhatIsLeftOut) {
+    const Outcome outcome = osculate({"explain", press, "--set", "contact.joint.friction=0"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::size_t left_out = outcome.out.find("left out\n");
+    ASSERT_NE(left_out, std::string::npos);
+    const std::string present = outcome.out.substr(0, left_out), absent = outcome.out.substr(left_out);
+    EXPECT_THAT(present, AllOf(HasSubstr("in the plan\n"), HasSubstr("\n  contact "), Not(HasSubstr("\n  friction "))));
+    EXPECT_THAT(absent, AllOf(HasSubstr("no pair has mu > 0\n"), HasSubstr("iterations.csv")));
+}
+
+TEST_F(Command, KeysListsEveryKeyAtOrBelowAPath) {
+    const Outcome all = osculate({"keys"}), some = osculate({"keys", "contact.joint.master.surface.rpim"});
+    EXPECT_EQ(all.code, 0);
+    EXPECT_EQ(some.code, 0);
+    EXPECT_THAT(all.out, AllOf(HasSubstr("\nsolver.tolerance\n"), HasSubstr(some.out)));
+    EXPECT_THAT(some.out, AllOf(HasSubstr("rpim.ring\n"), Not(HasSubstr("solver"))));
+}
+
+TEST_F(Command, VersionIsTheProjects) {
+    const Outcome outcome = osculate({"--version"});
+    EXPECT_EQ(outcome.code, 0);
+    ASSERT_THAT(outcome.out, testing::MatchesRegex("osculate [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+    const std::string number = outcome.out.substr(9, outcome.out.size() - 10);
+    EXPECT_THAT(content(scene_file("CMakeLists.txt")), HasSubstr("project(osculate VERSION " + number + " "));
+}
+
+TEST_F(Command, HelpIsNoError) {
+    const Outcome outcome = osculate({"run", "--help"});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_THAT(outcome.out,
+                AllOf(HasSubstr("SCENE"), HasSubstr("--set"), HasSubstr("--threads"), HasSubstr("--quiet")));
+}
+
+} // namespace
+} // namespace osculate::scenes

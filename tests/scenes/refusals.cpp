@@ -1,0 +1,105 @@
+#include "scenes/program.hpp"
+
+#include <gmock/gmock.h>
+
+namespace osculate::scenes {
+namespace {
+
+struct Refusal {
+    const char* scene;
+    std::vector<const char*> lines; ///< one per fault: place, key and the words that matter
+};
+
+class BadScene : public Program, public testing::WithParamInterface<Refusal> {};
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+TEST_P(BadScene, IsRefusedWithPlaceKeyAndReason) {
+    const std::string path = scene_file("tests/scenes/bad/" + std::string(GetParam().scene) + ".yaml");
+    for (const char* command : {"check", "run"}) {
+        const Outcome outcome = osculate({command, path});
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_EQ(outcome.out, "");
+        const std::vector<std::string> lines = lines_of(outcome.err);
+        ASSERT_EQ(lines.size(), GetParam().lines.size()) << outcome.err;
+        for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_EQ(lines[i], path + ":" + GetParam().lines[i]);
+        EXPECT_FALSE(std::filesystem::exists(folder / "out")) << "a refused scene leaves files";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ten, BadScene,
+    testing::Values(
+        Refusal{"unknown_key",
+                {"34:5: contact.joint.frcition: expected one of the keys slave, master, friction, closing_tolerance, "
+                 "initial_overlap_limit, stiffness_scale, found unknown key 'frcition' (did you mean 'friction'?)"}},
+        Refusal{"wrong_unit",
+                {"9:27: bodies.base.material.linear_elastic.E: expected a pressure (Pa) > 0, found '30 m' (length)"}},
+        Refusal{"missing_surface",
+                {"19:33: sets.ground.surface: expected a surface or node set of body 'base' (it has x_max, x_min, "
+                 "y_max, y_min, z_max, z_min), found 'z_mxa' (did you mean 'z_max'?)"}},
+        Refusal{"negative_modulus",
+                {"9:27: bodies.base.material.linear_elastic.E: expected a pressure (Pa) > 0, found '-30 MPa'"}},
+        Refusal{"overlapping_bodies",
+                {"29:3: contact.joint: expected bodies that overlap by less than 0.1 of the facet size at the start, "
+                 "found an overlap of 0.2 m at slave node 0 of body 'cap', 0.4 of the facet size"}},
+        Refusal{"empty_set",
+                {"20:3: sets.under: expected at least one node of body 'cap', found an empty set: nothing lies "
+                 "there"}},
+        Refusal{"bad_yaml", {"7:82: expected valid YAML, found illegal flow end"}},
+        Refusal{"unsupported_body",
+                {"10:3: bodies.cap: expected supports or contact that hold the body, found free rigid-body motions: "
+                 "add supports, or a contact pair that touches it"}},
+        Refusal{"not_a_number",
+                {"39:21: stages.press.pressure.top: expected a pressure (Pa), found '.nan' (not finite)"}},
+        Refusal{"absurd_size",
+                {"7:74: bodies.base.mesh.block.divisions: expected at most 2e+07 elements, found 6.4e+10",
+                 "12:52: bodies.cap.mesh.block.size: expected a list of three, each a length (m) in [1e-12, 1e+09], "
+                 "found '1e10 m'"}}),
+    [](const auto& test) { return std::string(test.param.scene); });
+
+const std::string press = scene_file("tests/scenes/press.yaml");
+
+class Refused : public Program {};
+
+TEST_F(Refused, FaultOfAnOverrideNamesTheOption) {
+    const Outcome outcome = osculate({"check", press, "--set", "sets.ground.surface=z_mxa"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, testing::StartsWith("--set: sets.ground.surface: expected a surface"));
+}
+
+TEST_F(Refused, SceneThatIsNotThere) {
+    const Outcome outcome = osculate({"run", "nowhere.yaml"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, "nowhere.yaml: expected a readable file, found No such file or directory\n");
+}
+
+TEST_F(Refused, CommandsThatMakeNoSense) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                      {"fly"},
+                                                      {"run"},
+                                                      {"run", press, "--sett", "a=1"},
+                                                      {"run", press, "--set", "a"},
+                                                      {"run", press, "--threads", "0"},
+                                                      {"keys", "no.such.key"}}) {
+        const Outcome outcome = osculate(arguments);
+        EXPECT_EQ(outcome.code, 2) << testing::PrintToString(arguments);
+        EXPECT_NE(outcome.err, "");
+    }
+}
+
+TEST_F(Refused, OutputThatWouldReplaceTheSceneItself) {
+    std::filesystem::copy(press, folder / "scene.yaml");
+    const Outcome outcome = osculate({"run", "scene.yaml", "-o", "."});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, testing::HasSubstr("another output folder"));
+    EXPECT_EQ(content(folder / "scene.yaml"), content(press));
+}
+
+} // namespace
+} // namespace osculate::scenes

@@ -18,6 +18,10 @@ struct RpimCase {
     int m;
 };
 
+void PrintTo(const RpimCase& c, std::ostream* out) {
+    *out << c.name;
+}
+
 /// A 5 x 5 grid shaken by a fifth of its spacing, far from the origin and in millimetre-like units: scaling must cope.
 MatrixX2 shaken_grid(double spacing) {
     Random random(7);

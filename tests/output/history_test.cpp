@@ -1,0 +1,71 @@
+#include "osculate/output/contact_resultants.hpp"
+#include "osculate/output/history.hpp"
+#include "output/temporary_folder.hpp"
+#include "output/two_blocks.hpp"
+
+#include <gmock/gmock.h>
+
+namespace osculate::output {
+namespace {
+
+TEST(ContactResultants, SumClosedNodesOnly) {
+    const TwoBlocks blocks;
+    const ContactResultants sum = contact_resultants(blocks.snapshot(), 0);
+    EXPECT_EQ(sum.force, 4 * TwoBlocks::force);
+    EXPECT_DOUBLE_EQ(sum.normal, 400);
+    EXPECT_DOUBLE_EQ(sum.friction, 120);
+    EXPECT_DOUBLE_EQ(sum.area, 1);
+    EXPECT_EQ(sum.open, 2);
+    EXPECT_EQ(sum.stick, 2);
+    EXPECT_EQ(sum.slip, 2);
+    EXPECT_NEAR(sum.penetration, 0.01, 1e-15);
+    // the forces attack at the moved nodes: their middle is (1.02, 0.5, 0.99)
+    EXPECT_NEAR((sum.moment - Vec3(1.02, 0.5, 0.99).cross(4 * TwoBlocks::force)).norm(), 0, 1e-10);
+}
+
+TEST(ContactResultants, PenetrationOfAnOpenPairIsNotNegative) {
+    TwoBlocks blocks;
+    Timings unused;
+    std::vector<Vec3> x = blocks.model.X;
+    for (Index i = 12; i < 24; ++i) x[i].z() += 0.3;
+    blocks.model.pairs[0]->evaluate(x, unused, 1);
+    EXPECT_EQ(contact_resultants(blocks.snapshot(), 0).penetration, 0);
+}
+
+class HistoryFile : public InTemporaryFolder {};
+
+TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
+    TwoBlocks blocks;
+    blocks.model.pairs.clear();
+    blocks.model.sets = {{"bed", 0, {0, 1}, {}}, {"side", 0, {1, 2}, {}}, {"free", 0, {3}, {}}};
+    const Vec3 skew = Vec3(3, 4, 0) / 5;
+    // node 1 belongs to both: x is the bed's, and asked for by the side once more; y is the side's
+    const model::Constraints constraints(blocks.model.nodes(), {{0, skew, 0, false, false, 0},
+                                                                {1, Vec3::UnitX(), 0, false, false, 0},
+                                                                {1, -Vec3::UnitX(), 0, false, false, 1},
+                                                                {1, Vec3::UnitY(), 0, false, false, 1},
+                                                                {2, Vec3::UnitZ(), 0, true, false, 1}});
+    const std::vector<Vec3> unbalanced(blocks.model.X.size(), Vec3(5, 10, 20));
+    const std::vector<Vec3> reactions = nodal_reactions(constraints, unbalanced);
+    EXPECT_NEAR((reactions[0] - 11 * skew).norm(), 0, 1e-13);
+    EXPECT_EQ(reactions[1], Vec3(5, 10, 0));
+    EXPECT_EQ(reactions[3], Vec3(0, 0, 0)) << "round-off of free nodes is no reaction";
+    {
+        History history(folder / "history.csv", blocks.model, true, {0, 1});
+        history.row({blocks.model, blocks.state, reactions}, constraints, 0.5, 3);
+        // bed: 11 (0.6, 0.8, 0) + (5, 0, 0); side: (0, 10, 0) + (0, 0, 20)
+        EXPECT_EQ(content(folder / "history.csv"),
+                  "time,dt,iterations,set.bed.reaction_x,set.bed.reaction_y,set.bed.reaction_z,set.side.reaction_x,"
+                  "set.side.reaction_y,set.side.reaction_z\n2.5,0.5,3,11.6,8.8,0,0,10,20\n")
+            << "readable while the run goes on";
+    }
+}
+
+TEST_F(HistoryFile, LeavesOutWhatIsNotAskedFor) {
+    const TwoBlocks blocks;
+    const History nothing(folder / "history.csv", blocks.model, false, {});
+    EXPECT_EQ(content(folder / "history.csv"), "time,dt,iterations\n");
+}
+
+} // namespace
+} // namespace osculate::output

@@ -1,0 +1,395 @@
+#include "osculate/solve/kinsol_solver.hpp"
+
+#include "osculate/core/error.hpp"
+#include "osculate/core/timing.hpp"
+#include "systems.hpp"
+
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace osculate::solve {
+namespace {
+
+using namespace testing;
+using Verdict = NonlinearProblem::Verdict;
+
+/// A problem from two functions, with a diary of its residuals.
+struct Problem : NonlinearProblem {
+    [[nodiscard]] Index size() const override { return static_cast<Index>(J.rows()); }
+    Verdict residual(const double* z, double* F) override {
+        at = Eigen::Map<const Vector>(z, size());
+        Eigen::Map<Vector> f(F, size());
+        const Verdict verdict = evaluate(at, f);
+        residuals.push_back(f.cwiseAbs().maxCoeff());
+        return verdict;
+    }
+    const SparseMatrix& jacobian() override {
+        if (linearise) {
+            linearise(at, J);
+            ++J.revision;
+        }
+        return J;
+    }
+
+    SparseMatrix J;
+    std::function<Verdict(const Vector& z, Eigen::Map<Vector>& F)> evaluate;
+    std::function<void(const Vector& z, SparseMatrix& J)> linearise; ///< absent: J never changes
+    Vector at;
+    std::vector<double> residuals;
+};
+
+KinsolOptions options_for(const Problem& problem) {
+    KinsolOptions options;
+    options.unknown_scale = Vector::Ones(problem.size());
+    return options;
+}
+
+KinsolResult run(Problem& problem, Vector& z, const KinsolOptions& options) {
+    Timings timings;
+    KinsolSolver solver(problem.size(), timings);
+    return solver.solve(problem, z, options);
+}
+KinsolResult run(Problem& problem, Vector& z) {
+    return run(problem, z, options_for(problem));
+}
+
+/// K u = f.
+Problem linear(int n, const Vector& f) {
+    Problem p;
+    p.J = laplacian(n);
+    p.evaluate = [K = p.J, f](const Vector& u, Eigen::Map<Vector>& F) {
+        K.multiply(u.data(), F.data());
+        F -= f;
+        return Verdict::proceed;
+    };
+    return p;
+}
+
+/// K u + u^3 = f.
+Problem cubic(int n, const Vector& f) {
+    Problem p;
+    p.J = laplacian(n);
+    const SparseMatrix K = p.J;
+    p.evaluate = [K, f](const Vector& u, Eigen::Map<Vector>& F) {
+        K.multiply(u.data(), F.data());
+        F += u.cwiseProduct(u).cwiseProduct(u) - f;
+        return Verdict::proceed;
+    };
+    p.linearise = [K](const Vector& u, SparseMatrix& J) {
+        J.value = K.value;
+        for (Index i = 0; i < u.size(); ++i) diagonal(J, i) += 3 * u(i) * u(i);
+    };
+    return p;
+}
+
+/// One unknown: F(z) = f(z), J = df(z).
+Problem scalar(std::function<double(double)> f, std::function<double(double)> df) {
+    Problem p;
+    p.J = sparse(Matrix::Ones(1, 1), false);
+    p.evaluate = [f](const Vector& z, Eigen::Map<Vector>& F) {
+        F(0) = f(z(0));
+        return std::isnan(F(0)) ? Verdict::shorten : Verdict::proceed;
+    };
+    p.linearise = [df](const Vector& z, SparseMatrix& J) { J.value[0] = df(z(0)); };
+    return p;
+}
+
+TEST(KinsolSolver, ConvergesQuadratically) {
+    const int n = 20; // 8000 unknowns
+    Problem p = cubic(n, Vector::Constant(n * n * n, 10));
+    Vector u = Vector::Zero(p.size());
+    KinsolOptions options = options_for(p);
+    options.tolerance = 1e-10;
+    const KinsolResult result = run(p, u, options);
+    EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+    EXPECT_LE(result.residual, options.tolerance);
+    EXPECT_EQ(result.residual, p.residuals.back());
+    ASSERT_GE(p.residuals.size(), 5u);
+    EXPECT_EQ(result.iterations + 1, static_cast<int>(p.residuals.size())); // one evaluation an iterate
+    EXPECT_EQ(result.factorisations, result.iterations);
+    const double round_off = 1e-12; // of residuals, forces of order ten
+    for (std::size_t k = p.residuals.size() - 3; k < p.residuals.size(); ++k)
+        EXPECT_LT(p.residuals[k], p.residuals[k - 1] * p.residuals[k - 1] + round_off);
+    Vector F(p.size());
+    Eigen::Map<Vector> map(F.data(), F.size());
+    p.evaluate(u, map);
+    EXPECT_LE(F.cwiseAbs().maxCoeff(), options.tolerance) << "u is not the iterate that was judged";
+}
+
+TEST(KinsolSolver, SolvesALinearSystemInOneIteration) {
+    const int n = 6;
+    Problem p = linear(n, Vector::Constant(n * n * n, 1e6)); // far from the start: no step may be cut
+    Vector u = Vector::Zero(p.size());
+    KinsolOptions options = options_for(p);
+    options.residual_scale = 1e-6;
+    const KinsolResult result = run(p, u, options);
+    EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+    EXPECT_EQ(result.iterations, 1);
+    EXPECT_EQ(result.factorisations, 1);
+    EXPECT_GT(u.maxCoeff(), 1e5);
+}
+
+TEST(KinsolSolver, NeedsNoIterationFromTheSolution) {
+    const int n = 4;
+    Problem p = cubic(n, Vector::Zero(n * n * n));
+    Vector u = Vector::Zero(p.size());
+    const KinsolResult result = run(p, u);
+    EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+    EXPECT_EQ(result.iterations, 0);
+    EXPECT_EQ(result.factorisations, 0);
+    EXPECT_EQ(u, Vector::Zero(p.size()));
+}
+
+TEST(KinsolSolver, MeasuresTheResidualWithItsScale) {
+    const int n = 4;
+    const auto residual_left = [&](double scale) {
+        Problem p = cubic(n, Vector::Constant(n * n * n, 10));
+        Vector u = Vector::Zero(p.size());
+        KinsolOptions options = options_for(p);
+        options.tolerance = 1e-3;
+        options.residual_scale = scale;
+        const KinsolResult result = run(p, u, options);
+        EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+        EXPECT_DOUBLE_EQ(result.residual, p.residuals.back() * scale);
+        return p.residuals.back();
+    };
+    EXPECT_GT(residual_left(0.1), 1e-5); // 1e-2 allowed: stops earlier
+    EXPECT_LT(residual_left(1000), 1e-6);
+}
+
+/// Membrane under a load, over an obstacle: min(K u - f, u - psi) = 0, solved as a semismooth equation.
+TEST(KinsolSolver, SolvesAnObstacleProblem) {
+    const int n = 12;
+    const SparseMatrix K = laplacian(n);
+    const Vector f = Vector::Constant(n * n * n, -0.2), psi = Vector::Constant(n * n * n, -0.5);
+    Problem p;
+    p.J = K;
+    p.J.symmetric_positive_definite = false;
+    const auto force = [&](const Vector& u) {
+        Vector r(u.size());
+        K.multiply(u.data(), r.data());
+        return Vector(r - f);
+    };
+    p.evaluate = [&](const Vector& u, Eigen::Map<Vector>& F) {
+        F = force(u).cwiseMin(u - psi);
+        return Verdict::proceed;
+    };
+    p.linearise = [&](const Vector& u, SparseMatrix& J) {
+        const Vector r = force(u);
+        J.value = K.value;
+        for (Index i = 0; i < u.size(); ++i)
+            if (u(i) - psi(i) < r(i)) {
+                std::fill(J.value.begin() + J.row_start[i], J.value.begin() + J.row_start[i + 1], 0.0);
+                diagonal(J, i) = 1;
+            }
+    };
+    Vector u = Vector::Zero(p.size());
+    const KinsolResult result = run(p, u);
+    EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+    const Vector r = force(u);
+    const double solved = 1e-9; // the solver's tolerance
+    EXPECT_GT((u - psi).minCoeff(), -solved) << "through the obstacle";
+    EXPECT_GT(r.minCoeff(), -solved) << "the obstacle pulls";
+    EXPECT_LT(r.cwiseProduct(u - psi).cwiseAbs().maxCoeff(), solved);
+    const auto touching = (u - psi).cwiseAbs().array() < solved;
+    EXPECT_GT(touching.count(), 0);
+    EXPECT_LT(touching.count(), u.size());
+    const double round_off = 1e-12; // once the active set is right the problem is linear: no tail at all
+    EXPECT_LT(p.residuals.back(), round_off);
+}
+
+TEST(KinsolSolver, KeepsTheFactorOfATangentThatHasNotChanged) {
+    const int n = 6;
+    Timings timings;
+    KinsolSolver solver(n * n * n, timings);
+    Problem first = linear(n, Vector::Constant(n * n * n, 1)), second = linear(n, Vector::Constant(n * n * n, -3));
+    Vector u = Vector::Zero(first.size());
+    EXPECT_EQ(solver.solve(first, u, options_for(first)).factorisations, 1);
+    EXPECT_EQ(solver.solve(second, u, options_for(second)).outcome, KinsolOutcome::converged);
+    EXPECT_EQ(solver.factorisations(), 1);
+    // new values under the same revision are not looked at: with half the tangent Newton goes to and fro
+    Problem scaled = linear(n, Vector::Constant(n * n * n, 1));
+    for (double& v : scaled.J.value) v *= 2;
+    scaled.evaluate = [A = scaled.J](const Vector& at, Eigen::Map<Vector>& F) {
+        A.multiply(at.data(), F.data());
+        F.array() -= 1;
+        return Verdict::proceed;
+    };
+    u.setZero();
+    EXPECT_EQ(solver.solve(scaled, u, options_for(scaled)).outcome, KinsolOutcome::max_iterations);
+    EXPECT_EQ(solver.factorisations(), 1);
+    // and with a new revision they are
+    ++scaled.J.revision;
+    u.setZero();
+    EXPECT_EQ(solver.solve(scaled, u, options_for(scaled)).outcome, KinsolOutcome::converged);
+    EXPECT_EQ(solver.factorisations(), 2);
+    ++scaled.J.pattern;
+    u.setZero();
+    EXPECT_EQ(solver.solve(scaled, u, options_for(scaled)).factorisations, 1);
+    EXPECT_GT(timings[Part::factor], 0);
+    EXPECT_GT(timings[Part::solve], 0);
+}
+
+TEST(KinsolSolver, ChangesBetweenSymmetricAndUnsymmetricTangents) {
+    const int n = 5;
+    Timings timings;
+    KinsolSolver solver(n * n * n, timings);
+    Problem p = linear(n, Vector::Constant(n * n * n, 1));
+    Vector u = Vector::Zero(p.size()), v = u;
+    EXPECT_EQ(solver.solve(p, u, options_for(p)).iterations, 1);
+    p.J.symmetric_positive_definite = false;
+    ++p.J.revision;
+    EXPECT_EQ(solver.solve(p, v, options_for(p)).iterations, 1);
+    EXPECT_EQ(solver.factorisations(), 2);
+    const double round_off = 1e-12; // of displacements of order one
+    EXPECT_LT((u - v).cwiseAbs().maxCoeff(), round_off);
+}
+
+TEST(KinsolSolver, SaysWhenIterationsAreExhausted) {
+    const int n = 5;
+    Problem p = cubic(n, Vector::Constant(n * n * n, 1e4));
+    Vector u = Vector::Zero(p.size());
+    KinsolOptions options = options_for(p);
+    options.max_iterations = 2;
+    const KinsolResult result = run(p, u, options);
+    EXPECT_EQ(result.outcome, KinsolOutcome::max_iterations);
+    EXPECT_EQ(result.iterations, 2);
+    EXPECT_GT(result.residual, options.tolerance);
+}
+
+TEST(KinsolSolver, SaysWhichEquationIsSingular) {
+    const int n = 3;
+    Problem p = linear(n, Vector::Ones(n * n * n));
+    for (SparseIndex k = p.J.row_start[13]; k < p.J.row_start[14]; ++k) p.J.value[k] = 0;
+    for (SparseIndex k = 0; k < p.J.nonzeros(); ++k)
+        if (p.J.column[k] == 13) p.J.value[k] = 0;
+    Vector u = Vector::Zero(p.size());
+    KinsolResult result = run(p, u);
+    EXPECT_EQ(result.outcome, KinsolOutcome::singular);
+    EXPECT_EQ(result.failing_equation, 13);
+    p.J.symmetric_positive_definite = false;
+    u.setZero();
+    result = run(p, u);
+    EXPECT_EQ(result.outcome, KinsolOutcome::singular);
+    EXPECT_TRUE(u.allFinite());
+}
+
+TEST(KinsolSolver, SaysWhenTheResidualIsNotANumber) {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        for (const std::size_t evaluation : {0u, 1u}) {
+            const int n = 3;
+            Problem p = linear(n, Vector::Ones(n * n * n));
+            p.evaluate = [&, good = p.evaluate](const Vector& u, Eigen::Map<Vector>& F) {
+                const Verdict verdict = good(u, F);
+                if (p.residuals.size() == evaluation) F(5) = bad;
+                return verdict;
+            };
+            Vector u = Vector::Zero(p.size());
+            EXPECT_EQ(run(p, u).outcome, KinsolOutcome::not_finite) << bad << " at evaluation " << evaluation;
+        }
+}
+
+TEST(KinsolSolver, StopsWhenTheProblemSaysSo) {
+    const int n = 5;
+    Problem p = cubic(n, Vector::Constant(n * n * n, 1e3));
+    p.evaluate = [&, good = p.evaluate](const Vector& u, Eigen::Map<Vector>& F) {
+        good(u, F);
+        return p.residuals.size() == 2 ? Verdict::stop : Verdict::proceed;
+    };
+    Vector u = Vector::Zero(p.size());
+    EXPECT_EQ(run(p, u).outcome, KinsolOutcome::stopped);
+    EXPECT_EQ(p.residuals.size(), 3u) << "evaluated on after the stop";
+}
+
+TEST(KinsolSolver, ShortensAStepThatCannotBeEvaluated) {
+    // Newton from 5 for log z = 0 lands at -3
+    Problem p = scalar([](double z) { return z > 0 ? std::log(z) : std::nan(""); }, [](double z) { return 1 / z; });
+    Vector z = Vector::Constant(1, 5);
+    EXPECT_EQ(run(p, z).outcome, KinsolOutcome::converged);
+    EXPECT_NEAR(z(0), 1, 1e-8); // the solver's tolerance and a margin
+}
+
+TEST(KinsolSolver, SaysWhenNoStepCanBeEvaluated) {
+    Problem p = scalar([](double z) { return z == 5 ? 1 : std::nan(""); }, [](double) { return 1; });
+    Vector z = Vector::Constant(1, 5);
+    EXPECT_EQ(run(p, z).outcome, KinsolOutcome::not_evaluable);
+    z(0) = 4; // not even the start
+    EXPECT_EQ(run(p, z).outcome, KinsolOutcome::not_evaluable);
+}
+
+TEST(KinsolSolver, ConvergesByLineSearchWhereNewtonDiverges) {
+    const auto problem = [] {
+        return scalar([](double z) { return std::atan(z); }, [](double z) { return 1 / (1 + z * z); });
+    };
+    Problem newton = problem(), searched = problem();
+    Vector z = Vector::Constant(1, 3);
+    EXPECT_NE(run(newton, z).outcome, KinsolOutcome::converged);
+    z(0) = 3;
+    KinsolOptions options = options_for(searched);
+    options.line_search = true;
+    EXPECT_EQ(run(searched, z, options).outcome, KinsolOutcome::converged);
+    EXPECT_NEAR(z(0), 0, 1e-8);
+}
+
+TEST(KinsolSolver, NeverCallsAnUnsolvedProblemConverged) {
+    for (const bool line_search : {false, true}) {
+        Problem p = scalar([](double z) { return z * z + 1; }, [](double z) { return 2 * z; }); // has no root
+        Vector z = Vector::Constant(1, 0.9);
+        KinsolOptions options = options_for(p);
+        options.line_search = line_search;
+        const KinsolResult result = run(p, z, options);
+        EXPECT_NE(result.outcome, KinsolOutcome::converged);
+        EXPECT_GT(result.residual, 0.9);
+    }
+}
+
+TEST(KinsolSolver, SaysWhenALineSearchFindsNoDescent) {
+    // a tangent of the wrong sign leads uphill
+    Problem p = scalar([](double z) { return z * z + 1; }, [](double) { return -1; });
+    Vector z = Vector::Constant(1, 0.9);
+    KinsolOptions options = options_for(p);
+    options.line_search = true;
+    EXPECT_EQ(run(p, z, options).outcome, KinsolOutcome::no_descent);
+}
+
+struct Mishap : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+TEST(KinsolSolver, RethrowsWhatTheProblemThrows) {
+    const int n = 3;
+    Timings timings;
+    KinsolSolver solver(n * n * n, timings);
+    Vector u = Vector::Zero(n * n * n);
+    Problem in_residual = linear(n, Vector::Ones(n * n * n));
+    in_residual.evaluate = [](const Vector&, Eigen::Map<Vector>&) -> Verdict { throw Mishap("residual"); };
+    EXPECT_THROW((void)solver.solve(in_residual, u, options_for(in_residual)), Mishap);
+    Problem in_tangent = linear(n, Vector::Ones(n * n * n));
+    in_tangent.linearise = [](const Vector&, SparseMatrix&) { throw Mishap("tangent"); };
+    EXPECT_THROW((void)solver.solve(in_tangent, u, options_for(in_tangent)), Mishap);
+    Problem good = linear(n, Vector::Ones(n * n * n)); // and is none the worse for it
+    u.setZero();
+    EXPECT_EQ(solver.solve(good, u, options_for(good)).outcome, KinsolOutcome::converged);
+}
+
+TEST(KinsolSolver, RefusesSizesThatDiffer) {
+    Timings timings;
+    KinsolSolver solver(5, timings);
+    Problem p = linear(3, Vector::Ones(27));
+    Vector u = Vector::Zero(27);
+    EXPECT_THROW((void)solver.solve(p, u, options_for(p)), InternalError);
+}
+
+TEST(KinsolOutcome, HasAnExplanationForEachValue) {
+    std::vector<std::string> texts;
+    for (int k = 0; k <= static_cast<int>(KinsolOutcome::not_finite); ++k)
+        texts.push_back(describe(static_cast<KinsolOutcome>(k)));
+    std::sort(texts.begin(), texts.end());
+    EXPECT_EQ(std::unique(texts.begin(), texts.end()), texts.end());
+    EXPECT_EQ(std::count(texts.begin(), texts.end(), "unknown"), 0);
+}
+
+} // namespace
+} // namespace osculate::solve

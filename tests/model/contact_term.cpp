@@ -1,0 +1,149 @@
+#include "osculate/model/contact_term.hpp"
+
+#include "osculate/mesh/generators.hpp"
+#include "support/differences.hpp"
+#include "support/random.hpp"
+
+#include <gtest/gtest.h>
+
+namespace osculate::model {
+namespace {
+
+using osculate::testing::Random;
+
+constexpr double round_off = 1e-10; // of patch weights, condition 1e5
+
+/// Top of the block [0, 5] x [0, 4] as master, facets of size 0.5; slave nodes float over it, after the master's nodes.
+class FlatPair : public ::testing::TestWithParam<bool> {
+protected:
+    void SetUp() override {
+        const mesh::Mesh block = mesh::make_block({0, 0, -1}, {5, 4, 1}, {10, 8, 1});
+        x = block.nodes;
+        auto surface = std::make_unique<mesh::HalfEdgeSurface>(block.surfaces.at("z_max"), block.nodes);
+        std::vector<Vec3> vertices;
+        for (const Index node : surface->vertex_nodes()) vertices.push_back(x[node]);
+        auto master =
+            GetParam() ? contact::make_rpim_surface(*surface, vertices, {}) : contact::make_facets_surface(*surface);
+        SlaveNodes slaves;
+        for (const Vec3& s : {Vec3(1.2, 1.3, 0.1), Vec3(2.6, 2.2, -0.05), Vec3(6, 2, 0.1)}) {
+            slaves.node.push_back(static_cast<Index>(x.size()));
+            slaves.area.push_back(0.25);
+            slaves.stiffness.push_back(3);
+            x.push_back(s);
+        }
+        const std::vector<Index> master_nodes = surface->vertex_nodes();
+        term = std::make_unique<ContactTerm>("pair", slaves, std::move(surface), master_nodes, std::move(master),
+                                             ContactOptions{});
+        term->begin_step(x, term->initial_history(), timings, 1);
+        term->evaluate(x, timings, 1);
+    }
+    [[nodiscard]] Index slave(Index j) const { return term->slaves().node[j]; }
+
+    std::vector<Vec3> x;
+    std::unique_ptr<ContactTerm> term;
+    Timings timings;
+};
+
+TEST_P(FlatPair, FindsEachSlaveOverItsFacet) {
+    ASSERT_EQ(term->size(), 3);
+    EXPECT_TRUE(term->point(0).found);
+    EXPECT_NEAR(term->point(0).gap, 0.1, round_off);
+    EXPECT_NEAR(term->point(1).gap, -0.05, round_off);
+    EXPECT_FALSE(term->point(2).found) << "beside the master";
+    EXPECT_TRUE(term->point_nodes(2).empty());
+    EXPECT_EQ(term->facet_changes(), 0);
+}
+
+TEST_P(FlatPair, NamesPatchNodesInTheOrderOfTheirWeights) {
+    for (Index j = 0; j < 2; ++j) {
+        Vec3 foot = Vec3::Zero();
+        for (std::size_t i = 0; i < term->point_nodes(j).size(); ++i)
+            foot += term->point(j).weights(static_cast<Index>(i)) * x[term->point_nodes(j)[i]];
+        EXPECT_LT((foot - term->point(j).foot).norm(), round_off);
+        EXPECT_EQ(term->patch_nodes(term->facets()[j]), term->point_nodes(j));
+    }
+}
+
+TEST_P(FlatPair, HasNoDriftWhenBothSidesMoveTogether) {
+    for (Vec3& p : x) p += Vec3(0.3, -0.2, 0.1);
+    term->evaluate(x, timings, 1);
+    for (Index j = 0; j < 2; ++j) EXPECT_LT(term->state(j, x, Vec3::Zero()).drift.norm(), round_off);
+}
+
+TEST_P(FlatPair, MeasuresTheDriftOfTheSlaveSinceTheStepBegan) {
+    const Vec3 slip(0.04, -0.03, 0.02), lambda(1, 2, 3);
+    x[slave(0)] += slip;
+    term->evaluate(x, timings, 1);
+    const contact::ContactState state = term->state(0, x, lambda);
+    EXPECT_LT((state.drift - slip).norm(), round_off);
+    EXPECT_EQ(state.lambda, lambda);
+    EXPECT_EQ(state.gap, term->point(0).gap);
+    term->begin_step(x, term->initial_history(), timings, 1);
+    term->evaluate(x, timings, 1);
+    EXPECT_LT(term->state(0, x, lambda).drift.norm(), round_off) << "measured anew from the next step";
+}
+
+TEST_P(FlatPair, HasTheExactVariationOfTheDrift) {
+    Random random(81);
+    for (Vec3& p : x) p += random.vector(0.02); // so that feet and weights move with every node
+    term->evaluate(x, timings, 1);
+    const double step = 1e-5, tolerance = 1e-6; // round-off 1e-12 / 1e-5 and curvature 1e-10, with a margin
+    for (Index j = 0; j < 2; ++j) {
+        Matrix dd;
+        term->drift_variation(j, x, dd);
+        std::vector<Index> touched{slave(j)};
+        touched.insert(touched.end(), term->point_nodes(j).begin(), term->point_nodes(j).end());
+        Vector y(3 * static_cast<Index>(touched.size()));
+        for (std::size_t i = 0; i < touched.size(); ++i) y.segment<3>(3 * static_cast<Index>(i)) = x[touched[i]];
+        const Matrix differences = osculate::testing::central_differences(
+            [&](const Vector& at) -> Vector {
+                std::vector<Vec3> moved = x;
+                for (std::size_t i = 0; i < touched.size(); ++i)
+                    moved[touched[i]] = at.segment<3>(3 * static_cast<Index>(i));
+                term->evaluate(moved, timings, 1);
+                return term->state(j, moved, Vec3::Zero()).drift;
+            },
+            y, step);
+        EXPECT_LT(osculate::testing::relative_difference(dd, differences), tolerance);
+        term->evaluate(x, timings, 1);
+    }
+}
+
+TEST_P(FlatPair, FollowsASlidingSlaveFromFacetToFacet) {
+    const Index before = term->facets()[0];
+    x[slave(0)].x() += 0.5;
+    term->evaluate(x, timings, 2);
+    EXPECT_NE(term->facets()[0], before);
+    EXPECT_EQ(term->facet_changes(), 1);
+    EXPECT_NEAR(term->point(0).gap, 0.1, round_off);
+}
+
+/// The projection itself does not depend on the facet on a flat master, so the latch costs nothing here.
+TEST_P(FlatPair, StaysOnItsFacetAfterFourChangesInOneAttempt) {
+    for (int change = 0; change < 7; ++change) {
+        x[slave(0)].x() += change % 2 == 0 ? 0.5 : -0.5;
+        term->evaluate(x, timings, 1);
+        EXPECT_EQ(term->facet_changes(), change < 4) << change;
+    }
+    term->begin_step(x, term->initial_history(), timings, 1);
+    x[slave(0)].x() -= 0.5;
+    term->evaluate(x, timings, 1);
+    EXPECT_EQ(term->facet_changes(), 1) << "a new attempt is free again";
+}
+
+TEST_P(FlatPair, SearchesOpenSlavesAnewAndKeepsTheFacetsOfClosedOnes) {
+    ContactHistory history = term->initial_history();
+    history.facet = term->facets();
+    history.status[1] = contact::Status::stick;
+    const Index kept = history.facet[1];
+    for (Index j = 0; j < 2; ++j) x[slave(j)] += Vec3(1.5, 0, 0);
+    term->begin_step(x, history, timings, 1);
+    EXPECT_NE(term->facets()[0], history.facet[0]);
+    EXPECT_EQ(term->facets()[1], kept);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, FlatPair, ::testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "Rpim" : "Facets"; });
+
+} // namespace
+} // namespace osculate::model

@@ -12,7 +12,7 @@ namespace osculate::contact {
 
 namespace {
 
-/// A foot beyond the boundary by more than this fraction of the facet's size is no contact; less is round-off of meshes
+/// A point beyond the boundary by more than this fraction of the facet's size is no contact; less is round-off of meshes
 /// that end together.
 constexpr double boundary_margin = 0.01;
 /// A point deeper than this many facet sizes is behind the surface, not in contact with it.
@@ -22,7 +22,7 @@ constexpr double largest_turn = 80 * std::numbers::pi / 180;
 constexpr double smallest_projection = 0.05;
 
 bool beyond_boundary(const FacetHit& hit, double facet_size) {
-    return hit.facet < 0 || (hit.boundary && hit.overhang > boundary_margin * facet_size);
+    return hit.facet < 0 || hit.beyond > boundary_margin * facet_size;
 }
 
 template <class Patch>

@@ -36,6 +36,25 @@ Vec2 on_edge(int corners, int b, double t) {
     const Vec2* corner = corners == 4 ? square : triangle;
     return (1 - t) * corner[b] + t * corner[(b + 1) % corners];
 }
+
+/// How far s lies past the boundary edges that meet in a vertex, the farthest of them. A point over the fold between two
+/// facets that end there lies beyond the edges of both, but not past the end of the surface.
+double past_boundary(const mesh::HalfEdgeSurface& surface, Index vertex, const Vec3& s, const std::vector<Vec3>& x) {
+    double farthest = -std::numeric_limits<double>::max();
+    for (const Index facet : surface.vertex_facets(vertex)) {
+        const auto v = surface.facet_vertices(facet);
+        const std::size_t n = v.size();
+        for (std::size_t c = 0; c < n; ++c) {
+            const Vec3 &a = x[v[c]], &b = x[v[(c + 1) % n]], &before = x[v[(c + n - 1) % n]];
+            if ((v[c] != vertex && v[(c + 1) % n] != vertex) ||
+                !surface.is_boundary_edge(surface.first_half_edge(facet) + static_cast<Index>(c)))
+                continue;
+            const Vec3 along = b - a, normal = along.cross(before - a);
+            farthest = std::max(farthest, along.cross(normal).normalized().dot(s - x[vertex]));
+        }
+    }
+    return farthest;
+}
 } // namespace
 
 struct FacetSearch::Tree {
@@ -89,6 +108,10 @@ FacetHit FacetSearch::closest_on(Index facet, const Vec3& s, const std::vector<V
     hit.boundary = fraction == 0   ? on_boundary(edge)
                    : fraction == 1 ? on_boundary(edge + 1)
                                    : surface_->is_boundary_edge(surface_->first_half_edge(facet) + edge);
+    if (hit.boundary && fraction > 0 && fraction < 1)
+        hit.beyond = hit.overhang;
+    else if (hit.boundary)
+        hit.beyond = std::max(0.0, past_boundary(*surface_, vertices[(edge + (fraction == 1)) % corners], s, x));
     return hit;
 }
 

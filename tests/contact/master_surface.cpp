@@ -296,6 +296,16 @@ TEST(HollowMaster, IsNotFoundNearItsAxis) {
     }
 }
 
+TEST(HollowMaster, FindsPenetrationInAFoldAtItsEnd) {
+    for (const bool smooth : {false, true}) {
+        const auto m = make(half_tube(), smooth); // the lowest line is an edge, and y = 0 the end
+        for (const double depth : {0.01, 0.1, 0.3}) {
+            EXPECT_TRUE(m->at({0, 0, -tube_radius - depth}).found) << depth;
+            EXPECT_FALSE(m->at({0, -0.01, -tube_radius - depth}).found) << depth;
+        }
+    }
+}
+
 TEST(RpimSurface, TakesOneRingLessWhereItsPatchWouldOverlap) {
     const double no_features = std::numbers::pi;
     // three facets around turn by 60 degrees: seen from an end facet, the second ring is turned by 120

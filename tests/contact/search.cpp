@@ -196,6 +196,19 @@ TEST(FacetSearch, KeepsTheFacetUntilAnotherIsCloserByTheMargin) {
     EXPECT_EQ(search.track(s, left, surface.x, 0.9 * difference / size).facet, right);
 }
 
+/// Behind a hollow surface the points between two facets are nearest to their common edge, and beyond both facets.
+TEST(FacetSearch, TellsTheFoldAtTheEndOfASurfaceFromBeyondIt) {
+    const Surface surface = half_tube();
+    FacetSearch search(surface.topology);
+    search.build(surface.x);
+    const Vec3 in_the_fold(0, 0, -tube_radius - 0.3), past_the_end(0, -0.1, -tube_radius - 0.3);
+    const FacetHit inside = search.global(in_the_fold, surface.x), outside = search.global(past_the_end, surface.x);
+    EXPECT_TRUE(inside.boundary);
+    EXPECT_GT(inside.overhang, 0.03);
+    EXPECT_NEAR(inside.beyond, 0, round_off);
+    EXPECT_NEAR(outside.beyond, 0.1, round_off);
+}
+
 class Flags : public ::testing::TestWithParam<mesh::BlockPattern> {
 protected:
     const Surface surface = block_top(GetParam());
@@ -209,6 +222,7 @@ TEST_P(Flags, SayThatAnInnerPointHasNoOverhang) {
     EXPECT_NEAR(hit.distance, 0.3, round_off);
     EXPECT_EQ(hit.overhang, 0);
     EXPECT_FALSE(hit.boundary);
+    EXPECT_EQ(hit.beyond, 0);
 }
 
 TEST_P(Flags, MeasureTheOverhangPastAnEdgeOfTheSurface) {
@@ -216,12 +230,14 @@ TEST_P(Flags, MeasureTheOverhangPastAnEdgeOfTheSurface) {
     EXPECT_NEAR(hit.distance, 0.5, round_off); // 0.3, 0.4, 0.5
     EXPECT_NEAR(hit.overhang, 0.3, round_off);
     EXPECT_TRUE(hit.boundary);
+    EXPECT_NEAR(hit.beyond, 0.3, round_off);
 }
 
 TEST_P(Flags, MeasureTheOverhangPastACornerOfTheSurface) {
     const FacetHit hit = search.global({5.3, 4.4, -0.2}, surface.x);
     EXPECT_NEAR(hit.overhang, 0.5, round_off);
     EXPECT_TRUE(hit.boundary);
+    EXPECT_NEAR(hit.beyond, 0.4, round_off) << "the farther of the two edges";
 }
 
 TEST_P(Flags, KnowAnInnerEdgeFromABoundary) {
@@ -237,6 +253,7 @@ TEST_P(Flags, KnowAnInnerEdgeFromABoundary) {
             const bool boundary = surface.topology.is_boundary_edge(surface.topology.first_half_edge(f) + Index(c));
             EXPECT_NEAR(hit.overhang, 0.1, round_off);
             EXPECT_EQ(hit.boundary, boundary);
+            EXPECT_NEAR(hit.beyond, boundary ? 0.1 : 0, round_off);
             ++(boundary ? boundary_edges : inner_edges);
 
             const FacetHit corner = search.closest_on(f, surface.x[v[c]] + 0.1 * (surface.x[v[c]] - centre), surface.x);

@@ -312,7 +312,7 @@ private:
                            },
                        },
                        spec.master.surface);
-        return std::make_unique<model::ContactTerm>(name, std::move(slaves), std::move(surface), master_nodes,
+        return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface), master_nodes,
                                                     std::move(shape), options);
     }
 

@@ -28,12 +28,16 @@ bool beyond_boundary(const FacetHit& hit, double facet_size) {
 template <class Patch>
 bool evaluate_on(const Patch& patch, std::span<const Index> vertices, const Vec2& start, const Vec3& s,
                  const std::vector<Vec3>& x, double facet_size, ContactPoint& point) {
+    // from a node of the patch: the round-off of X = Phi_i x_i must not grow with the distance from the origin
+    const Vec3 origin = x[vertices[0]], from_origin = s - origin;
     MatrixX3 nodes(static_cast<Index>(vertices.size()), 3);
-    for (std::size_t i = 0; i < vertices.size(); ++i) nodes.row(static_cast<Index>(i)) = x[vertices[i]].transpose();
-    const auto foot = project(patch, patch.coefficients(nodes), s, start);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        nodes.row(static_cast<Index>(i)) = (x[vertices[i]] - origin).transpose();
+    const auto foot = project(patch, patch.coefficients(nodes), from_origin, start);
     if (!foot) return false;
     point.nodes.assign(vertices.begin(), vertices.end());
-    if (!vary(patch, *foot, s, point)) return false;
+    if (!vary(patch, *foot, from_origin, point)) return false;
+    point.foot += origin;
     point.behind = point.gap <= -deepest * facet_size;
     return !point.behind;
 }

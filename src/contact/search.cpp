@@ -24,6 +24,9 @@ Point to_point(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
+/// Distances that differ by less than this fraction of the facet size count as equal.
+constexpr double tie = 1e-6;
+
 bool inside(const Vec2& u, int corners) {
     if (corners == 4) return u.cwiseAbs().maxCoeff() <= 1;
     return u.minCoeff() >= 0 && u.sum() <= 1;
@@ -68,6 +71,35 @@ FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface) : surface_(&surfa
         neighbour_start_.push_back(static_cast<Index>(neighbours_.size()));
     }
 }
+FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const Vec3& about)
+    : FacetSearch(surface) {
+    for (Index f = 0; f < surface.facet_count(); ++f) {
+        const auto vertices = surface.facet_vertices(f);
+        Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
+        for (std::size_t b = 0; b < vertices.size(); ++b) {
+            const Vec3 here = X[vertices[b]] - about, next = X[vertices[(b + 1) % vertices.size()]] - about;
+            centre += here / static_cast<double>(vertices.size());
+            area += here.cross(next);
+        }
+        centre_.push_back(centre);
+        normal_.push_back(area.normalized());
+    }
+}
+
+bool FacetSearch::better(const FacetHit& a, const FacetHit& b) const {
+    if (b.facet < 0 || a.facet == b.facet) return a.distance < b.distance;
+    const double size = surface_->facet_size(b.facet);
+    if (std::abs(a.distance - b.distance) > tie * size) return a.distance < b.distance;
+    if (!centre_.empty()) {
+        const Vec3 &ca = centre_[a.facet], &cb = centre_[b.facet];
+        const double nearer = cb.norm() - ca.norm();
+        if (std::abs(nearer) > tie * size) return nearer > 0;
+        const double turn = ca.cross(cb).dot(normal_[a.facet] + normal_[b.facet]);
+        if (std::abs(turn) > tie * size * size) return turn > 0;
+    }
+    return a.distance < b.distance || (a.distance == b.distance && a.facet < b.facet);
+}
+
 FacetSearch::~FacetSearch() = default;
 FacetSearch::FacetSearch(FacetSearch&&) noexcept = default;
 FacetSearch& FacetSearch::operator=(FacetSearch&&) noexcept = default;
@@ -138,9 +170,10 @@ FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x) const {
     const auto every = static_cast<unsigned>(surface_->facet_count());
     for (auto leaf = tree_->boxes.qbegin(bgi::nearest(at, every)); leaf != tree_->boxes.qend(); ++leaf) {
         // boxes come in order of distance: once a box is farther than the best facet, so is everything behind it
-        if (bg::distance(at, leaf->first) > best.distance) break;
+        if (best.facet >= 0 && bg::distance(at, leaf->first) > best.distance + tie * surface_->facet_size(best.facet))
+            break;
         const FacetHit hit = closest_on(leaf->second, s, x);
-        if (hit.distance < best.distance || (hit.distance == best.distance && hit.facet < best.facet)) best = hit;
+        if (better(hit, best)) best = hit;
     }
     return best;
 }
@@ -152,7 +185,7 @@ FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& 
         const Index centre = best.facet;
         for (Index k = neighbour_start_[centre]; k < neighbour_start_[centre + 1]; ++k) {
             const FacetHit hit = closest_on(neighbours_[k], s, x);
-            if (hit.distance < best.distance) best = hit;
+            if (better(hit, best)) best = hit;
         }
         if (best.facet == centre) break;
     }

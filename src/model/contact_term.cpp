@@ -12,26 +12,33 @@ namespace {
 constexpr int changes_before_latch = 4;
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
+
+std::vector<Vec3> positions(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
+    std::vector<Vec3> v(nodes.size());
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = x[nodes[i]];
+    return v;
+}
+
+Vec3 centre(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index node : nodes) sum += x[node];
+    return sum / static_cast<double>(nodes.size());
+}
 } // namespace
 
-ContactTerm::ContactTerm(std::string name, SlaveNodes slaves, std::unique_ptr<mesh::HalfEdgeSurface> surface,
-                         std::vector<Index> master_nodes, std::unique_ptr<contact::MasterSurface> master,
-                         const ContactOptions& options)
+ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
+                         std::unique_ptr<mesh::HalfEdgeSurface> surface, std::vector<Index> master_nodes,
+                         std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options)
     : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
-      master_nodes_(std::move(master_nodes)), master_(std::move(master)), search_(*surface_), options_(options), held_(slaves_.node.size(), 0),
-      facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0), hits_(slaves_.node.size()),
-      points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {}
+      master_nodes_(std::move(master_nodes)), master_(std::move(master)),
+      search_(*surface_, positions(X, master_nodes_), centre(X, slaves_.node)), options_(options),
+      held_(slaves_.node.size(), 0), facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0),
+      hits_(slaves_.node.size()), points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {}
 
 ContactHistory ContactTerm::initial_history() const {
     const std::size_t n = slaves_.node.size();
     return {std::vector<Vec3>(n, Vec3::Zero()), std::vector<contact::Status>(n, contact::Status::open),
             std::vector<Index>(n, -1)};
-}
-
-std::vector<Vec3> ContactTerm::vertices(const std::vector<Vec3>& x) const {
-    std::vector<Vec3> v(master_nodes_.size());
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = x[master_nodes_[i]];
-    return v;
 }
 
 void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& history, Timings& timings, int threads) {
@@ -40,7 +47,7 @@ void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& h
     lambda_start_ = history.lambda;
     std::fill(changes_.begin(), changes_.end(), 0);
     const ScopedTimer timer(timings, Part::search);
-    vertices_ = vertices(x);
+    vertices_ = positions(x, master_nodes_);
     search_.build(vertices_);
     parallel_for(threads, size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j)
@@ -52,7 +59,7 @@ void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& h
 void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int threads) {
     {
         const ScopedTimer timer(timings, Part::search);
-        vertices_ = vertices(x);
+        vertices_ = positions(x, master_nodes_);
         parallel_for(threads, size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
                 const Vec3& s = x[slaves_.node[j]];

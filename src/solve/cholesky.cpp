@@ -1,5 +1,6 @@
 #include "osculate/core/error.hpp"
 #include "osculate/solve/direct_solver.hpp"
+#include "solve/blas_threads.hpp"
 
 #include <cholmod.h>
 #include <cstring>
@@ -10,6 +11,7 @@ namespace {
 class Cholesky final : public DirectSolver {
 public:
     Cholesky() {
+        use_one_blas_thread();
         cholmod_l_start(&common_);
         common_.print = 0; // a failed factorisation is an outcome here, not a message
         common_.supernodal = CHOLMOD_SUPERNODAL;

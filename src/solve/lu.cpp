@@ -1,5 +1,6 @@
 #include "osculate/core/error.hpp"
 #include "osculate/solve/direct_solver.hpp"
+#include "solve/blas_threads.hpp"
 
 #include <array>
 #include <cmath>
@@ -14,6 +15,7 @@ constexpr double singular_rcond = 1e-16;
 class Lu final : public DirectSolver {
 public:
     Lu() {
+        use_one_blas_thread();
         umfpack_dl_defaults(control_.data());
         control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
         control_[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;

@@ -9,8 +9,8 @@
 namespace osculate {
 namespace {
 
-using support::SceneRun;
 using support::RunStep;
+using support::SceneRun;
 
 constexpr double mu = 0.1;
 

@@ -20,7 +20,9 @@ struct Case {
     const char* support; ///< of the driven face
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << c.name;
+}
 
 class Tangent : public testing::TestWithParam<Case> {};
 
@@ -82,8 +84,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
 
     double worst = 0;
     int closed = 0;
-    for (Index j = 0; j < plan.model.pairs[0]->size(); ++j)
-        closed += contact::is_closed(equilibrium.statuses()[0][j]);
+    for (Index j = 0; j < plan.model.pairs[0]->size(); ++j) closed += contact::is_closed(equilibrium.statuses()[0][j]);
     ASSERT_GT(closed, plan.model.pairs[0]->size() / 2) << "the trial state must touch";
     for (Index k = 0; k < z.size(); ++k) {
         const double scale = k < constraints.equations() ? 1 : force, h = difference_step * scale;
@@ -99,19 +100,20 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     EXPECT_LT(worst, tolerance);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, Tangent,
-    testing::Values(Case{"hex8_facets", "hex8", "full", "facets", "{fix: [x]}"},
-                    Case{"hex8_b_bar_rpim", "hex8", "b_bar", "{rpim: {ring: 2}}", "{fix: [x]}"},
-                    Case{"hex8_incompatible_rpim_tangential", "hex8", "incompatible_modes",
-                         "{rpim: {ring: 1, coordinates: tangential}}", "{fix: [x]}"},
-                    Case{"wedge6_facets", "wedge6", "full", "facets", "{fix: [x]}"},
-                    Case{"wedge6_rpim", "wedge6", "full", "{rpim: {ring: 1}}", "{fix: [x]}"},
-                    Case{"tet4_facets", "tet4", "full", "facets", "{fix: [x]}"},
-                    Case{"tet4_rpim", "tet4", "full", "{rpim: {ring: 2, m: 3}}", "{fix: [x]}"},
-                    Case{"turned_support", "hex8", "full", "{rpim: {ring: 1}}", "{axes: [[0.6, 0.8, 0], [-0.8, 0.6, 0]]}"},
-                    Case{"symmetry", "hex8", "full", "{rpim: {ring: 1}}", "{symmetry: [0.6, 0, 0.8]}"}),
-    [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, Tangent,
+                         testing::Values(Case{"hex8_facets", "hex8", "full", "facets", "{fix: [x]}"},
+                                         Case{"hex8_b_bar_rpim", "hex8", "b_bar", "{rpim: {ring: 2}}", "{fix: [x]}"},
+                                         Case{"hex8_incompatible_rpim_tangential", "hex8", "incompatible_modes",
+                                              "{rpim: {ring: 1, coordinates: tangential}}", "{fix: [x]}"},
+                                         Case{"wedge6_facets", "wedge6", "full", "facets", "{fix: [x]}"},
+                                         Case{"wedge6_rpim", "wedge6", "full", "{rpim: {ring: 1}}", "{fix: [x]}"},
+                                         Case{"tet4_facets", "tet4", "full", "facets", "{fix: [x]}"},
+                                         Case{"tet4_rpim", "tet4", "full", "{rpim: {ring: 2, m: 3}}", "{fix: [x]}"},
+                                         Case{"turned_support", "hex8", "full", "{rpim: {ring: 1}}",
+                                              "{axes: [[0.6, 0.8, 0], [-0.8, 0.6, 0]]}"},
+                                         Case{"symmetry", "hex8", "full", "{rpim: {ring: 1}}",
+                                              "{symmetry: [0.6, 0, 0.8]}"}),
+                         [](const auto& tested) { return tested.param.name; });
 
 } // namespace
 } // namespace osculate

@@ -23,6 +23,11 @@ struct FacetHit {
 class FacetSearch {
 public:
     explicit FacetSearch(const mesh::HalfEdgeSurface& surface);
+    /// The same, with a rule for points that are equally close to several facets, as on mesh lines: the facet whose centre
+    /// lies nearer to `about` is taken, then the one that comes first turning right about the surface normal. Unlike facet
+    /// numbers and round-off, that does not change when the scene is moved, renumbered or rescaled.
+    /// @param X      reference positions of the surface's vertices  @param about  e.g. the centre of the slave nodes
+    FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const Vec3& about);
     ~FacetSearch();
     FacetSearch(FacetSearch&&) noexcept;
     FacetSearch& operator=(FacetSearch&&) noexcept;
@@ -40,8 +45,11 @@ public:
 
 private:
     struct Tree;
+    /// Whether hit a is to be taken rather than b.
+    [[nodiscard]] bool better(const FacetHit& a, const FacetHit& b) const;
     const mesh::HalfEdgeSurface* surface_;
     std::vector<Index> neighbour_start_{0}, neighbours_; ///< facets that share a vertex with each facet
+    std::vector<Vec3> centre_, normal_;                  ///< of each facet, from `about`; empty without the rule
     std::unique_ptr<Tree> tree_;
 };
 

@@ -37,10 +37,11 @@ struct ContactOptions {
 
 class ContactTerm {
 public:
+    /// @param X            reference positions of all nodes
     /// @param master_nodes global node of every vertex of `surface`
-    ContactTerm(std::string name, SlaveNodes slaves, std::unique_ptr<mesh::HalfEdgeSurface> surface,
-                std::vector<Index> master_nodes, std::unique_ptr<contact::MasterSurface> master,
-                const ContactOptions& options);
+    ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
+                std::unique_ptr<mesh::HalfEdgeSurface> surface, std::vector<Index> master_nodes,
+                std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options);
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] Index size() const { return static_cast<Index>(slaves_.node.size()); }
@@ -74,8 +75,6 @@ public:
     [[nodiscard]] int facet_changes() const { return facet_changes_; }
 
 private:
-    [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const;
-
     std::string name_;
     SlaveNodes slaves_;
     std::unique_ptr<mesh::HalfEdgeSurface> surface_;

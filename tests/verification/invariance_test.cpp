@@ -1,0 +1,157 @@
+/// The half-tube says the same wherever it lies, however it is numbered and in whatever units it is written.
+
+#include "support/scene_runner.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <random>
+
+namespace osculate {
+namespace {
+
+/// The solver's tolerance is 1e-10 here; what is left is round-off times the conditioning of the problem.
+constexpr double same = 1e-8;
+
+std::vector<scene::Override> base(const char* surface) {
+    return {{"contact.sliding.surface", surface},
+            {"stages.slide.steps", "3"},
+            {"stages.slide.displacement.rear.y", "0.3 m"},
+            {"solver.tolerance", "1e-10"}};
+}
+
+class Invariance : public testing::TestWithParam<const char*> {
+protected:
+    using Meshes = std::vector<mesh::Mesh>;
+    static void leave(Meshes&) {}
+
+    static void expect_same(const support::SceneRun& a, const support::SceneRun& b, const Mat3& turn, double length,
+                            double force, const std::vector<Index>& number) {
+        ASSERT_EQ(a.steps.size(), b.steps.size());
+        for (std::size_t k = 0; k < a.steps.size(); ++k) {
+            EXPECT_EQ(a.steps[k].iterations, b.steps[k].iterations);
+            const Vec3 expected = force * (turn * a.steps[k].pairs[0].on_slave);
+            EXPECT_LT((b.steps[k].pairs[0].on_slave - expected).norm(), same * expected.norm()) << "step " << k;
+            double largest = 0, worst = 0;
+            for (std::size_t i = 0; i < a.steps[k].state.u.size(); ++i) {
+                const Vec3 u = length * (turn * a.steps[k].state.u[i]);
+                largest = std::max(largest, u.norm());
+                worst = std::max(worst, (b.steps[k].state.u[static_cast<std::size_t>(number[i])] - u).norm());
+            }
+            EXPECT_LT(worst, same * largest) << "step " << k;
+        }
+    }
+    static std::vector<Index> unchanged(const support::SceneRun& run) {
+        std::vector<Index> number(run.plan.model.X.size());
+        std::iota(number.begin(), number.end(), 0);
+        return number;
+    }
+};
+
+TEST_P(Invariance, UnderRotationAndTranslation) {
+    support::SceneRun here, there;
+    support::run_scene(here, support::shipped("paper/half_tube.yaml"), base(GetParam()));
+    const Vec3 axis = Vec3(1, 2, 3).normalized();
+    const double angle = 0.7;
+    const Mat3 turn = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    auto moved = base(GetParam());
+    for (const char* body : {"tube", "contactor"}) {
+        const std::string key = std::string("bodies.") + body + ".mesh.";
+        moved.push_back({key + "rotate", "{axis: [1, 2, 3], angle: 0.7 rad}"});
+        moved.push_back({key + "translate", "[5, -7, 11]"});
+    }
+    // the driven direction turns along; written with all its digits
+    std::string axes = "{axes: [[";
+    for (int column = 0; column < 2; ++column)
+        for (int row = 0; row < 3; ++row) {
+            char number[40];
+            std::snprintf(number, sizeof number, "%.17g%s", turn(row, column),
+                          row < 2 ? ", " : (column == 0 ? "], [" : "]]}"));
+            axes += number;
+        }
+    moved.push_back({"supports.rear", axes});
+    support::run_scene(there, support::shipped("paper/half_tube.yaml"), moved);
+    // a dead pressure acts along the reference normals, which turn with the body
+    expect_same(here, there, turn, 1, 1, unchanged(here));
+}
+
+TEST_P(Invariance, UnderUnits) {
+    support::SceneRun metres, millimetres;
+    support::run_scene(metres, support::shipped("paper/half_tube.yaml"), base(GetParam()));
+    auto scaled = base(GetParam());
+    for (const char* body : {"tube", "contactor"})
+        scaled.push_back({std::string("bodies.") + body + ".mesh.scale", "1000"});
+    scaled.push_back({"bodies.tube.material.linear_elastic.E", "30"});
+    scaled.push_back({"bodies.contactor.material.linear_elastic.E", "10"});
+    scaled.push_back({"stages.press.pressure.top", "1"});
+    scaled.push_back({"stages.slide.displacement.rear.y", "300"});
+    support::run_scene(millimetres, support::shipped("paper/half_tube.yaml"), scaled);
+    expect_same(metres, millimetres, Mat3::Identity(), 1000, 1, unchanged(metres)); // N stay N
+}
+
+TEST_P(Invariance, UnderNumbering) {
+    support::SceneRun ordered, shuffled;
+    support::run_scene(ordered, support::shipped("paper/half_tube.yaml"), base(GetParam()));
+    std::vector<Index> number;
+    const auto shuffle = [&](Meshes& meshes) {
+        std::mt19937 random(3);
+        for (mesh::Mesh& m : meshes) {
+            const auto first = static_cast<Index>(number.size());
+            std::vector<Index> to(m.nodes.size());
+            std::iota(to.begin(), to.end(), 0);
+            std::shuffle(to.begin(), to.end(), random);
+            std::vector<Vec3> nodes(m.nodes.size());
+            for (std::size_t i = 0; i < to.size(); ++i) nodes[static_cast<std::size_t>(to[i])] = m.nodes[i];
+            m.nodes = nodes;
+            for (const Index i : to) number.push_back(first + i);
+            for (mesh::ElementBlock& block : m.blocks) {
+                const auto n = static_cast<std::size_t>(mesh::nodes_per_cell(block.type));
+                std::vector<Index> order(static_cast<std::size_t>(block.size()));
+                std::iota(order.begin(), order.end(), 0);
+                std::shuffle(order.begin(), order.end(), random);
+                std::vector<Index> connectivity;
+                for (const Index e : order)
+                    for (std::size_t k = 0; k < n; ++k)
+                        connectivity.push_back(
+                            to[static_cast<std::size_t>(block.connectivity[static_cast<std::size_t>(e) * n + k])]);
+                block.connectivity = connectivity;
+            }
+            for (auto& [name, facets] : m.surfaces) {
+                for (mesh::Facet& facet : facets) {
+                    for (int c = 0; c < facet.count; ++c)
+                        facet.nodes[static_cast<std::size_t>(c)] =
+                            to[static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(c)])];
+                    facet.block = facet.element = -1; // unused here, and no longer true
+                }
+                std::shuffle(facets.begin(), facets.end(), random);
+            }
+        }
+    };
+    support::run_scene(shuffled, support::shipped("paper/half_tube.yaml"), base(GetParam()), shuffle);
+    expect_same(ordered, shuffled, Mat3::Identity(), 1, 1, number);
+}
+
+TEST_P(Invariance, UnderTheNumberOfThreadsBitForBit) {
+    support::SceneRun one, three;
+    support::run_scene(one, support::shipped("paper/half_tube.yaml"), base(GetParam()), 1);
+    support::run_scene(three, support::shipped("paper/half_tube.yaml"), base(GetParam()), 3);
+    for (std::size_t k = 0; k < one.steps.size(); ++k)
+        for (std::size_t i = 0; i < one.steps[k].state.u.size(); ++i)
+            ASSERT_EQ(one.steps[k].state.u[i], three.steps[k].state.u[i]);
+}
+
+TEST_P(Invariance, UnderTheComplementarityParameter) {
+    support::SceneRun one, other;
+    auto overrides = base(GetParam());
+    support::run_scene(one, support::shipped("paper/half_tube.yaml"), overrides);
+    overrides.push_back({"contact.sliding.stiffness_scale", "0.1"});
+    support::run_scene(other, support::shipped("paper/half_tube.yaml"), overrides);
+    for (std::size_t k = 1; k < one.steps.size(); ++k) // held nodes stick elastically in the first
+        EXPECT_LT((one.steps[k].pairs[0].on_slave - other.steps[k].pairs[0].on_slave).norm(),
+                  1e-3 * one.steps[k].pairs[0].normal);
+}
+
+INSTANTIATE_TEST_SUITE_P(Masters, Invariance, testing::Values("facets", "rpim"));
+
+} // namespace
+} // namespace osculate

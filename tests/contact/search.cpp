@@ -117,6 +117,30 @@ TEST(FacetSearch, TakesTheLowestFacetAmongEquals) {
     EXPECT_EQ(inner, 9 * 7);
 }
 
+/// The rule of the second constructor: nearest to a point of reference, not first in the numbering.
+TEST(FacetSearch, BreaksTiesByGeometryWhateverTheNumbering) {
+    const Surface surface = block_top(mesh::BlockPattern::quad);
+    const Vec3 about(1.1, 1.7, 0); // no vertex of the grid has two facets at one distance from here
+    FacetSearch search(surface.topology, surface.x, about);
+    search.build(surface.x);
+    Random random(24);
+    for (Index v = 0; v < surface.topology.vertex_count(); ++v) {
+        if (surface.topology.is_boundary_vertex(v)) continue;
+        const Vec3 s = surface.x[v] + Vec3(0, 0, 0.3) + random.vector(1e-9); // round-off must not decide
+        Index nearest = -1;
+        double distance = std::numeric_limits<double>::max();
+        for (const Index f : surface.topology.vertex_facets(v)) {
+            Vec3 centre = Vec3::Zero();
+            for (const Index corner : surface.topology.facet_vertices(f)) centre += surface.x[corner] / 4;
+            if ((centre - about).norm() < distance) {
+                distance = (centre - about).norm();
+                nearest = f;
+            }
+        }
+        EXPECT_EQ(search.global(s, surface.x).facet, nearest);
+    }
+}
+
 TEST(FacetSearch, FindsNothingBeforeItIsBuilt) {
     const Surface surface = half_tube();
     EXPECT_EQ(FacetSearch(surface.topology).global(Vec3::Zero(), surface.x).facet, -1);

@@ -71,8 +71,9 @@ private:
         auto surface = std::make_unique<mesh::HalfEdgeSurface>(facets(0, "z_max"), model.X);
         auto shape = contact::make_facets_surface(*surface);
         const std::vector<Index> vertices = surface->vertex_nodes();
-        model.pairs.push_back(std::make_unique<model::ContactTerm>(
-            "joint", std::move(slaves), std::move(surface), vertices, std::move(shape), model::ContactOptions{0.3}));
+        model.pairs.push_back(std::make_unique<model::ContactTerm>("joint", model.X, std::move(slaves),
+                                                                   std::move(surface), vertices, std::move(shape),
+                                                                   model::ContactOptions{0.3}));
     }
 };
 

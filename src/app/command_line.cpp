@@ -1,6 +1,5 @@
 #include "osculate/app/command_line.hpp"
 
-#include "app/blas_threads.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
@@ -114,7 +113,6 @@ ExitCode run_command(int argc, char** argv) {
 } // namespace
 
 int command_line(int argc, char** argv) {
-    limit_blas_threads();
     try {
         return run_command(argc, argv);
     } catch (const SceneError& error) {

@@ -1,16 +1,26 @@
 #include "solve/blas_threads.hpp"
 
-// Present only where libblas is OpenBLAS; reference BLAS has no threads.
-extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
+#include <cstdlib>
+#include <dlfcn.h>
 
 namespace osculate::solve {
 
+namespace {
+
+/// The libraries read their variables when they are loaded, which is before main; so they are told by name, where there.
+bool limit(const char* variable, const char* function) {
+    if (std::getenv(variable) != nullptr) return false;
+    void* symbol = dlsym(RTLD_DEFAULT, function);
+    if (symbol != nullptr) reinterpret_cast<void (*)(int)>(symbol)(1);
+    return symbol != nullptr;
+}
+
+} // namespace
+
 void use_one_blas_thread() {
-    static const bool done = [] {
-        if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
-        return true;
-    }();
-    (void)done;
+    static const bool once =
+        limit("OPENBLAS_NUM_THREADS", "openblas_set_num_threads") | limit("OMP_NUM_THREADS", "omp_set_num_threads");
+    (void)once;
 }
 
 } // namespace osculate::solve

@@ -3,8 +3,8 @@
 
 namespace osculate::solve {
 
-/// Confines BLAS to one thread, once: the sum's order, and so every bit of a result, must not depend on the machine, and
-/// idle BLAS threads that spin have been seen to slow a shared machine thirty-fold.
+/// Confines BLAS and OpenMP to one thread, once, unless OPENBLAS_NUM_THREADS or OMP_NUM_THREADS says otherwise: no bit of a
+/// result may depend on the machine, and idle BLAS threads that spin have been seen to slow a shared machine thirty-fold.
 void use_one_blas_thread();
 
 } // namespace osculate::solve

@@ -17,7 +17,7 @@ std::string describe(KinsolOutcome outcome) {
     switch (outcome) {
     case KinsolOutcome::converged: return "converged";
     case KinsolOutcome::max_iterations: return "iterations exhausted";
-    case KinsolOutcome::stopped: return "contact statuses cycle";
+    case KinsolOutcome::stopped: return "stopped before convergence";
     case KinsolOutcome::singular: return "singular tangent";
     case KinsolOutcome::no_descent: return "no descent along the Newton direction";
     case KinsolOutcome::not_evaluable: return "residual cannot be evaluated along the step";

@@ -6,11 +6,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace osculate::time {
 
 using contact::Status;
 using model::Constraints;
+
+namespace {
+std::string number(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+} // namespace
 
 Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
     : model_(model), stages_(std::move(stages)), options_(options), timings_(timings) {
@@ -149,14 +158,23 @@ std::string Stepper::explain(const LadderResult& result, const Equilibrium& equi
             attempt.node = node - body.first_node;
         }
     attempt.value = result.residual;
-    std::string text = std::string(result.rung) + ": " + solve::describe(result.outcome) + " after " +
-                       std::to_string(result.iterations) + " iterations, relative residual " +
-                       std::to_string(result.residual);
-    if (!attempt.body.empty())
-        text += ", worst at node " + std::to_string(attempt.node) + " of body '" + attempt.body + "'";
-    if (result.outcome == solve::KinsolOutcome::singular)
-        text += "; a body is held by nothing: add a support, or check that it touches another at the start";
-    return text;
+    std::ostringstream text;
+    text << result.rung << ": " << solve::describe(result.outcome) << " after " << result.iterations
+         << " iterations, relative residual " << result.residual;
+    if (!attempt.body.empty()) text << ", worst at node " << attempt.node << " of body '" << attempt.body << "'";
+    switch (result.outcome) {
+    case solve::KinsolOutcome::singular:
+        text << "; a body is held by nothing: add a support, or check that it touches another at the start";
+        break;
+    case solve::KinsolOutcome::stopped:
+        text << "; contact statuses go round in a circle: smaller steps, or a finer master, break it";
+        break;
+    case solve::KinsolOutcome::max_iterations:
+        text << "; raise solver.max_iterations, or solver.tolerance where the residual has come to rest at round-off";
+        break;
+    default: break;
+    }
+    return text.str();
 }
 
 void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
@@ -213,8 +231,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             attempt.verdict = last ? Verdict::give_up : Verdict::retry;
             observer.attempted(attempt, equilibrium.records());
             if (last)
-                throw RunFailure("stage '" + stage.name + "', time " + std::to_string(time) +
-                                 ": the smallest step was tried and failed. " + attempt.cause);
+                throw RunFailure("stage '" + stage.name + "', step of " + number(dt) + " s to time " + number(time) +
+                                 " s, the smallest allowed, failed. " + attempt.cause);
             dt *= 0.5;
         }
     }

@@ -45,7 +45,9 @@ inline void run_scene(SceneRun& run, const std::string& path, const std::vector<
                       int threads = 1);
 
 /// Path of a shipped scene.
-inline std::string shipped(const std::string& name) { return std::string(OSCULATE_SOURCE_DIR) + "/configs/" + name; }
+inline std::string shipped(const std::string& name) {
+    return std::string(OSCULATE_SOURCE_DIR) + "/configs/" + name;
+}
 
 namespace detail {
 
@@ -117,8 +119,10 @@ void run_scene(SceneRun& run, const std::string& path, const std::vector<scene::
     stepper.run(keeper);
 }
 
-inline void run_scene(SceneRun& run, const std::string& path, const std::vector<scene::Override>& overrides, int threads) {
-    run_scene(run, path, overrides, [](std::vector<mesh::Mesh>&) {}, threads);
+inline void run_scene(SceneRun& run, const std::string& path, const std::vector<scene::Override>& overrides,
+                      int threads) {
+    run_scene(
+        run, path, overrides, [](std::vector<mesh::Mesh>&) {}, threads);
 }
 
 } // namespace osculate::support

@@ -27,7 +27,7 @@ bool beyond_boundary(const FacetHit& hit, double facet_size) {
 
 template <class Patch>
 bool evaluate_on(const Patch& patch, std::span<const Index> vertices, const Vec2& start, const Vec3& s,
-                 const std::vector<Vec3>& x, double facet_size, ContactPoint& point) {
+                 const std::vector<Vec3>& x, double facet_size, ContactPoint& point, ContactVariation* variation) {
     // from a node of the patch: the round-off of X = Phi_i x_i must not grow with the distance from the origin
     const Vec3 origin = x[vertices[0]], from_origin = s - origin;
     MatrixX3 nodes(static_cast<Index>(vertices.size()), 3);
@@ -36,7 +36,8 @@ bool evaluate_on(const Patch& patch, std::span<const Index> vertices, const Vec2
     const auto foot = project(patch, patch.coefficients(nodes), from_origin, start);
     if (!foot) return false;
     point.nodes.assign(vertices.begin(), vertices.end());
-    if (!vary(patch, *foot, from_origin, point)) return false;
+    if (!locate(patch, *foot, from_origin, point)) return false;
+    if (variation != nullptr) vary(patch, *foot, point, *variation);
     point.foot += origin;
     point.behind = point.gap <= -deepest * facet_size;
     return !point.behind;
@@ -48,7 +49,8 @@ public:
 
     std::span<const Index> patch_vertices(Index facet) const override { return surface_.facet_vertices(facet); }
 
-    void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point) const override {
+    void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
+                  ContactVariation* variation) const override {
         point.found = point.behind = false;
         point.facet = hit.facet;
         if (hit.facet < 0) return;
@@ -56,7 +58,7 @@ public:
         if (beyond_boundary(hit, size)) return;
         const auto vertices = surface_.facet_vertices(hit.facet);
         const FacetPatch patch(static_cast<int>(vertices.size()));
-        point.found = evaluate_on(patch, vertices, hit.u, s, x, size, point);
+        point.found = evaluate_on(patch, vertices, hit.u, s, x, size, point, variation);
     }
 
 private:
@@ -76,12 +78,13 @@ public:
         return domain.patch ? std::span<const Index>(domain.vertices) : facets_.patch_vertices(facet);
     }
 
-    void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point) const override {
+    void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
+                  ContactVariation* variation) const override {
         point.found = point.behind = false;
         point.facet = hit.facet;
         if (hit.facet < 0) return;
         const Domain& domain = domains_[hit.facet];
-        if (!domain.patch) return facets_.evaluate(s, hit, x, point);
+        if (!domain.patch) return facets_.evaluate(s, hit, x, point, variation);
         const double size = surface_.facet_size(hit.facet);
         if (beyond_boundary(hit, size)) return;
         // start where the facet's own closest point lies in the patch's coordinates
@@ -90,7 +93,7 @@ public:
         MatrixX2 phi_a(facet.size(), 2);
         facet.weights(hit.u, phi, phi_a);
         const Vec2 start = domain.corners.transpose() * phi;
-        point.found = evaluate_on(*domain.patch, domain.vertices, start, s, x, size, point);
+        point.found = evaluate_on(*domain.patch, domain.vertices, start, s, x, size, point, variation);
     }
 
     Index fallbacks() const override { return fallbacks_; }

@@ -111,18 +111,46 @@ contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, co
     return {lambda, point.gap, point.normal, drift};
 }
 
-void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, Matrix& dd) const {
-    // dd = ds - Phi_i dx_i - (x_i - x_i,start) Phi_i,a du_a
+void ContactTerm::vary(Index j, const std::vector<Vec3>& x, contact::ContactVariation& variation) const {
+    contact::ContactPoint again;
+    master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, again, &variation);
+}
+
+void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, const contact::ContactVariation& variation,
+                                  Matrix& dd) const {
+    // dd = ds - Phi_i dx_i - (x_i - x_i,start) dPhi_i
     const contact::ContactPoint& point = points_[j];
     const auto n = static_cast<Index>(point_nodes_[j].size());
-    contact::Matrix32 stretch = contact::Matrix32::Zero();
-    for (Index i = 0; i < n; ++i) {
-        const Index node = point_nodes_[j][i];
-        stretch += (x[node] - x_start_[node]) * point.weight_gradient.row(i);
-    }
-    dd = -stretch * point.du;
+    Eigen::Matrix3Xd moved(3, n);
+    for (Index i = 0; i < n; ++i) moved.col(i) = x[point_nodes_[j][i]] - x_start_[point_nodes_[j][i]];
+    dd.noalias() = -moved * variation.dweights;
     dd.leftCols<3>() += Mat3::Identity();
     for (Index i = 0; i < n; ++i) dd.middleCols<3>(3 + 3 * i) -= point.weights(i) * Mat3::Identity();
+}
+
+Vec3 ContactTerm::master_force(Index j, Index i, const Vec3& lambda) const {
+    const contact::ContactPoint& point = points_[j];
+    const double normal = lambda.dot(point.normal);
+    return point.pressing.row(i).transpose() * normal - point.weights(i) * (lambda - normal * point.normal);
+}
+
+void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
+                                         MatrixX3& by_lambda, Matrix& by_y) const {
+    // d f_i = dp_i L + p_i dL - dPhi_i lambda_T + Phi_i (n dL + L dn),   L = lambda . n,  lambda_T = lambda - L n
+    const contact::ContactPoint& point = points_[j];
+    const Vec3& n = point.normal;
+    const auto count = static_cast<Index>(point_nodes_[j].size());
+    const double L = lambda.dot(n);
+    const Vec3 lambda_T = lambda - L * n;
+    const Eigen::Matrix<double, 1, Eigen::Dynamic> dL = lambda.transpose() * variation.dn;
+    by_lambda.resize(3 * count, 3);
+    by_y = L * variation.dpressing;
+    for (Index i = 0; i < count; ++i) {
+        const Vec3 p = point.pressing.row(i).transpose();
+        const double phi = point.weights(i);
+        by_lambda.middleRows<3>(3 * i) = (p + phi * n) * n.transpose() - phi * Mat3::Identity();
+        by_y.middleRows<3>(3 * i) += (p + phi * n) * dL + phi * L * variation.dn - lambda_T * variation.dweights.row(i);
+    }
 }
 
 } // namespace osculate::model

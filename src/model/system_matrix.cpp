@@ -200,8 +200,8 @@ void SystemMatrix::add_contact(Index j, const Mat3& D) {
 }
 
 void SystemMatrix::add_contact(Index j, std::span<const Index> masters, const Eigen::Ref<const Matrix>& A,
-                               const Mat3& D, const Vector& phi, const Vec3& lambda,
-                               const Eigen::Ref<const Matrix>& dphi) {
+                               const Mat3& D, const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
+                               const Eigen::Ref<const Matrix>& G) {
     const Coupling& coupling = couplings_[j];
     const Index n = static_cast<Index>(masters.size()), block = constraints_->nodes() + j;
     const auto stride = static_cast<Index>(coupling.masters.size()) + 2;
@@ -238,11 +238,11 @@ void SystemMatrix::add_contact(Index j, std::span<const Index> masters, const Ei
     for (Index i = 0; i < n; ++i) {
         const auto master_rows = equilibrium_rows(masters[i]);
         const Index* slot = slots_[j].data() + (1 + place[i]) * stride;
-        const auto outer = [&](Index k) -> Mat3 { return lambda * dphi.block<1, 3>(i, 3 * k); };
-        add(master_rows, slot[0], coupling.slave, turn(masters[i], outer(0), coupling.slave), matrix_.value);
+        const auto by = [&](Index k) -> Mat3 { return G.block<3, 3>(3 * i, 3 * k); };
+        add(master_rows, slot[0], coupling.slave, turn(masters[i], by(0), coupling.slave), matrix_.value);
         for (Index k = 0; k < n; ++k)
-            add(master_rows, slot[1 + place[k]], masters[k], turn(masters[i], outer(1 + k), masters[k]), matrix_.value);
-        add(master_rows, slot[stride - 1], block, turn(masters[i], phi(i) * Mat3::Identity(), coupling.slave),
+            add(master_rows, slot[1 + place[k]], masters[k], turn(masters[i], by(1 + k), masters[k]), matrix_.value);
+        add(master_rows, slot[stride - 1], block, turn(masters[i], E.middleRows<3>(3 * i), coupling.slave),
             matrix_.value);
     }
 }

@@ -107,14 +107,14 @@ Values normal(const Snapshot& snapshot, Index pair) {
 }
 
 Values master_contact_force(const Snapshot& snapshot, Index pair) {
-    // f_i = -sum_j Phi_i lambda_j
     const model::ContactTerm& term = *snapshot.model().pairs[pair];
     std::vector<Vec3> force(term.master_nodes().size(), Vec3::Zero());
     for (Index j = 0; j < term.size(); ++j) {
         const contact::ContactPoint& point = term.point(j);
         if (!point.found) continue;
         for (std::size_t i = 0; i < point.nodes.size(); ++i)
-            force[point.nodes[i]] -= point.weights(static_cast<Index>(i)) * snapshot.state().contact[pair].lambda[j];
+            force[point.nodes[i]] +=
+                term.master_force(j, static_cast<Index>(i), snapshot.state().contact[pair].lambda[j]);
     }
     Values values;
     for (const Vec3& f : force) append(values, f);

@@ -146,7 +146,7 @@ void Equilibrium::fill(double* F) {
             const contact::ContactPoint& point = pair.point(j);
             if (point.found)
                 for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i)
-                    unbalanced_[pair.point_nodes(j)[i]] += point.weights(static_cast<Index>(i)) * lambda;
+                    unbalanced_[pair.point_nodes(j)[i]] -= pair.master_force(j, static_cast<Index>(i), lambda);
             const auto law = pair.law(j).residual(pair.state(j, x_, lambda), statuses_[p][j]);
             const Mat3 mirrored = symmetry_directions(slave);
             const Vec3 value = constraints_.to_local(slave, Vec3(law.value - mirrored * law.value + mirrored * lambda));
@@ -230,7 +230,9 @@ const solve::SparseMatrix& Equilibrium::jacobian() {
     const ScopedTimer timer(timings_, Part::assembly);
     cover_patches();
     matrix_->reset();
-    Matrix dd, A, dphi;
+    contact::ContactVariation variation;
+    contact::MatrixX3 force_by_lambda;
+    Matrix dd, A, force_by_y;
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
         for (Index j = 0; j < pair.size(); ++j) {
@@ -245,11 +247,12 @@ const solve::SparseMatrix& Equilibrium::jacobian() {
                 matrix_->add_contact(coupling, D);
                 continue;
             }
-            pair.drift_variation(j, x_, dd);
-            A.noalias() = law.by_gap * point.dg + law.by_normal * point.dn + law.by_drift * dd;
+            pair.vary(j, x_, variation);
+            pair.drift_variation(j, x_, variation, dd);
+            A.noalias() = law.by_gap * variation.dg + law.by_normal * variation.dn + law.by_drift * dd;
             A = kept * A;
-            dphi.noalias() = point.weight_gradient * point.du;
-            matrix_->add_contact(coupling, pair.point_nodes(j), A, D, point.weights, lambda, dphi);
+            pair.master_force_variation(j, lambda, variation, force_by_lambda, force_by_y);
+            matrix_->add_contact(coupling, pair.point_nodes(j), A, D, -force_by_lambda, -force_by_y);
         }
     }
     matrix_->finish();

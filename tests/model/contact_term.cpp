@@ -90,7 +90,9 @@ TEST_P(FlatPair, HasTheExactVariationOfTheDrift) {
     const double step = 1e-5, tolerance = 1e-6; // round-off 1e-12 / 1e-5 and curvature 1e-10, with a margin
     for (Index j = 0; j < 2; ++j) {
         Matrix dd;
-        term->drift_variation(j, x, dd);
+        contact::ContactVariation variation;
+        term->vary(j, x, variation);
+        term->drift_variation(j, x, variation, dd);
         std::vector<Index> touched{slave(j)};
         touched.insert(touched.end(), term->point_nodes(j).begin(), term->point_nodes(j).end());
         Vector y(3 * static_cast<Index>(touched.size()));

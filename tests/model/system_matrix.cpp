@@ -169,18 +169,17 @@ TEST_F(WithContact, AddsContactTangentsLikeItsDenseTwin) {
         const auto& masters = patches[j];
         const auto n = static_cast<Index>(masters.size());
         const Matrix A = random_matrix(3 + 3 * n, random).topRows(3),
-                     dphi = random_matrix(3 + 3 * n, random).topRows(n);
+                     G = random_matrix(3 + 3 * n, random).topRows(3 * n), E = random_matrix(3 * n, random).leftCols(3);
         const Mat3 D = random_matrix(3, random);
-        const Vector phi = random_matrix(n, random).col(0);
-        const Vec3 lambda = random.vector();
-        system.add_contact(j, masters, A, D, phi, lambda, dphi);
+        system.add_contact(j, masters, A, D, E, G);
 
         Matrix dy(3 + 3 * n, system.size()); // motion of slave and masters
         dy.topRows<3>() = B.middleRows<3>(3 * system.couplings()[j].slave);
         for (Index i = 0; i < n; ++i) dy.middleRows<3>(3 + 3 * i) = B.middleRows<3>(3 * masters[i]);
         laws[j] = A * dy + D * force_basis(j);
         for (Index i = 0; i < n; ++i)
-            equilibrium.middleRows<3>(3 * masters[i]) += lambda * (dphi.row(i) * dy) + phi(i) * force_basis(j);
+            equilibrium.middleRows<3>(3 * masters[i]) +=
+                G.middleRows<3>(3 * i) * dy + E.middleRows<3>(3 * i) * force_basis(j);
     }
     const Mat3 D = random_matrix(3, random);
     system.add_contact(6, D);

@@ -83,7 +83,7 @@ public:
                 forces.friction += (lambda - normal * point.normal).norm();
                 forces.penetration = std::max(forces.penetration, -point.gap);
                 for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i) {
-                    const Vec3 f = -point.weights(static_cast<Index>(i)) * lambda;
+                    const Vec3 f = pair.master_force(j, static_cast<Index>(i), lambda);
                     forces.on_master += f;
                     forces.moment_on_master += x(pair.point_nodes(j)[i]).cross(f);
                 }

@@ -30,10 +30,11 @@ public:
 
     /// Surface vertices that carry the patch of a facet.
     [[nodiscard]] virtual std::span<const Index> patch_vertices(Index facet) const = 0;
-    /// Gap, normal, weights and first variations at slave point s above the facet of `hit`, vertices at x.
-    /// point.found is false where there is no contact partner: beyond the boundary, or no unique foot.
-    virtual void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x,
-                          ContactPoint& point) const = 0;
+    /// Gap, normal and weights at slave point s above the facet of `hit`, vertices at x; with `variation`, which may be
+    /// null, their first variations too. point.found is false where there is no contact partner: beyond the boundary, or
+    /// no unique foot.
+    virtual void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
+                          ContactVariation* variation = nullptr) const = 0;
     /// Facets that had to fall back to a smaller or simpler patch.
     [[nodiscard]] virtual Index fallbacks() const { return 0; }
 };

@@ -41,54 +41,63 @@ template <class Patch>
     return std::nullopt;
 }
 
-/// Fills everything of `point` but facet and nodes. With K_ab = X,a . X,b - g n . X,ab and a^ab the inverse metric:
-///     du_a = K^-1_ab ( X,b . (ds - Phi_i dx_i) + g n . Phi_i,b dx_i )
-///     dg   = n . (ds - Phi_i dx_i)
-///     dn   = -X,b a^ab ( n . Phi_i,a dx_i + n . X,ac du_c )
+/// Gap, normal, foot and weights of `point` from the foot of s; p_i = -Phi_i n.
 /// @returns false where s lies beyond 0.8 of the smallest radius of curvature on the hollow side: no unique foot.
 template <class Patch>
-[[nodiscard]] bool vary(const Patch& patch, const Foot& foot, const Vec3& s, ContactPoint& point) {
-    const Index n = patch.size(), columns = 3 + 3 * n;
+[[nodiscard]] bool locate(const Patch& patch, const Foot& foot, const Vec3& s, ContactPoint& point) {
     const PatchPoint& p = foot.point;
     point.foot = p.X;
     point.normal = p.normal();
     point.gap = point.normal.dot(s - p.X);
-    const Vec3& normal = point.normal;
-    const double g = point.gap;
-
-    const Mat2 metric = p.X_a.transpose() * p.X_a;
-    const Mat2 inverse_metric = metric.inverse();
-    const Mat2 b = p.curvature(normal);
-    constexpr double largest_turn = 0.8;
     // principal curvatures are the eigenvalues of a^-1 b; the foot is unique while g * curvature stays below one
-    const Mat2 shape = inverse_metric * b;
+    constexpr double largest_turn = 0.8;
+    const Mat2 shape = (p.X_a.transpose() * p.X_a).inverse() * p.curvature(point.normal);
     const double mean = 0.5 * shape.trace();
     const double root = std::sqrt(std::max(0.0, mean * mean - shape.determinant()));
-    if (std::max(g * (mean + root), g * (mean - root)) > largest_turn) return false;
+    if (std::max(point.gap * (mean + root), point.gap * (mean - root)) > largest_turn) return false;
+    point.weights.resize(patch.size());
+    MatrixX2 phi_a(patch.size(), 2);
+    patch.weights(foot.u, point.weights, phi_a);
+    point.pressing = -point.weights * point.normal.transpose();
+    return true;
+}
 
-    point.weights.resize(n);
-    point.weight_gradient.resize(n, 2);
-    patch.weights(foot.u, point.weights, point.weight_gradient);
-    point.du.resize(2, columns);
-    point.dn.resize(3, columns);
-    point.dg.resize(columns);
+/// Variations at a point that locate() has filled. With K_ab = X,a . X,b - g n . X,ab and a^ab the inverse metric:
+///     du_a = K^-1_ab ( X,b . (ds - Phi_i dx_i) + g n . Phi_i,b dx_i )
+///     dg   = n . (ds - Phi_i dx_i)
+///     dn   = -X,b a^ab ( n . Phi_i,a dx_i + n . X,ac du_c )
+///     dPhi_i = Phi_i,a du_a,   dp_i = -n dPhi_i - Phi_i dn
+template <class Patch>
+void vary(const Patch& patch, const Foot& foot, const ContactPoint& point, ContactVariation& variation) {
+    const Index n = patch.size(), columns = 3 + 3 * n;
+    const PatchPoint& p = foot.point;
+    const Vec3& normal = point.normal;
+    const double g = point.gap;
+    Vector phi(n);
+    MatrixX2 phi_a(n, 2);
+    patch.weights(foot.u, phi, phi_a);
 
+    const Mat2 metric = p.X_a.transpose() * p.X_a;
+    const Mat2 b = p.curvature(normal);
     const Mat2 K_inverse = (metric - g * b).inverse();
     const Eigen::Matrix<double, 2, 3> tangents = p.X_a.transpose();
-    const Eigen::Matrix<double, 3, 2> dual = p.X_a * inverse_metric; // X,b a^ab
-    point.du.template leftCols<3>() = K_inverse * tangents;
-    point.dg.template leftCols<3>() = normal.transpose();
+    const Eigen::Matrix<double, 3, 2> dual = p.X_a * metric.inverse(); // X,b a^ab
+    Eigen::Matrix<double, 2, Eigen::Dynamic> du(2, columns);
+    variation.dg.resize(columns);
+    du.template leftCols<3>() = K_inverse * tangents;
+    variation.dg.template leftCols<3>() = normal.transpose();
     for (Index i = 0; i < n; ++i) {
-        const double phi = point.weights(i);
-        const Vec2 phi_a = point.weight_gradient.row(i).transpose();
-        point.du.template middleCols<3>(3 + 3 * i) = K_inverse * (-phi * tangents + g * phi_a * normal.transpose());
-        point.dg.template middleCols<3>(3 + 3 * i) = -phi * normal.transpose();
+        du.template middleCols<3>(3 + 3 * i) =
+            K_inverse * (-phi(i) * tangents + g * phi_a.row(i).transpose() * normal.transpose());
+        variation.dg.template middleCols<3>(3 + 3 * i) = -phi(i) * normal.transpose();
     }
-    point.dn.noalias() = -dual * b * point.du;
+    variation.dn.noalias() = -dual * b * du;
     for (Index i = 0; i < n; ++i)
-        point.dn.template middleCols<3>(3 + 3 * i) -=
-            dual * point.weight_gradient.row(i).transpose() * normal.transpose();
-    return true;
+        variation.dn.template middleCols<3>(3 + 3 * i) -= dual * phi_a.row(i).transpose() * normal.transpose();
+    variation.dweights.noalias() = phi_a * du;
+    variation.dpressing.resize(3 * n, columns);
+    for (Index i = 0; i < n; ++i)
+        variation.dpressing.template middleRows<3>(3 * i) = -normal * variation.dweights.row(i) - phi(i) * variation.dn;
 }
 
 } // namespace osculate::contact

@@ -37,6 +37,8 @@ struct ContactOptions {
 
 class ContactTerm {
 public:
+    using MatrixX3 = contact::MatrixX3;
+
     /// @param X            reference positions of all nodes
     /// @param master_nodes global node of every vertex of `surface`
     ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
@@ -67,8 +69,16 @@ public:
     /// Declares which slave nodes are held or driven along some direction: their stick is elastic, see contact::Coulomb.
     void hold(std::vector<char> held) { held_ = std::move(held); }
     [[nodiscard]] contact::Coulomb law(Index j) const;
+    /// Variations of point j, evaluated anew at the positions of the last evaluate().
+    void vary(Index j, const std::vector<Vec3>& x, contact::ContactVariation& variation) const;
     /// Derivative of the drift d of state() with respect to y = (slave, masters), 3 x 3+3n.
-    void drift_variation(Index j, const std::vector<Vec3>& x, Matrix& dd) const;
+    void drift_variation(Index j, const std::vector<Vec3>& x, const contact::ContactVariation& variation,
+                         Matrix& dd) const;
+    /// Force on master node i of the patch of slave j: p_i (lambda . n) - Phi_i (lambda - n n . lambda).
+    [[nodiscard]] Vec3 master_force(Index j, Index i, const Vec3& lambda) const;
+    /// Its derivatives over all masters: (3n x 3) by lambda, (3n x 3+3n) by y.
+    void master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
+                                MatrixX3& by_lambda, Matrix& by_y) const;
 
     [[nodiscard]] const std::vector<Index>& facets() const { return facet_; }
     /// Facet changes at the last evaluation.

@@ -41,10 +41,11 @@ public:
     /// Sets the values to the stiffness and the unit columns of the contact forces.
     void reset();
     /// Contact tangent of coupling j in global components: contact rows, derivatives A (3 x 3+3n) by (slave, masters) and
-    /// D (3 x 3) by the contact force; master rows, force + phi_i lambda on node i: its derivatives phi_i by the force and
-    /// lambda (x) dphi_i, dphi (n x 3+3n).
+    /// D (3 x 3) by the contact force; equilibrium rows of the masters, derivatives E (3n x 3) by the contact force and
+    /// G (3n x 3+3n) by (slave, masters).
     void add_contact(Index j, std::span<const Index> masters, const Eigen::Ref<const Matrix>& A, const Mat3& D,
-                     const Vector& phi, const Vec3& lambda, const Eigen::Ref<const Matrix>& dphi);
+                     const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
+                     const Eigen::Ref<const Matrix>& G);
     /// Contact tangent of an open coupling without partner: D only.
     void add_contact(Index j, const Mat3& D);
     /// Declares the values complete.

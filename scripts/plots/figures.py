@@ -147,10 +147,11 @@ def foundation_table():
             contact = whole["search"] + whole["patches"] + whole["contact"]
             rows.append([mesh, master, number(roughness(pressures), 4), number(last["pair.base.normal"] / 1e6, 3),
                          iterations(name, master)[0], number(whole["total"], 1),
-                         number(100 * contact / whole["total"], 1)])
+                         number(100 * contact / whole["total"], 1),
+                         number(100 * whole["factor"] / whole["total"], 0)])
     return markdown("Foundation: pressed on soil, three divisions of the soil's surface",
                     ["soil surface", "master", "roughness", "N, MN", "iterations", "seconds",
-                     "of them search, patches, contact, %"], rows)
+                     "of them search, patches, contact, %", "factorisation, %"], rows)
 
 
 def line_table():

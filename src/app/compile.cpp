@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -293,27 +294,41 @@ private:
         const std::vector<Index> master_nodes = surface->vertex_nodes();
         std::vector<Vec3> vertices;
         for (const Index node : master_nodes) vertices.push_back(X[node]);
-        model::ContactOptions options{spec.friction, 0, spec.closing_tolerance};
-        std::unique_ptr<contact::MasterSurface> shape =
-            std::visit(Overloaded{
-                           [&](const scene::FacetsSurface& s) {
-                               options.hysteresis = s.hysteresis;
-                               return contact::make_facets_surface(*surface);
-                           },
-                           [&](const scene::RpimSurface& s) {
-                               options.hysteresis = s.hysteresis;
-                               return contact::make_rpim_surface(*surface, vertices,
-                                                                 {s.ring,
-                                                                  {s.R, s.q},
-                                                                  s.m,
-                                                                  s.coordinates == scene::PatchCoordinates::tangential
-                                                                      ? contact::PatchCoordinates::tangential
-                                                                      : contact::PatchCoordinates::equal_length});
-                           },
-                       },
-                       spec.master.surface);
+        model::ContactOptions options;
+        options.friction = spec.friction;
+        options.closing_tolerance = spec.closing_tolerance;
+        auto shape = make_master(spec.master, *surface, vertices, options);
         return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface), master_nodes,
                                                     std::move(shape), options);
+    }
+
+    /// The master surface asked for, and the rule against flip-flop that it needs.
+    static std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spec,
+                                                               const mesh::HalfEdgeSurface& surface,
+                                                               const std::vector<Vec3>& vertices,
+                                                               model::ContactOptions& options) {
+        const auto coordinates = [](scene::PatchCoordinates c) {
+            return c == scene::PatchCoordinates::tangential ? contact::PatchCoordinates::tangential
+                                                            : contact::PatchCoordinates::equal_length;
+        };
+        return std::visit(Overloaded{
+                              [&](const scene::FacetsSurface& s) {
+                                  options.hysteresis = s.hysteresis;
+                                  return contact::make_facets_surface(surface);
+                              },
+                              [&](const scene::RpimSurface& s) {
+                                  options.hysteresis = s.hysteresis;
+                                  return contact::make_rpim_surface(
+                                      surface, vertices, {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
+                              },
+                              [&](const scene::BlendSurface& s) { // does not depend on the facet: no rule
+                                  options.hysteresis = 0;
+                                  options.changes_before_latch = std::numeric_limits<int>::max();
+                                  return contact::make_blend_surface(
+                                      surface, vertices, {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
+                              },
+                          },
+                          spec.surface);
     }
 
     void check_supports() {
@@ -353,13 +368,14 @@ void Compiler::add_items() {
     bool friction = false, smooth = false;
     for (const auto& [name, pair] : scene_.contact) {
         friction = friction || pair.friction > 0;
-        smooth = smooth || std::holds_alternative<scene::RpimSurface>(pair.master.surface);
+        smooth = smooth || !std::holds_alternative<scene::FacetsSurface>(pair.master.surface);
     }
     say("stiffness", true, "assembled once: small strain and linear elasticity keep it constant");
     say("inertia, damping", false, "every stage is static");
     say("contact", contact, contact ? std::to_string(scene_.contact.size()) + " pair(s)" : "the scene has no pair");
     say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
-    say("smooth master surface", smooth, smooth ? "frozen RPIM patches" : "no pair asks for one");
+    say("smooth master surface", smooth,
+        smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
     say("Cholesky factorisation", !contact,
         contact ? "contact makes the tangent unsymmetric" : "the tangent is symmetric positive definite");
     say("LU factorisation", contact, contact ? "unsymmetric tangent with contact" : "not needed without contact");

@@ -1,29 +1,16 @@
 #include "osculate/contact/master_surface.hpp"
 
+#include "contact/fold.hpp"
+#include "contact/reach.hpp"
 #include "osculate/contact/facet_patch.hpp"
 #include "osculate/contact/projection.hpp"
 #include "osculate/contact/rpim_patch.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace osculate::contact {
 
 namespace {
-
-/// A point beyond the boundary by more than this fraction of the facet's size is no contact; less is round-off of meshes
-/// that end together.
-constexpr double boundary_margin = 0.01;
-/// A point deeper than this many facet sizes is behind the surface, not in contact with it.
-constexpr double deepest = 2.0;
-/// Fig. 5d: facets turned further from the reference plane than this, or left with less of their area, overlap.
-constexpr double largest_turn = 80 * std::numbers::pi / 180;
-constexpr double smallest_projection = 0.05;
-
-bool beyond_boundary(const FacetHit& hit, double facet_size) {
-    return hit.facet < 0 || hit.beyond > boundary_margin * facet_size;
-}
 
 template <class Patch>
 bool evaluate_on(const Patch& patch, std::span<const Index> vertices, const Vec2& start, const Vec3& s,
@@ -117,7 +104,7 @@ private:
             return options.coordinates == PatchCoordinates::tangential ? plane.tangential(x) : plane.equal_length(x);
         };
         for (int ring = options.ring; ring > 0; --ring) {
-            if (overlaps(facet, ring, plane, X)) continue;
+            if (folds(surface_, surface_.ring_facets(facet, ring), plane, X)) continue;
             Domain domain;
             domain.vertices = surface_.facet_ring(facet, ring);
             MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2);
@@ -131,27 +118,6 @@ private:
         }
         ++fallbacks_;
         return {};
-    }
-
-    /// Whether a facet of the ring folds over in the reference plane (Fig. 5d).
-    bool overlaps(Index facet, int ring, const ReferencePlane& plane, const std::vector<Vec3>& X) const {
-        const Vec3 up = plane.axes.col(0).cross(plane.axes.col(1));
-        for (const Index f : surface_.ring_facets(facet, ring)) {
-            const auto vertices = surface_.facet_vertices(f);
-            const std::size_t n = vertices.size();
-            Vec3 area = Vec3::Zero();
-            for (std::size_t b = 1; b + 1 < n; ++b)
-                area += (X[vertices[b]] - X[vertices[0]]).cross(X[vertices[b + 1]] - X[vertices[0]]);
-            const double projected = area.dot(up);
-            if (projected < std::cos(largest_turn) * area.norm() || projected < smallest_projection * area.norm())
-                return true;
-            for (std::size_t b = 0; b < n; ++b) { // corner Jacobians in the plane
-                const Vec3 here = X[vertices[b]];
-                const Vec3 corner = (X[vertices[(b + 1) % n]] - here).cross(X[vertices[(b + n - 1) % n]] - here);
-                if (corner.dot(up) < smallest_projection * corner.norm()) return true;
-            }
-        }
-        return false;
     }
 
     const mesh::HalfEdgeSurface& surface_;

@@ -151,4 +151,22 @@ MatrixX3 RpimPatch::second_derivatives(const Vec2& u) const {
     return phi_ab;
 }
 
+PatchThird RpimPatch::third(const Vec2& u, const MatrixX3& coefficients) const {
+    // f,abc = 8 f''' d_a d_b d_c + 4 f'' (delta_ab d_c + delta_bc d_a + delta_ca d_b); the polynomials have none
+    PatchThird p;
+    const Vec2 t = (u - c_) / dc_;
+    const double scale = 1 / (dc_ * dc_ * dc_);
+    for (Index i = 0; i < size(); ++i) {
+        const Vec2 d = t - t_.row(i).transpose();
+        const RadialValue r = basis_(d.squaredNorm());
+        const Vec3 a = scale * coefficients.row(i).transpose();
+        const double x = d.x(), y = d.y();
+        p.X_111 += (8 * r.dddf * x * x * x + 12 * r.ddf * x) * a;
+        p.X_112 += (8 * r.dddf * x * x * y + 4 * r.ddf * y) * a;
+        p.X_122 += (8 * r.dddf * x * y * y + 4 * r.ddf * x) * a;
+        p.X_222 += (8 * r.dddf * y * y * y + 12 * r.ddf * y) * a;
+    }
+    return p;
+}
+
 } // namespace osculate::contact

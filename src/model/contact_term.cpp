@@ -7,9 +7,6 @@
 namespace osculate::model {
 
 namespace {
-/// After so many facet changes within one attempt a slave node stays on the facet it has: a point that hops between two
-/// facets is on their common edge, and either will do.
-constexpr int changes_before_latch = 4;
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
 
@@ -63,7 +60,7 @@ void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int thr
         parallel_for(threads, size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
                 const Vec3& s = x[slaves_.node[j]];
-                hits_[j] = changes_[j] < changes_before_latch
+                hits_[j] = changes_[j] < options_.changes_before_latch
                                ? search_.track(s, facet_[j], vertices_, options_.hysteresis)
                                : search_.closest_on(facet_[j], s, vertices_);
             }

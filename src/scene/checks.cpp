@@ -51,12 +51,15 @@ public:
     void check_pair(const std::string& name, const Pair& pair) {
         if (!pair.slave.empty() && pair.slave == pair.master.set)
             fault({"contact", name, "slave"}, "another set than the master's", "'" + pair.slave + "' for both");
-        const auto* rpim = std::get_if<RpimSurface>(&pair.master.surface);
-        if (!rpim) return;
-        const std::vector<std::string> q{"contact", name, "master", "surface", "rpim", "q"};
+        if (const auto* rpim = std::get_if<RpimSurface>(&pair.master.surface)) check_basis(name, "rpim", *rpim);
+        if (const auto* blend = std::get_if<BlendSurface>(&pair.master.surface)) check_basis(name, "blend", *blend);
+    }
+
+    template <class Surface> void check_basis(const std::string& name, const char* tag, const Surface& surface) {
+        const std::vector<std::string> q{"contact", name, "master", "surface", tag, "q"};
         // (r^2 + R^2)^q is conditionally definite of order ceil(q); the basis must hold all polynomials of lower degree.
-        if (rpim->q > 2 && rpim->m < 6) fault(q, "at most 2 with m = 3", number_text(rpim->q));
-        if (rpim->R == 0 && rpim->q < 1) fault(q, "more than 1 with R = 0", number_text(rpim->q));
+        if (surface.q > 2 && surface.m < 6) fault(q, "at most 2 with m = 3", number_text(surface.q));
+        if (surface.R == 0 && surface.q < 1) fault(q, "more than 1 with R = 0", number_text(surface.q));
     }
 
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {

@@ -15,11 +15,9 @@ void describe(Visitor& v, FacetsSurface& s) {
     v.number({.name = "hysteresis", .meaning = hysteresis_meaning, .range = hysteresis_range}, s.hysteresis);
 }
 
-void describe(Visitor& v, RpimSurface& s) {
-    v.integer({.name = "ring",
-               .meaning = "Rings of facets around the projection's facet whose nodes make its patch.",
-               .range = {.low = 1, .high = 3}},
-              s.ring);
+/// What all surfaces through radial point interpolation have in common.
+template <class Surface> void describe_patches(Visitor& v, Surface& s, const char* ring_meaning) {
+    v.integer({.name = "ring", .meaning = ring_meaning, .range = {.low = 1, .high = 3}}, s.ring);
     v.number({.name = "R",
               .meaning = "Shape parameter of the multiquadric, in mean nearest-neighbour distances of the patch.",
               .range = {.low = 0, .high = 4}},
@@ -36,7 +34,15 @@ void describe(Visitor& v, RpimSurface& s) {
     static const Words coordinates{"tangential", "equal_length"};
     word(v, {.name = "coordinates", .meaning = "How patch nodes are laid out on the reference plane."}, coordinates,
          s.coordinates);
+}
+
+void describe(Visitor& v, RpimSurface& s) {
+    describe_patches(v, s, "Rings of facets around the projection's facet whose nodes make its patch.");
     v.number({.name = "hysteresis", .meaning = hysteresis_meaning, .range = hysteresis_range}, s.hysteresis);
+}
+
+void describe(Visitor& v, BlendSurface& s) {
+    describe_patches(v, s, "Rings of facets around a vertex whose nodes make its patch.");
 }
 
 void describe(Visitor& v, MasterSpec& master) {
@@ -45,10 +51,11 @@ void describe(Visitor& v, MasterSpec& master) {
              .meaning = "Geometry of the master; contact.<pair>.surface is short for it.",
              .bare_word = true},
             [&] {
-                static const Words tags{"facets", "rpim"};
+                static const Words tags{"facets", "rpim", "blend"};
                 one_of(v, tags,
                        {"The finite element surface as it is.",
-                        "Smooth patches by radial point interpolation with a polynomial basis."},
+                        "Smooth patches by radial point interpolation with a polynomial basis, one per facet.",
+                        "The same around every vertex, their gaps blended: smooth over all edges."},
                        true, master.surface, [&v](auto& alternative) { describe(v, alternative); });
             });
 }

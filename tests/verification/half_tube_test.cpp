@@ -93,7 +93,7 @@ TEST_P(HalfTube, LeavesNoInterpenetration) {
     for (const RunStep& step : run(GetParam()).steps) EXPECT_LT(step.pairs[0].penetration, 1e-8); // of 1 m facets
 }
 
-INSTANTIATE_TEST_SUITE_P(Masters, HalfTube, testing::Values("facets", "rpim"));
+INSTANTIATE_TEST_SUITE_P(Masters, HalfTube, testing::Values("facets", "rpim", "blend"));
 
 class HalfTubeRipple : public HalfTube {};
 

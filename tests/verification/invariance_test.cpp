@@ -151,7 +151,7 @@ TEST_P(Invariance, UnderTheComplementarityParameter) {
                   1e-3 * one.steps[k].pairs[0].normal);
 }
 
-INSTANTIATE_TEST_SUITE_P(Masters, Invariance, testing::Values("facets", "rpim"));
+INSTANTIATE_TEST_SUITE_P(Masters, Invariance, testing::Values("facets", "rpim", "blend"));
 
 } // namespace
 } // namespace osculate

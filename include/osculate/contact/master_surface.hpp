@@ -42,6 +42,31 @@ public:
 /// The finite element surface as it is, each facet extended past its edges.
 [[nodiscard]] std::unique_ptr<MasterSurface> make_facets_surface(const mesh::HalfEdgeSurface& surface);
 
+struct BlendOptions {
+    int level = 2; ///< rings of facets around a vertex that make its patch
+    Multiquadric basis;
+    int polynomial_terms = 6;
+    PatchCoordinates coordinates = PatchCoordinates::equal_length;
+};
+
+/// Frozen RPIM patch of one vertex (one per smooth sector where feature edges meet) and its bump in the blend.
+struct VertexPatchInfo {
+    Index vertex = -1;
+    int level = 0;
+    double kappa = 0;           ///< tau = kappa u^T M u
+    Mat2 metric = Mat2::Zero(); ///< M, m^-2
+    std::vector<Index> vertices;
+};
+
+/// Vertex gap blend: gaps to the patches of all vertices near the slave point, blended with C2 bumps,
+///     g = sum_v psi_v g_v / sum_v psi_v,   psi_v = (1 - tau_v)^3_+,   n = grad_s g / |grad_s g|.
+/// Nothing in it depends on which facet is the closest, so gap, normal and forces run on smoothly over all edges.
+[[nodiscard]] std::unique_ptr<MasterSurface>
+make_blend_surface(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options);
+/// The patches make_blend_surface() would use.
+[[nodiscard]] std::vector<VertexPatchInfo> vertex_patches(const mesh::HalfEdgeSurface& surface,
+                                                          const std::vector<Vec3>& X, const BlendOptions& options);
+
 /// One frozen RPIM patch per facet, fitted at the reference positions X.         [Qian 2014, secs 3.1-3.2]
 /// A patch that would overlap itself in its plane (Fig. 5d) or is rank deficient takes one ring less, at last the facet.
 [[nodiscard]] std::unique_ptr<MasterSurface> make_rpim_surface(const mesh::HalfEdgeSurface& surface,

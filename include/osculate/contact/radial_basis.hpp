@@ -7,7 +7,7 @@ namespace osculate::contact {
 
 /// Value and derivatives of a radial function with respect to rho.
 struct RadialValue {
-    double f = 0, df = 0, ddf = 0;
+    double f = 0, df = 0, ddf = 0, dddf = 0;
 };
 
 /// Multiquadric (rho + R^2)^q; R = 0, q = 2.5 is the polyharmonic r^5.                       [Qian 2014, eq (10)]
@@ -20,7 +20,8 @@ struct Multiquadric {
         if (base <= 0) return {}; // R = 0 at its own centre: f and rho * ddf vanish there for q > 1
         const double f = std::pow(base, q);
         const double df = q * f / base;
-        return {f, df, (q - 1) * df / base};
+        const double ddf = (q - 1) * df / base;
+        return {f, df, ddf, (q - 2) * ddf / base};
     }
 };
 

@@ -46,6 +46,8 @@ public:
     void weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<MatrixX2> phi_a) const;
     /// Second derivatives Phi,11 Phi,12 Phi,22 (n x 3).
     [[nodiscard]] MatrixX3 second_derivatives(const Vec2& u) const;
+    /// Third derivatives of the surface with the given coefficients().
+    [[nodiscard]] PatchThird third(const Vec2& u, const MatrixX3& coefficients) const;
 
 private:
     struct BasisRow {

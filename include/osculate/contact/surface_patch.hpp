@@ -23,4 +23,9 @@ struct PatchPoint {
     }
 };
 
+/// Third derivatives of a patch.
+struct PatchThird {
+    Vec3 X_111 = Vec3::Zero(), X_112 = Vec3::Zero(), X_122 = Vec3::Zero(), X_222 = Vec3::Zero();
+};
+
 } // namespace osculate::contact

@@ -30,8 +30,10 @@ struct SlaveNodes {
 };
 
 struct ContactOptions {
-    double friction = 0;             ///< Coulomb's mu
-    double hysteresis = 0.03;        ///< of the facet size, see contact::FacetSearch::track
+    double friction = 0;      ///< Coulomb's mu
+    double hysteresis = 0.03; ///< of the facet size, see contact::FacetSearch::track
+    int changes_before_latch =
+        4; ///< facet changes of a node within one attempt, after which it stays: it is on an edge
     double closing_tolerance = 0.02; ///< of the facet size: how near counts as touching before anything is in contact
 };
 

@@ -145,9 +145,17 @@ struct RpimSurface {
     bool operator==(const RpimSurface&) const = default;
 };
 
+struct BlendSurface {
+    int ring = 2; ///< rings of facets around a vertex that make its patch
+    double R = 1.42, q = 1.03;
+    int m = 6;
+    PatchCoordinates coordinates = PatchCoordinates::equal_length;
+    bool operator==(const BlendSurface&) const = default;
+};
+
 struct MasterSpec {
     std::string set;
-    std::variant<FacetsSurface, RpimSurface> surface;
+    std::variant<FacetsSurface, RpimSurface, BlendSurface> surface;
     bool operator==(const MasterSpec&) const = default;
 };
 

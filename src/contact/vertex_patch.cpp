@@ -1,0 +1,191 @@
+#include "contact/vertex_patch.hpp"
+
+#include "contact/fold.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace osculate::contact {
+
+namespace {
+
+constexpr int highest_level = 5;
+constexpr double kappa_aim = 0.8;     ///< where neither interpolation nor coverage asks for another
+constexpr double beyond_nodes = 1.15; ///< least tau at nodes outside the patch: the bump has ended there
+constexpr double covered = 0.75;      ///< largest tau at the vertex's own edge midpoints and facet centres
+
+/// Facets around a vertex that hang together over smooth edges.
+std::vector<std::vector<Index>> sectors(const mesh::HalfEdgeSurface& surface, Index vertex) {
+    const auto fan = surface.vertex_facets(vertex);
+    std::vector<std::vector<Index>> result;
+    std::vector<char> taken(fan.size(), 0);
+    for (std::size_t seed = 0; seed < fan.size(); ++seed) {
+        if (taken[seed] != 0) continue;
+        std::vector<Index> sector{fan[seed]};
+        taken[seed] = 1;
+        for (std::size_t next = 0; next < sector.size(); ++next) {
+            const auto v = surface.facet_vertices(sector[next]);
+            const auto across = surface.edge_neighbours(sector[next]);
+            const int n = static_cast<int>(v.size());
+            for (int c = 0; c < n; ++c) {
+                if (v[c] != vertex && v[(c + 1) % n] != vertex) continue;
+                if (across[c] < 0 || surface.is_feature_edge(surface.first_half_edge(sector[next]) + c)) continue;
+                const auto place = std::find(fan.begin(), fan.end(), across[c]) - fan.begin();
+                if (taken[place] != 0) continue;
+                taken[place] = 1;
+                sector.push_back(across[c]);
+            }
+        }
+        std::sort(sector.begin(), sector.end());
+        result.push_back(std::move(sector));
+    }
+    return result;
+}
+
+std::vector<Index> grown(const mesh::HalfEdgeSurface& surface, const std::vector<Index>& facets) {
+    std::vector<Index> result;
+    for (const Index f : facets) {
+        const auto ring = surface.ring_facets(f, 1);
+        result.insert(result.end(), ring.begin(), ring.end());
+    }
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+}
+
+std::vector<Index> corners(const mesh::HalfEdgeSurface& surface, const std::vector<Index>& facets) {
+    std::vector<Index> result;
+    for (const Index f : facets) {
+        const auto v = surface.facet_vertices(f);
+        result.insert(result.end(), v.begin(), v.end());
+    }
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+}
+
+/// Corner normals weighted with the corner angles.
+Vec3 vertex_normal(const mesh::HalfEdgeSurface& surface, Index vertex, const std::vector<Index>& sector,
+                   const std::vector<Vec3>& X) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index f : sector) {
+        const auto v = surface.facet_vertices(f);
+        const std::size_t n = v.size(), c = static_cast<std::size_t>(std::find(v.begin(), v.end(), vertex) - v.begin());
+        const Vec3 a = (X[v[(c + 1) % n]] - X[vertex]).normalized(),
+                   b = (X[v[(c + n - 1) % n]] - X[vertex]).normalized();
+        sum += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * a.cross(b).normalized();
+    }
+    return sum.normalized();
+}
+
+std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Index vertex,
+                                      const std::vector<Index>& sector, const std::vector<Vec3>& X,
+                                      const BlendOptions& options) {
+    const ReferencePlane plane = ReferencePlane::through(X[vertex], vertex_normal(surface, vertex, sector, X));
+    const auto natural = [&](const Vec3& x) {
+        return options.coordinates == PatchCoordinates::tangential ? plane.tangential(x) : plane.equal_length(x);
+    };
+    // M from the edge neighbours; q = u^T M u is about 1 at them
+    Mat2 sum = Mat2::Zero();
+    std::vector<Index> neighbours;
+    double near = 0;
+    std::vector<Vec2> own; // where the bump must still be high
+    for (const Index f : sector) {
+        const auto v = surface.facet_vertices(f);
+        const std::size_t n = v.size(), c = static_cast<std::size_t>(std::find(v.begin(), v.end(), vertex) - v.begin());
+        Vec3 centroid = Vec3::Zero();
+        for (const Index w : v) centroid += X[w] / static_cast<double>(n);
+        own.push_back(natural(centroid));
+        for (const Index w : {v[(c + 1) % n], v[(c + n - 1) % n]}) neighbours.push_back(w);
+    }
+    std::sort(neighbours.begin(), neighbours.end());
+    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+    for (const Index w : neighbours) {
+        const Vec2 u = natural(X[w]);
+        sum += u * u.transpose() / static_cast<double>(neighbours.size());
+        own.push_back(natural((X[vertex] + X[w]) / 2));
+    }
+    VertexPatch patch{vertex,
+                      0,
+                      {},
+                      *RpimPatch::fit((MatrixX2(3, 2) << 0, 0, 1, 0, 0, 1).finished(), {}, 3),
+                      0.5 * sum.inverse(),
+                      kappa_aim,
+                      {},
+                      {},
+                      natural(X[vertex])};
+    if (!patch.metric.allFinite()) return std::nullopt;
+    const auto q = [&](const Vec2& u) { return u.dot(patch.metric * u); };
+    for (const Vec2& u : own) near = std::max(near, q(u));
+
+    std::vector<Index> facets = sector;
+    for (int level = 1; level <= highest_level; ++level) {
+        if (level > 1) {
+            std::vector<Index> next = grown(surface, facets);
+            if (next.size() == facets.size() && level > options.level) break; // the whole smooth part is in
+            facets = std::move(next);
+        }
+        if (folds(surface, facets, plane, X)) break; // Fig. 5d: what fits so far has to do
+        const std::vector<Index> vertices = corners(surface, facets);
+        if (level < options.level && !folds(surface, grown(surface, facets), plane, X)) continue;
+        MatrixX2 u(static_cast<Index>(vertices.size()), 2);
+        for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[vertices[i]]).transpose();
+        auto shape = RpimPatch::fit(u, options.basis, options.polynomial_terms);
+        if (!shape) continue;
+        // the bump ends before the nearest node that the patch does not pass through
+        double far = std::numeric_limits<double>::max();
+        for (const Index w : corners(surface, grown(surface, facets)))
+            if (!std::binary_search(vertices.begin(), vertices.end(), w)) far = std::min(far, q(natural(X[w])));
+        const double lowest = beyond_nodes / far, highest = covered / near;
+        const bool good = lowest <= highest && shape->polynomial_terms() == options.polynomial_terms;
+        patch.level = level;
+        patch.vertices = vertices;
+        patch.shape = std::move(*shape);
+        patch.kappa = std::min(std::max(kappa_aim, lowest), highest);
+        if (lowest > highest) patch.kappa = lowest; // interpolation before coverage, should no ring be left
+        if (good) break;
+    }
+    if (patch.level == 0) return std::nullopt;
+    patch.at_vertex.resize(patch.shape.size());
+    patch.slope.resize(patch.shape.size(), 2);
+    patch.shape.weights(patch.origin, patch.at_vertex, patch.slope);
+    return patch;
+}
+
+} // namespace
+
+VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,
+                             const BlendOptions& options)
+    : of_facet(static_cast<std::size_t>(surface.facet_count())) {
+    std::vector<std::vector<std::pair<Index, Index>>> corner_patch(of_facet.size()); // facet -> (vertex, patch)
+    for (Index v = 0; v < surface.vertex_count(); ++v)
+        for (const auto& sector : sectors(surface, v)) {
+            auto patch = make_patch(surface, v, sector, X, options);
+            if (!patch) {
+                ++fallbacks;
+                continue;
+            }
+            if (patch->level != options.level && !surface.is_boundary_vertex(v)) ++fallbacks;
+            for (const Index f : sector) corner_patch[f].emplace_back(v, static_cast<Index>(patches.size()));
+            patches.push_back(std::move(*patch));
+        }
+    for (Index f = 0; f < surface.facet_count(); ++f) {
+        auto& list = of_facet[f];
+        for (const Index g : surface.ring_facets(f, 2))
+            for (const auto& [vertex, patch] : corner_patch[g]) list.push_back(patch);
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+}
+
+std::vector<VertexPatchInfo> vertex_patches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,
+                                            const BlendOptions& options) {
+    std::vector<VertexPatchInfo> result;
+    for (const VertexPatch& p : VertexPatches(surface, X, options).patches)
+        result.push_back({p.vertex, p.level, p.kappa, p.metric, p.vertices});
+    return result;
+}
+
+} // namespace osculate::contact

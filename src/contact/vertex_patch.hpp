@@ -1,0 +1,33 @@
+#pragma once
+/// Frozen patches around the vertices of a surface, and their bumps.
+
+#include "osculate/contact/master_surface.hpp"
+#include "osculate/contact/rpim_patch.hpp"
+
+#include <vector>
+
+namespace osculate::contact {
+
+/// Patch of one vertex, or of one smooth sector of it where feature edges meet there.
+struct VertexPatch {
+    Index vertex = -1;
+    int level = 0;
+    std::vector<Index> vertices; ///< of the patch, ascending
+    RpimPatch shape;
+    Mat2 metric = Mat2::Identity(); ///< M = 1/2 (mean over edge neighbours of u_j u_j^T)^-1, m^-2
+    double kappa = 0.8;
+    MatrixX2 slope;             ///< (n x 2) Phi_i,a at the vertex: X,a there is slope^T x
+    Vector at_vertex;           ///< (n) Phi_i at the vertex
+    Vec2 origin = Vec2::Zero(); ///< natural coordinates of the vertex
+};
+
+/// All patches of a surface, and which of them each facet may need.
+struct VertexPatches {
+    std::vector<VertexPatch> patches;
+    std::vector<std::vector<Index>> of_facet; ///< patches of the vertices of a facet's 2-ring, ascending
+    Index fallbacks = 0; ///< vertices without a patch, or with one of another level than asked for inside the surface
+
+    VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options);
+};
+
+} // namespace osculate::contact

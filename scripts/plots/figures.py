@@ -13,7 +13,9 @@ import vtk
 
 RUNS = Path("out/figures")
 IMAGES = Path("docs/images")
-MASTERS = ("facets", "rpim")
+MASTERS = ("facets", "rpim", "blend")
+LINES = {"facets": 'lw 1.5 lc rgb "#d95f02" title "facets"', "rpim": 'lw 1.5 lc rgb "#1f78b4" title "rpim"',
+         "blend": 'lw 2 lc rgb "#111111" title "blend"'}
 MU = 0.1  # friction of every scene below
 
 # name of a run: (scene, pair, further changes); each runs once per master
@@ -221,8 +223,7 @@ set output "{IMAGES}/friction.png"
 set xlabel "sliding distance, m"; set ylabel "driving force, MN"
 set xrange [0:3.05]; set yrange [1.64:1.80]; set ytics 0.04; set format y "%.2f"
 set key bottom right
-plot $facets with lines lw 1.5 lc rgb "#d95f02" title "facets", \\
-     $rpim with lines lw 2 lc rgb "#1f78b4" title "rpim, 2 rings"
+plot {", ".join(f"${master} with lines {LINES[master]}" for master in MASTERS)}
 """, **curves)
 
 
@@ -233,8 +234,7 @@ def draw_pressure():
 set title "{title}"
 set ylabel "{'contact pressure, MPa' if mesh == 'quad' else ''}"
 {'unset key' if mesh != 'hybrid' else 'set key top center'}
-plot $facets_{mesh} with linespoints lw 1.5 pt 7 ps 0.35 lc rgb "#d95f02" title "facets", \\
-     $rpim_{mesh} with linespoints lw 2 pt 7 ps 0.35 lc rgb "#1f78b4" title "rpim, 2 rings"
+plot {", ".join(f"${master}_{mesh} with linespoints pt 7 ps 0.35 {LINES[master]}" for master in MASTERS)}
 """ for mesh, title in (("quad", "quadrilaterals"), ("tri", "triangles"), ("hybrid", "both")))
     gnuplot(f"""
 set terminal pngcairo size 1200,380 font "sans,12" background "white"
@@ -249,7 +249,7 @@ unset multiplot
 
 def draw_half_tube():
     subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24", "/usr/bin/python3",
-                    Path(__file__).with_name("half_tube.py"), folder("half_tube", "rpim"),
+                    Path(__file__).with_name("half_tube.py"), folder("half_tube", "blend"),
                     IMAGES / "half_tube.png"], check=True)
 
 
@@ -274,7 +274,7 @@ Written by `scripts/figures`, which runs the scenes of `configs/paper`; edit not
 machine it ran on last. N is the sum of the nodal normal forces, D the force that drives the contactor, both means over
 sliding steps 5 to 30, of 0.1 m each; the ripple is given for steps of 0.025 m, too, since the long ones miss its
 extremes. Roughness is the root mean square second difference of the nodal contact pressure along y = 0
-over its mean, end nodes left out. `rpim` has its defaults: 2 rings, R = 1.42, q = 1.03, m = 6.
+over its mean, end nodes left out. `rpim` and `blend` have their defaults: 2 rings, R = 1.42, q = 1.03, m = 6.
 
 ![Driving force over sliding distance](images/friction.png)
 

@@ -1,5 +1,6 @@
 #include "osculate/app/command_line.hpp"
 
+#include "app/surface_command.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
@@ -24,6 +25,7 @@ struct Arguments {
     std::vector<std::string> changes;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
+    SurfaceOptions surface;
 
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> list;
@@ -90,6 +92,14 @@ ExitCode run_command(int argc, char** argv) {
     CLI::App* check = add_scene_command(program, "check",
                                         "Validate a scene; show sizes, pairs, initial gaps and overlaps", arguments);
     add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
+    CLI::App* surface = add_scene_command(
+        program, "surface", "Write the master surfaces as the solver sees them, before any run", arguments);
+    surface->add_option("--pair", arguments.surface.pair, "Only this contact pair")->type_name("NAME");
+    surface->add_option("-o,--output", arguments.output, "Folder of the files [out/<scene name>/surface]")
+        ->type_name("DIR");
+    surface->add_option("--refine", arguments.surface.refine, "Cut every facet into N x N cells [8]")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
     CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
     keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
     try {
@@ -100,6 +110,10 @@ ExitCode run_command(int argc, char** argv) {
 
     if (*run) {
         run_scene(arguments);
+    } else if (*surface) {
+        arguments.surface.directory = arguments.output;
+        arguments.surface.threads = arguments.threads;
+        print(write_surfaces(arguments.scene, arguments.overrides(), arguments.surface));
     } else if (*keys) {
         return show_keys(arguments.key_path);
     } else {

@@ -1,0 +1,14 @@
+#pragma once
+/// Polylines in a VTK XML file (.vtp).
+
+#include "osculate/output/vtk_file.hpp"
+
+namespace osculate::output {
+
+/// Writes polylines, whose numbers index `points`; `line_data` holds a tuple for every line.
+/// @throws std::runtime_error with path and reason when the file cannot be written
+/// @throws InternalError for an array that does not fit the lines
+void write_lines(const std::filesystem::path& path, const std::vector<Vec3>& points,
+                 const std::vector<std::vector<Index>>& lines, const std::vector<Array>& line_data);
+
+} // namespace osculate::output

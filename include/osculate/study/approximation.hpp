@@ -1,0 +1,58 @@
+#pragma once
+/// Surfaces through the nodes of a mesh, all asked in the same way: facet by facet.
+
+#include "osculate/mesh/half_edge_surface.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osculate::study {
+
+/// Topology and positions of its vertices, local numbering.
+struct SurfaceMesh {
+    mesh::HalfEdgeSurface topology;
+    std::vector<Vec3> x;
+};
+
+struct SurfacePoint {
+    Vec3 point = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();
+    double mean_curvature = 0; ///< H = 1/2 div n, 1/m
+};
+
+class Approximation {
+public:
+    virtual ~Approximation() = default;
+    /// Point that the approximation has for the point u of a facet (natural coordinates of contact::FacetPatch); nothing
+    /// where it has none.
+    [[nodiscard]] virtual std::optional<SurfacePoint> at(Index facet, const Vec2& u) const = 0;
+    /// Facets or vertices that had to take a smaller patch.
+    [[nodiscard]] virtual Index fallbacks() const { return 0; }
+};
+
+/// The facets themselves.
+[[nodiscard]] std::unique_ptr<Approximation> make_facets(const SurfaceMesh& surface);
+
+/// Quadratic patches whose edges meet the vertex normals at right angles; X = sum L_i x_i - sum c_ij L_i L_j on triangles,
+/// the serendipity form of the same on quadrilaterals.                                  [Nagata 2005, CAGD 22, eqs (5)-(20)]
+/// Vertex normals are the facets' averaged with the angles at the vertex: a mesh brings none of its own.
+[[nodiscard]] std::unique_ptr<Approximation> make_nagata(const SurfaceMesh& surface);
+
+/// A height x3(x1, x2) on the k-ring of every facet by radial point interpolation with a linear polynomial basis, m = 3.
+/// The point is the one above u's.                                                      [Qian 2014, eq (9)]
+/// @pre  no facet stands upright in the x1x2 plane
+[[nodiscard]] std::unique_ptr<Approximation> make_height_patches(const SurfaceMesh& surface, int ring);
+
+/// The master surfaces `rpim` and `blend` of contact, with their default basis (m = 6, equal lengths). The point is the foot
+/// that s <- s - g n reaches from the facet's point.
+[[nodiscard]] std::unique_ptr<Approximation> make_rpim(const SurfaceMesh& surface, int ring);
+[[nodiscard]] std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level);
+
+/// Names of all methods: facets, nagata, height_1, rpim_1, rpim_2, blend_1, blend_2.
+[[nodiscard]] const std::vector<std::string>& method_names();
+/// @pre  the name is one of method_names()
+[[nodiscard]] std::unique_ptr<Approximation> make_approximation(const std::string& method, const SurfaceMesh& surface);
+
+} // namespace osculate::study

@@ -1,5 +1,7 @@
 #include "osculate/time/equilibrium.hpp"
 
+#include "osculate/core/parallel.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -225,34 +227,53 @@ void Equilibrium::cover_patches() {
     ++patterns_built_;
 }
 
+void Equilibrium::linearise(std::size_t p, Index j, ContactTangent& tangent) const {
+    const model::ContactTerm& pair = *model_.pairs[p];
+    const Vec3& lambda = lambda_[p][j];
+    const Status status = statuses_[p][j];
+    const auto law = pair.law(j).residual(pair.state(j, x_, lambda), status);
+    const Mat3 mirrored = symmetry_directions(pair.slaves().node[j]), kept = Mat3::Identity() - mirrored;
+    tangent.D = kept * law.by_lambda + mirrored;
+    tangent.reaches = pair.point(j).found && (status != Status::open || !lambda.isZero(0));
+    if (!tangent.reaches) return;
+    pair.vary(j, x_, tangent.variation);
+    pair.drift_variation(j, x_, tangent.variation, tangent.dd);
+    tangent.A.noalias() =
+        law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn + law.by_drift * tangent.dd;
+    tangent.A = kept * tangent.A;
+    pair.master_force_variation(j, lambda, tangent.variation, tangent.E, tangent.G);
+    tangent.E = -tangent.E; // the forces stand on the right of the equilibrium
+    tangent.G = -tangent.G;
+}
+
 const solve::SparseMatrix& Equilibrium::jacobian() {
     if (model_.pairs.empty()) return matrix_->matrix(); // constant: factorised once
-    const ScopedTimer timer(timings_, Part::assembly);
-    cover_patches();
-    matrix_->reset();
-    contact::ContactVariation variation;
-    contact::MatrixX3 force_by_lambda;
-    Matrix dd, A, force_by_y;
+    {
+        const ScopedTimer timer(timings_, Part::assembly);
+        cover_patches();
+        matrix_->reset();
+    }
+    constexpr Index batch = 64; // tangents held at a time: each takes some 100 kB on a smooth master
+    std::vector<ContactTangent> tangents(batch);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
-        for (Index j = 0; j < pair.size(); ++j) {
-            const Vec3& lambda = lambda_[p][j];
-            const Index slave = pair.slaves().node[j], coupling = first_coupling_[p] + j;
-            const Status status = statuses_[p][j];
-            const contact::ContactPoint& point = pair.point(j);
-            const auto law = pair.law(j).residual(pair.state(j, x_, lambda), status);
-            const Mat3 mirrored = symmetry_directions(slave), kept = Mat3::Identity() - mirrored;
-            const Mat3 D = kept * law.by_lambda + mirrored;
-            if (!point.found || (status == Status::open && lambda.isZero(0))) {
-                matrix_->add_contact(coupling, D);
-                continue;
+        for (Index first = 0; first < pair.size(); first += batch) {
+            const Index count = std::min(batch, pair.size() - first);
+            {
+                const ScopedTimer timer(timings_, Part::contact);
+                parallel_for(threads_, count, [&](Index begin, Index end) {
+                    for (Index k = begin; k < end; ++k) linearise(p, first + k, tangents[k]);
+                });
             }
-            pair.vary(j, x_, variation);
-            pair.drift_variation(j, x_, variation, dd);
-            A.noalias() = law.by_gap * variation.dg + law.by_normal * variation.dn + law.by_drift * dd;
-            A = kept * A;
-            pair.master_force_variation(j, lambda, variation, force_by_lambda, force_by_y);
-            matrix_->add_contact(coupling, pair.point_nodes(j), A, D, -force_by_lambda, -force_by_y);
+            const ScopedTimer timer(timings_, Part::assembly);
+            for (Index k = 0; k < count; ++k) {
+                const ContactTangent& t = tangents[k];
+                const Index j = first + k, coupling = first_coupling_[p] + j;
+                if (t.reaches)
+                    matrix_->add_contact(coupling, pair.point_nodes(j), t.A, t.D, t.E, t.G);
+                else
+                    matrix_->add_contact(coupling, t.D);
+            }
         }
     }
     matrix_->finish();

@@ -67,6 +67,15 @@ public:
     [[nodiscard]] const model::Constraints& constraints() const { return constraints_; }
 
 private:
+    /// Derivatives of one slave node's contact law and of the forces on its masters, as SystemMatrix takes them.
+    struct ContactTangent {
+        bool reaches = false; ///< false: only D means anything
+        Mat3 D = Mat3::Zero();
+        contact::MatrixX3 E;
+        Matrix A, G, dd;
+        contact::ContactVariation variation;
+    };
+    void linearise(std::size_t p, Index j, ContactTangent& tangent) const;
     void unpack(const double* z);
     void fill(double* F);
     void record(const double* F, int status_changes);

@@ -1,4 +1,4 @@
-# Debian 12 packages; scripts/dependencies.txt names them.
+# Debian 12 packages; scripts/dependencies.txt names them, scripts/dependencies_bench.txt those of the benchmarks.
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
@@ -7,6 +7,9 @@ find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS kinsol nvecserial)
+if(OSCULATE_BENCH)
+  find_package(benchmark REQUIRED)
+endif()
 set(OSCULATE_VTK_READERS VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
 set(OSCULATE_VTK_WRITERS VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)

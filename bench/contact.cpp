@@ -1,0 +1,133 @@
+// Evaluations of a master surface, and what they are made of. Items are slave points, patches or projections.
+
+#include "osculate/contact/master_surface.hpp"
+#include "osculate/contact/projection.hpp"
+#include "osculate/contact/rpim_patch.hpp"
+#include "surfaces.hpp"
+
+#include <benchmark/benchmark.h>
+
+namespace osculate::bench {
+namespace {
+
+std::unique_ptr<contact::MasterSurface> make(const Surface& surface, const std::string& kind) {
+    if (kind == "facets") return contact::make_facets_surface(surface.topology);
+    if (kind == "rpim") return contact::make_rpim_surface(surface.topology, surface.x, {});
+    return contact::make_blend_surface(surface.topology, surface.x, {});
+}
+
+void evaluate(benchmark::State& state, const std::string& shape, const std::string& kind, bool with_variation) {
+    const Surface& on = surface(shape);
+    const auto master = make(on, kind);
+    const contact::FacetSearch search = [&] {
+        contact::FacetSearch made(on.topology);
+        made.build(on.x);
+        return made;
+    }();
+    const std::vector<Vec3> points = slave_points(on, 512);
+    std::vector<contact::FacetHit> hits;
+    for (const Vec3& s : points) hits.push_back(search.global(s, on.x));
+    contact::ContactPoint point;
+    contact::ContactVariation variation;
+    std::size_t k = 0;
+    for (auto _ : state) {
+        master->evaluate(points[k], hits[k], on.x, point, with_variation ? &variation : nullptr);
+        benchmark::DoNotOptimize(point.gap);
+        k = (k + 1) % points.size();
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+
+/// Fitting all patches of a surface; an item is a facet (rpim) or a vertex (blend).
+void fit(benchmark::State& state, const std::string& shape, const std::string& kind) {
+    const Surface& on = surface(shape);
+    for (auto _ : state) benchmark::DoNotOptimize(make(on, kind));
+    state.SetItemsProcessed(state.iterations() *
+                            (kind == "rpim" ? on.topology.facet_count() : on.topology.vertex_count()));
+}
+
+/// A square patch of side x side nodes, gently curved.
+struct SquarePatch {
+    contact::MatrixX2 u;
+    contact::MatrixX3 x;
+
+    explicit SquarePatch(int side) : u(side * side, 2), x(side * side, 3) {
+        for (Index i = 0; i < u.rows(); ++i) {
+            u.row(i) << i % side - 0.5 * (side - 1), static_cast<double>(i / side) - 0.5 * (side - 1);
+            x.row(i) << u.row(i), 0.05 * u.row(i).squaredNorm();
+        }
+    }
+};
+
+void fit_one(benchmark::State& state) {
+    const SquarePatch square(static_cast<int>(state.range(0)));
+    for (auto _ : state) benchmark::DoNotOptimize(contact::RpimPatch::fit(square.u, {}, 6));
+    state.SetItemsProcessed(state.iterations());
+}
+
+template <class Patch> void project_on(benchmark::State& state, const Patch& patch, const contact::MatrixX3& x) {
+    const contact::MatrixX3 coefficients = patch.coefficients(x);
+    const Vec2 start = Vec2::Constant(0.1);
+    const contact::PatchPoint above = patch.point(Vec2(0.35, 0.2), coefficients);
+    const Vec3 s = above.X + 0.05 * above.normal();
+    for (auto _ : state) benchmark::DoNotOptimize(contact::project(patch, coefficients, s, start));
+    state.SetItemsProcessed(state.iterations());
+}
+
+void project_facet(benchmark::State& state) {
+    const SquarePatch square(2);
+    contact::MatrixX3 corners(4, 3);
+    corners << square.x.row(0), square.x.row(1), square.x.row(3), square.x.row(2);
+    corners(2, 2) += 0.1; // twisted
+    project_on(state, contact::FacetPatch(4), corners);
+}
+
+void project_rpim(benchmark::State& state) {
+    const SquarePatch square(static_cast<int>(state.range(0)));
+    project_on(state, contact::RpimPatch::fit(square.u, {}, 6).value(), square.x);
+}
+
+/// What an evaluation asks of a patch besides the projection.
+void rpim_coefficients(benchmark::State& state) {
+    const SquarePatch square(static_cast<int>(state.range(0)));
+    const auto patch = contact::RpimPatch::fit(square.u, {}, 6).value();
+    for (auto _ : state) benchmark::DoNotOptimize(patch.coefficients(square.x));
+    state.SetItemsProcessed(state.iterations());
+}
+
+void rpim_weights(benchmark::State& state) {
+    const SquarePatch square(static_cast<int>(state.range(0)));
+    const auto patch = contact::RpimPatch::fit(square.u, {}, 6).value();
+    Vector phi(patch.size());
+    contact::MatrixX2 phi_a(patch.size(), 2);
+    for (auto _ : state) {
+        patch.weights(Vec2(0.35, 0.2), phi, phi_a);
+        benchmark::DoNotOptimize(phi.data());
+        benchmark::ClobberMemory();
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+
+// sides: nodes of a 1-ring facet patch, a 2-ring vertex patch and a 2-ring facet patch
+BENCHMARK(fit_one)->Name("patch/fit")->Arg(4)->Arg(5)->Arg(6);
+BENCHMARK(rpim_coefficients)->Name("patch/coefficients")->Arg(4)->Arg(5)->Arg(6);
+BENCHMARK(rpim_weights)->Name("patch/weights")->Arg(4)->Arg(5)->Arg(6);
+BENCHMARK(project_facet)->Name("project/facet");
+BENCHMARK(project_rpim)->Name("project/rpim")->Arg(4)->Arg(5)->Arg(6);
+
+[[maybe_unused]] const bool registered = [] {
+    for (const char* shape : {"half_tube", "block"}) {
+        for (const char* kind : {"facets", "rpim", "blend"})
+            for (const bool variation : {false, true})
+                benchmark::RegisterBenchmark(
+                    (std::string("evaluate/") + shape + (variation ? "/variation/" : "/values/") + kind).c_str(),
+                    evaluate, shape, kind, variation);
+        for (const char* kind : {"rpim", "blend"})
+            benchmark::RegisterBenchmark((std::string("build/") + shape + "/" + kind).c_str(), fit, shape, kind)
+                ->Unit(benchmark::kMillisecond);
+    }
+    return true;
+}();
+
+} // namespace
+} // namespace osculate::bench

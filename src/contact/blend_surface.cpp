@@ -31,12 +31,19 @@ class BlendSurface final : public MasterSurface {
 public:
     BlendSurface(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options)
         : surface_(surface), vertex_patches_(surface, X, options), facets_(make_facets_surface(surface)) {
+        find_creases();
         for (Index f = 0; f < surface.facet_count(); ++f) {
             std::vector<Index> nodes;
-            for (const Index p : vertex_patches_.of_facet[f]) {
-                const auto& own = vertex_patches_.patches[p].vertices;
-                nodes.insert(nodes.end(), own.begin(), own.end());
-            }
+            const auto add = [&](Index facet) {
+                for (const Index p : vertex_patches_.of_facet[facet]) {
+                    const auto& own = vertex_patches_.patches[p].vertices;
+                    nodes.insert(nodes.end(), own.begin(), own.end());
+                }
+                const auto own = surface.facet_vertices(facet);
+                if (vertex_patches_.bare[facet] != 0) nodes.insert(nodes.end(), own.begin(), own.end());
+            };
+            add(f);
+            for (const Neighbour& other : creases_[f]) add(other.facet);
             std::sort(nodes.begin(), nodes.end());
             nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
             reach_.push_back(std::move(nodes));
@@ -53,20 +60,91 @@ public:
         if (hit.facet < 0) return;
         const double size = surface_.facet_size(hit.facet);
         if (beyond_boundary(hit, size)) return;
-        std::vector<ActivePatch> active;
-        for (const Index p : vertex_patches_.of_facet[hit.facet]) see(vertex_patches_.patches[p], s, x, active);
-        if (active.empty()) {
-            // no patch could be made here, or s is too far off for any foot: only the facet itself is left
-            if (vertex_patches_.of_facet[hit.facet].empty()) facets_->evaluate(s, hit, x, point, variation);
-            return;
+        Side side = look(s, hit, x);
+        for (const Index facet : across_crease(hit)) {
+            FacetHit there;
+            there.facet = facet;
+            Side other = look(s, there, x);
+            // beyond a crease both sides are planes, more or less, through it: the one s is farther from faces s. For
+            // a convex edge that is the larger gap, for a concave one the smaller; a tie keeps the closest facet
+            if (other.point.found &&
+                (!side.point.found || std::abs(other.point.gap) > (1 + tie) * std::abs(side.point.gap)))
+                side = std::move(other);
         }
-        blend(active, x, point);
-        point.behind = point.gap <= -deepest * size;
-        point.found = !point.behind;
-        if (point.found && variation != nullptr) vary_blend(active, s, point, *variation);
+        point = std::move(side.point);
+        point.facet = hit.facet;
+        if (!point.found || variation == nullptr) return;
+        if (side.active.empty()) {
+            ContactPoint same;
+            facets_->evaluate(s, side.hit, x, same, variation);
+        } else {
+            vary_blend(side.active, s, point, *variation);
+        }
     }
 
 private:
+    static constexpr double tie = 1e-9;
+
+    /// A slave point seen from one smooth side of the surface.
+    struct Side {
+        FacetHit hit;
+        std::vector<ActivePatch> active; ///< empty where only the facet itself is left
+        ContactPoint point;
+    };
+    /// Another smooth side that meets a facet in one of its edges or corners.
+    struct Neighbour {
+        int corner; ///< the edge is the one that leaves it
+        bool edge;
+        Index facet;
+    };
+
+    Side look(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x) const {
+        Side side{hit, {}, {}};
+        for (const Index p : vertex_patches_.of_facet[hit.facet]) see(vertex_patches_.patches[p], s, x, side.active);
+        if (!side.active.empty()) {
+            blend(side.active, x, side.point);
+            side.point.behind = side.point.gap <= -deepest * surface_.facet_size(hit.facet);
+            side.point.found = !side.point.behind;
+        } else if (vertex_patches_.bare[hit.facet] != 0) {
+            facets_->evaluate(s, hit, x, side.point, nullptr);
+        } // else s is too far off for any foot
+        return side;
+    }
+
+    /// Facets of the other sides when s lies beyond a crease, so that its closest point is on one.
+    [[nodiscard]] std::vector<Index> across_crease(const FacetHit& hit) const {
+        std::vector<Index> result;
+        if (hit.overhang == 0 || creases_[hit.facet].empty()) return result;
+        const int n = static_cast<int>(surface_.facet_vertices(hit.facet).size());
+        const auto on_edge = [&](int c) {
+            const Vec2& u = hit.u;
+            const double square[] = {1 + u.y(), 1 - u.x(), 1 - u.y(), 1 + u.x()};
+            const double triangle[] = {u.y(), 1 - u.sum(), u.x()};
+            return (n == 4 ? square : triangle)[c] < tie;
+        };
+        for (const Neighbour& k : creases_[hit.facet]) {
+            const bool this_edge = on_edge(k.corner), last_edge = on_edge((k.corner + n - 1) % n);
+            if (k.edge ? this_edge : this_edge && last_edge) result.push_back(k.facet);
+        }
+        return result;
+    }
+
+    void find_creases() {
+        creases_.resize(static_cast<std::size_t>(surface_.facet_count()));
+        for (Index f = 0; f < surface_.facet_count(); ++f) {
+            const auto v = surface_.facet_vertices(f);
+            for (std::size_t c = 0; c < v.size(); ++c) {
+                const int corner = static_cast<int>(c);
+                const Index h = surface_.first_half_edge(f) + corner;
+                if (surface_.is_feature_edge(h))
+                    creases_[f].push_back({corner, true, surface_.half_edges()[surface_.half_edges()[h].twin].facet});
+                for (const auto& sector : sectors(surface_, v[c]))
+                    if (!std::binary_search(sector.begin(), sector.end(), f))
+                        creases_[f].push_back({corner, false, sector.front()});
+            }
+        }
+    }
+
     /// Adds the patch to `active` when s has a foot on it within its bump.
     static void see(const VertexPatch& patch, const Vec3& s, const std::vector<Vec3>& x,
                     std::vector<ActivePatch>& active) {
@@ -97,18 +175,24 @@ private:
         a.normal = unique.normal;
         a.gap = unique.gap;
         a.psi = (1 - a.tau) * (1 - a.tau) * (1 - a.tau);
-        first_variation(a);
+        first_variation(a, nodes, from_origin);
         active.push_back(std::move(a));
     }
 
     /// du_a = K^-1_ab ( X,b.(ds - Phi_i dx_i) + g n.Phi_i,b dx_i ),  dg = n.(ds - Phi_i dx_i),
     /// dpsi = -6 kappa (1-tau)^2 u^T M du
-    static void first_variation(ActivePatch& a) {
+    static void first_variation(ActivePatch& a, const MatrixX3& nodes, const Vec3& from_origin) {
         const PatchPoint& p = a.foot.point;
         const auto n = static_cast<Index>(a.patch->vertices.size());
         a.phi.resize(n);
         a.phi_a.resize(n, 2);
         a.patch->shape.weights(a.foot.u, a.phi, a.phi_a);
+        // partition of unity and foot to the last digit, not only to the round-off of the patch: then forces and
+        // moments balance as well
+        a.phi /= a.phi.sum();
+        a.phi_a -= (a.phi * a.phi_a.colwise().sum()).eval();
+        a.phi += a.phi_a * ((p.X_a.transpose() * p.X_a - a.gap * p.curvature(a.normal)).inverse() *
+                            (p.X_a.transpose() * (from_origin - nodes.transpose() * a.phi)));
         const Mat2 K_inverse = (p.X_a.transpose() * p.X_a - a.gap * p.curvature(a.normal)).inverse();
         const Eigen::Matrix<double, 2, 3> tangents = p.X_a.transpose();
         a.du.resize(2, 3 + 3 * n);
@@ -254,7 +338,8 @@ private:
     const mesh::HalfEdgeSurface& surface_;
     VertexPatches vertex_patches_;
     std::unique_ptr<MasterSurface> facets_;
-    std::vector<std::vector<Index>> reach_; ///< per facet, vertices of all patches it may need
+    std::vector<std::vector<Neighbour>> creases_; ///< per facet
+    std::vector<std::vector<Index>> reach_;       ///< per facet, vertices of all patches it may need
 };
 
 } // namespace

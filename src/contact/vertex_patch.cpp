@@ -16,34 +16,6 @@ constexpr double kappa_aim = 0.8;     ///< where neither interpolation nor cover
 constexpr double beyond_nodes = 1.15; ///< least tau at nodes outside the patch: the bump has ended there
 constexpr double covered = 0.75;      ///< largest tau at the vertex's own edge midpoints and facet centres
 
-/// Facets around a vertex that hang together over smooth edges.
-std::vector<std::vector<Index>> sectors(const mesh::HalfEdgeSurface& surface, Index vertex) {
-    const auto fan = surface.vertex_facets(vertex);
-    std::vector<std::vector<Index>> result;
-    std::vector<char> taken(fan.size(), 0);
-    for (std::size_t seed = 0; seed < fan.size(); ++seed) {
-        if (taken[seed] != 0) continue;
-        std::vector<Index> sector{fan[seed]};
-        taken[seed] = 1;
-        for (std::size_t next = 0; next < sector.size(); ++next) {
-            const auto v = surface.facet_vertices(sector[next]);
-            const auto across = surface.edge_neighbours(sector[next]);
-            const int n = static_cast<int>(v.size());
-            for (int c = 0; c < n; ++c) {
-                if (v[c] != vertex && v[(c + 1) % n] != vertex) continue;
-                if (across[c] < 0 || surface.is_feature_edge(surface.first_half_edge(sector[next]) + c)) continue;
-                const auto place = std::find(fan.begin(), fan.end(), across[c]) - fan.begin();
-                if (taken[place] != 0) continue;
-                taken[place] = 1;
-                sector.push_back(across[c]);
-            }
-        }
-        std::sort(sector.begin(), sector.end());
-        result.push_back(std::move(sector));
-    }
-    return result;
-}
-
 std::vector<Index> grown(const mesh::HalfEdgeSurface& surface, const std::vector<Index>& facets) {
     std::vector<Index> result;
     for (const Index f : facets) {
@@ -147,6 +119,11 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
         if (lowest > highest) patch.kappa = lowest; // interpolation before coverage, should no ring be left
         if (good) break;
     }
+    if (patch.level == 0 && options.level > 1) { // near-duplicate nodes further out, perhaps
+        BlendOptions fewer = options;
+        --fewer.level;
+        return make_patch(surface, vertex, sector, X, fewer);
+    }
     if (patch.level == 0) return std::nullopt;
     patch.at_vertex.resize(patch.shape.size());
     patch.slope.resize(patch.shape.size(), 2);
@@ -156,18 +133,46 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
 
 } // namespace
 
+std::vector<std::vector<Index>> sectors(const mesh::HalfEdgeSurface& surface, Index vertex) {
+    const auto fan = surface.vertex_facets(vertex);
+    std::vector<std::vector<Index>> result;
+    std::vector<char> taken(fan.size(), 0);
+    for (std::size_t seed = 0; seed < fan.size(); ++seed) {
+        if (taken[seed] != 0) continue;
+        std::vector<Index> sector{fan[seed]};
+        taken[seed] = 1;
+        for (std::size_t next = 0; next < sector.size(); ++next) {
+            const auto v = surface.facet_vertices(sector[next]);
+            const auto across = surface.edge_neighbours(sector[next]);
+            const int n = static_cast<int>(v.size());
+            for (int c = 0; c < n; ++c) {
+                if (v[c] != vertex && v[(c + 1) % n] != vertex) continue;
+                if (across[c] < 0 || surface.is_feature_edge(surface.first_half_edge(sector[next]) + c)) continue;
+                const auto place = std::find(fan.begin(), fan.end(), across[c]) - fan.begin();
+                if (taken[place] != 0) continue;
+                taken[place] = 1;
+                sector.push_back(across[c]);
+            }
+        }
+        std::sort(sector.begin(), sector.end());
+        result.push_back(std::move(sector));
+    }
+    return result;
+}
+
 VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,
                              const BlendOptions& options)
-    : of_facet(static_cast<std::size_t>(surface.facet_count())) {
+    : of_facet(static_cast<std::size_t>(surface.facet_count())), bare(of_facet.size(), 0) {
     std::vector<std::vector<std::pair<Index, Index>>> corner_patch(of_facet.size()); // facet -> (vertex, patch)
     for (Index v = 0; v < surface.vertex_count(); ++v)
         for (const auto& sector : sectors(surface, v)) {
             auto patch = make_patch(surface, v, sector, X, options);
             if (!patch) {
                 ++fallbacks;
+                for (const Index f : sector) bare[f] = 1;
                 continue;
             }
-            if (patch->level != options.level && !surface.is_boundary_vertex(v)) ++fallbacks;
+            if (patch->level < options.level || patch->shape.polynomial_terms() < options.polynomial_terms) ++fallbacks;
             for (const Index f : sector) corner_patch[f].emplace_back(v, static_cast<Index>(patches.size()));
             patches.push_back(std::move(*patch));
         }

@@ -21,11 +21,15 @@ struct VertexPatch {
     Vec2 origin = Vec2::Zero(); ///< natural coordinates of the vertex
 };
 
+/// Facets around a vertex that hang together over smooth edges, each sector ascending.
+[[nodiscard]] std::vector<std::vector<Index>> sectors(const mesh::HalfEdgeSurface& surface, Index vertex);
+
 /// All patches of a surface, and which of them each facet may need.
 struct VertexPatches {
     std::vector<VertexPatch> patches;
     std::vector<std::vector<Index>> of_facet; ///< patches of the vertices of a facet's 2-ring, ascending
-    Index fallbacks = 0; ///< vertices without a patch, or with one of another level than asked for inside the surface
+    std::vector<char> bare;                   ///< per facet, whether one of its vertices has no patch on its side
+    Index fallbacks = 0; ///< vertices without a patch, or with a smaller or simpler one than asked for
 
     VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options);
 };

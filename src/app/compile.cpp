@@ -2,6 +2,7 @@
 
 #include "app/gaps.hpp"
 #include "app/supports.hpp"
+#include "osculate/contact/mirror.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 #include "osculate/mesh/generators.hpp"
@@ -264,8 +265,9 @@ private:
         const ScopedTimer timer(timings_, Part::patches);
         const std::vector<Vec3>& X = plan_.model.X;
         std::unique_ptr<mesh::HalfEdgeSurface> surface;
+        const contact::MirroredSurface mirrored = mirror_at_symmetry(master);
         try {
-            surface = std::make_unique<mesh::HalfEdgeSurface>(master.facets, X);
+            surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
         } catch (const std::runtime_error& error) {
             faults_.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
             return nullptr;
@@ -291,15 +293,38 @@ private:
             slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
         }
 
-        const std::vector<Index> master_nodes = surface->vertex_nodes();
+        model::MasterNodes master_nodes;
         std::vector<Vec3> vertices;
-        for (const Index node : master_nodes) vertices.push_back(X[node]);
+        for (const Index node : surface->vertex_nodes()) {
+            master_nodes.node.push_back(mirrored.original[node]);
+            vertices.push_back(mirrored.positions[node]);
+            if (mirrored.images.size() > 1) master_nodes.image.push_back(mirrored.image[node]);
+        }
+        master_nodes.images = mirrored.images;
         model::ContactOptions options;
         options.friction = spec.friction;
         options.closing_tolerance = spec.closing_tolerance;
         auto shape = make_master(spec.master, *surface, vertices, options);
-        return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface), master_nodes,
-                                                    std::move(shape), options);
+        return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface),
+                                                    std::move(master_nodes), std::move(shape), options);
+    }
+
+    /// The master surface with its images beyond the symmetry planes that its body is held at. A patch cut off at such a
+    /// plane would be one-sided and wrong there.
+    contact::MirroredSurface mirror_at_symmetry(const model::Set& master) const {
+        std::vector<contact::SymmetryPlane> planes;
+        for (const auto& [name, support] : scene_.supports) {
+            const model::Set& held = set(name);
+            if (support.symmetry && held.body == master.body)
+                planes.push_back({plan_.model.X[held.nodes.front()], support.axes.col(0)});
+        }
+        double largest = 0; // facet size
+        for (const mesh::Facet& facet : master.facets) {
+            const auto area = fe::tributary_areas(facet, plan_.model.X);
+            largest = std::max(largest, std::sqrt(std::accumulate(area.begin(), area.end(), 0.0)));
+        }
+        constexpr double rings = 6; // more than patches and their bumps reach
+        return contact::mirror(master.facets, plan_.model.X, planes, rings * largest);
     }
 
     /// The master surface asked for, and the rule against flip-flop that it needs.

@@ -122,8 +122,7 @@ double largest_jump(const mesh::HalfEdgeSurface& surface, const SurfaceSamples& 
 std::string write_pair(const model::ContactTerm& pair, const std::vector<Vec3>& X, const fs::path& folder, int N,
                        int threads) {
     const mesh::HalfEdgeSurface& surface = pair.surface();
-    std::vector<Vec3> x;
-    for (const Index node : pair.master_nodes()) x.push_back(X[node]);
+    const std::vector<Vec3> x = pair.vertices(X);
     const SurfaceSamples all = sample_surface(surface, pair.master(), x, N, threads);
     const fs::path file = folder / (pair.name() + ".vtp"), edges = folder / (pair.name() + "_edges.vtp");
     Index features = 0;

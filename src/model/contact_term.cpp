@@ -2,6 +2,7 @@
 
 #include "osculate/core/parallel.hpp"
 
+#include <map>
 #include <utility>
 
 namespace osculate::model {
@@ -9,12 +10,6 @@ namespace osculate::model {
 namespace {
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
-
-std::vector<Vec3> positions(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
-    std::vector<Vec3> v(nodes.size());
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = x[nodes[i]];
-    return v;
-}
 
 Vec3 centre(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
     Vec3 sum = Vec3::Zero();
@@ -24,13 +19,33 @@ Vec3 centre(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
 } // namespace
 
 ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
-                         std::unique_ptr<mesh::HalfEdgeSurface> surface, std::vector<Index> master_nodes,
+                         std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
                          std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options)
     : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
       master_nodes_(std::move(master_nodes)), master_(std::move(master)),
-      search_(*surface_, positions(X, master_nodes_), centre(X, slaves_.node)), options_(options),
-      held_(slaves_.node.size(), 0), facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0),
-      hits_(slaves_.node.size()), points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {}
+      search_(*surface_, vertices(X), centre(X, slaves_.node)), options_(options), held_(slaves_.node.size(), 0),
+      facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0), hits_(slaves_.node.size()),
+      points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {
+    if (master_nodes_.image.empty()) return;
+    std::map<Index, Index> own; // node -> vertex
+    for (std::size_t v = 0; v < master_nodes_.node.size(); ++v)
+        if (master_nodes_.image[v] == 0) own[master_nodes_.node[v]] = static_cast<Index>(v);
+    for (const Index node : master_nodes_.node) own_vertex_.push_back(own.at(node));
+}
+
+std::vector<Vec3> ContactTerm::vertices(const std::vector<Vec3>& x) const {
+    std::vector<Vec3> v(master_nodes_.node.size());
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        v[i] = x[master_nodes_.node[i]];
+        if (!master_nodes_.image.empty()) v[i] = master_nodes_.images[master_nodes_.image[i]](v[i]);
+    }
+    return v;
+}
+
+const Mat3& ContactTerm::image(Index j, Index i) const {
+    const Index at = master_nodes_.image.empty() ? 0 : master_nodes_.image[points_[j].nodes[i]];
+    return master_nodes_.images[at].M;
+}
 
 ContactHistory ContactTerm::initial_history() const {
     const std::size_t n = slaves_.node.size();
@@ -44,7 +59,7 @@ void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& h
     lambda_start_ = history.lambda;
     std::fill(changes_.begin(), changes_.end(), 0);
     const ScopedTimer timer(timings, Part::search);
-    vertices_ = positions(x, master_nodes_);
+    vertices_ = vertices(x);
     search_.build(vertices_);
     parallel_for(threads, size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j)
@@ -56,7 +71,7 @@ void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& h
 void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int threads) {
     {
         const ScopedTimer timer(timings, Part::search);
-        vertices_ = positions(x, master_nodes_);
+        vertices_ = vertices(x);
         parallel_for(threads, size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
                 const Vec3& s = x[slaves_.node[j]];
@@ -80,7 +95,7 @@ void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int thr
             master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, point);
             point_nodes_[j].clear();
             if (!point.found) continue;
-            for (const Index v : point.nodes) point_nodes_[j].push_back(master_nodes_[v]);
+            for (const Index v : point.nodes) point_nodes_[j].push_back(master_nodes_.node[v]);
         }
     });
 }
@@ -93,7 +108,7 @@ contact::Coulomb ContactTerm::law(Index j) const {
 
 std::vector<Index> ContactTerm::patch_nodes(Index facet) const {
     std::vector<Index> nodes;
-    for (const Index v : master_->patch_vertices(facet)) nodes.push_back(master_nodes_[v]);
+    for (const Index v : master_->patch_vertices(facet)) nodes.push_back(master_nodes_.node[v]);
     return nodes;
 }
 
@@ -103,7 +118,7 @@ contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, co
     Vec3 drift = x[slaves_.node[j]] - x_start_[slaves_.node[j]];
     for (std::size_t i = 0; i < point_nodes_[j].size(); ++i) {
         const Index node = point_nodes_[j][i];
-        drift -= point.weights(static_cast<Index>(i)) * (x[node] - x_start_[node]);
+        drift -= point.weights(static_cast<Index>(i)) * (image(j, static_cast<Index>(i)) * (x[node] - x_start_[node]));
     }
     return {lambda, point.gap, point.normal, drift};
 }
@@ -119,7 +134,7 @@ void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, const con
     const contact::ContactPoint& point = points_[j];
     const auto n = static_cast<Index>(point_nodes_[j].size());
     Eigen::Matrix3Xd moved(3, n);
-    for (Index i = 0; i < n; ++i) moved.col(i) = x[point_nodes_[j][i]] - x_start_[point_nodes_[j][i]];
+    for (Index i = 0; i < n; ++i) moved.col(i) = image(j, i) * (x[point_nodes_[j][i]] - x_start_[point_nodes_[j][i]]);
     dd.noalias() = -moved * variation.dweights;
     dd.leftCols<3>() += Mat3::Identity();
     for (Index i = 0; i < n; ++i) dd.middleCols<3>(3 + 3 * i) -= point.weights(i) * Mat3::Identity();
@@ -128,7 +143,8 @@ void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, const con
 Vec3 ContactTerm::master_force(Index j, Index i, const Vec3& lambda) const {
     const contact::ContactPoint& point = points_[j];
     const double normal = lambda.dot(point.normal);
-    return point.pressing.row(i).transpose() * normal - point.weights(i) * (lambda - normal * point.normal);
+    const Vec3 force = point.pressing.row(i).transpose() * normal - point.weights(i) * (lambda - normal * point.normal);
+    return image(j, i).transpose() * force;
 }
 
 void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
@@ -147,6 +163,17 @@ void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const cont
         const double phi = point.weights(i);
         by_lambda.middleRows<3>(3 * i) = (p + phi * n) * n.transpose() - phi * Mat3::Identity();
         by_y.middleRows<3>(3 * i) += (p + phi * n) * dL + phi * L * variation.dn - lambda_T * variation.dweights.row(i);
+    }
+}
+
+void ContactTerm::fold(Index j, Matrix& A, MatrixX3& E, Matrix& G) const {
+    if (master_nodes_.image.empty()) return;
+    for (Index i = 0; i < static_cast<Index>(point_nodes_[j].size()); ++i) {
+        const Mat3& M = image(j, i); // dx_vertex = M dx_node, f_node = M^T f_vertex
+        A.middleCols<3>(3 + 3 * i) = (A.middleCols<3>(3 + 3 * i) * M).eval();
+        G.middleCols<3>(3 + 3 * i) = (G.middleCols<3>(3 + 3 * i) * M).eval();
+        E.middleRows<3>(3 * i) = (M.transpose() * E.middleRows<3>(3 * i)).eval();
+        G.middleRows<3>(3 * i) = (M.transpose() * G.middleRows<3>(3 * i)).eval();
     }
 }
 

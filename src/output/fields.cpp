@@ -113,7 +113,7 @@ Values master_contact_force(const Snapshot& snapshot, Index pair) {
         const contact::ContactPoint& point = term.point(j);
         if (!point.found) continue;
         for (std::size_t i = 0; i < point.nodes.size(); ++i)
-            force[point.nodes[i]] +=
+            force[term.own_vertex(point.nodes[i])] +=
                 term.master_force(j, static_cast<Index>(i), snapshot.state().contact[pair].lambda[j]);
     }
     Values values;

@@ -2,6 +2,7 @@
 
 #include "output/files.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <unordered_map>
 #include <utility>
@@ -46,7 +47,11 @@ Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model
         const model::ContactTerm& pair = *model.pairs[p];
         const auto number = static_cast<Index>(p);
         add_surface(model, pair.name() + ".slave", number, pair.slaves().node, pair.slaves().facets, slave);
-        add_surface(model, pair.name() + ".master", number, pair.master_nodes(), pair.surface().facets(), master);
+        std::vector<mesh::Facet> own; // without mirror images
+        for (const mesh::Facet& facet : pair.surface().facets())
+            if (std::all_of(facet.begin(), facet.end(), [&](Index node) { return node < model.nodes(); }))
+                own.push_back(facet);
+        add_surface(model, pair.name() + ".master", number, pair.master_nodes(), own, master);
     }
 }
 

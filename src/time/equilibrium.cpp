@@ -222,6 +222,7 @@ void Equilibrium::cover_patches() {
             auto& masters = couplings[static_cast<std::size_t>(first_coupling_[p] + j)].masters;
             if (reaches(p, j)) masters = model_.pairs[p]->point_nodes(j);
             std::sort(masters.begin(), masters.end());
+            masters.erase(std::unique(masters.begin(), masters.end()), masters.end()); // mirror images repeat nodes
         }
     matrix_ = std::make_unique<model::SystemMatrix>(constraints_, model_.K, std::move(couplings));
     ++patterns_built_;
@@ -242,6 +243,7 @@ void Equilibrium::linearise(std::size_t p, Index j, ContactTangent& tangent) con
         law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn + law.by_drift * tangent.dd;
     tangent.A = kept * tangent.A;
     pair.master_force_variation(j, lambda, tangent.variation, tangent.E, tangent.G);
+    pair.fold(j, tangent.A, tangent.E, tangent.G);
     tangent.E = -tangent.E; // the forces stand on the right of the equilibrium
     tangent.G = -tangent.G;
 }

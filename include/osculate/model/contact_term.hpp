@@ -4,6 +4,7 @@
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/coulomb.hpp"
 #include "osculate/contact/master_surface.hpp"
+#include "osculate/contact/mirror.hpp"
 #include "osculate/contact/search.hpp"
 #include "osculate/core/timing.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
@@ -29,6 +30,13 @@ struct SlaveNodes {
     std::vector<mesh::Facet> facets; ///< slave surface, global nodes
 };
 
+/// What the vertices of a master surface are: nodes, or mirror images of nodes.
+struct MasterNodes {
+    std::vector<Index> node;  ///< (vertices) global
+    std::vector<Index> image{}; ///< (vertices) into images; empty: every vertex is its node
+    std::vector<contact::Image> images{contact::Image{}};
+};
+
 struct ContactOptions {
     double friction = 0;      ///< Coulomb's mu
     double hysteresis = 0.03; ///< of the facet size, see contact::FacetSearch::track
@@ -42,9 +50,9 @@ public:
     using MatrixX3 = contact::MatrixX3;
 
     /// @param X            reference positions of all nodes
-    /// @param master_nodes global node of every vertex of `surface`
+    /// @param master_nodes what the vertices of `surface` are
     ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
-                std::unique_ptr<mesh::HalfEdgeSurface> surface, std::vector<Index> master_nodes,
+                std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
                 std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options);
 
     [[nodiscard]] const std::string& name() const { return name_; }
@@ -52,8 +60,12 @@ public:
     [[nodiscard]] const SlaveNodes& slaves() const { return slaves_; }
     [[nodiscard]] const mesh::HalfEdgeSurface& surface() const { return *surface_; }
     [[nodiscard]] const contact::MasterSurface& master() const { return *master_; }
-    [[nodiscard]] const std::vector<Index>& master_nodes() const { return master_nodes_; }
+    [[nodiscard]] const std::vector<Index>& master_nodes() const { return master_nodes_.node; }
     [[nodiscard]] const ContactOptions& options() const { return options_; }
+    /// Positions of the master's vertices, mirror images among them.
+    [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const;
+    /// The vertex that stands for the node itself of which `vertex` may be an image.
+    [[nodiscard]] Index own_vertex(Index vertex) const { return own_vertex_.empty() ? vertex : own_vertex_[vertex]; }
     [[nodiscard]] ContactHistory initial_history() const;
 
     /// Opens a step at nodal positions x: slips are measured from here. Nodes that are not closed are searched anew over
@@ -82,15 +94,23 @@ public:
     void master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
                                 MatrixX3& by_lambda, Matrix& by_y) const;
 
+    /// Turns derivatives by the vertices of the patch into derivatives by their nodes: A (3 x 3+3n), E (3n x 3) and G
+    /// (3n x 3+3n) as master_force_variation() gives them. Nothing changes but for mirror images.
+    void fold(Index j, Matrix& A, MatrixX3& E, Matrix& G) const;
+
     [[nodiscard]] const std::vector<Index>& facets() const { return facet_; }
     /// Facet changes at the last evaluation.
     [[nodiscard]] int facet_changes() const { return facet_changes_; }
 
 private:
+    /// Linear part of the image that vertex i of the patch of slave j is.
+    [[nodiscard]] const Mat3& image(Index j, Index i) const;
+
     std::string name_;
     SlaveNodes slaves_;
     std::unique_ptr<mesh::HalfEdgeSurface> surface_;
-    std::vector<Index> master_nodes_;
+    MasterNodes master_nodes_;
+    std::vector<Index> own_vertex_; ///< (vertices) empty without images
     std::unique_ptr<contact::MasterSurface> master_;
     contact::FacetSearch search_;
     ContactOptions options_;

@@ -4,6 +4,7 @@
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
+#include "osculate/app/surface_study.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/scene/keys.hpp"
@@ -68,6 +69,13 @@ void run_scene(const Arguments& arguments) {
                       folder));
 }
 
+void run_study(const Arguments& arguments) {
+    const scene::SurfaceStudy study = scene::read_surface_study(arguments.scene, study::method_names());
+    const std::string folder = arguments.output.empty() ? "out/" + study.name : arguments.output;
+    const std::string plots = write_surface_study(study, run_surface_study(study, arguments.threads), folder);
+    print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
+}
+
 ExitCode show_keys(const std::string& path) {
     const std::string keys = scene::describe_keys(path);
     if (keys.empty()) {
@@ -102,6 +110,10 @@ ExitCode run_command(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
     CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
     keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
+    CLI::App* study = program.add_subcommand("surface-study", "Measure surface approximations against exact surfaces");
+    study->add_option("STUDY", arguments.scene, "Study file")->required();
+    study->add_option("-o,--output", arguments.output, "Folder of the tables and plots [out/<study name>]")
+        ->type_name("DIR");
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -114,6 +126,8 @@ ExitCode run_command(int argc, char** argv) {
         arguments.surface.directory = arguments.output;
         arguments.surface.threads = arguments.threads;
         print(write_surfaces(arguments.scene, arguments.overrides(), arguments.surface));
+    } else if (*study) {
+        run_study(arguments);
     } else if (*keys) {
         return show_keys(arguments.key_path);
     } else {

@@ -9,12 +9,15 @@ namespace {
 
 /// Curvature vector of the edge from a to b: x(t) = x_a + (d - c) t + c t^2 meets n_a and n_b at right angles; the shortest c
 /// that does.                                                                           [Nagata 2005, eq (6)]
+/// Straight where the normals are parallel, and where they are nearly so but lean along the edge: c then grows beyond the
+/// edge's own length and the patch folds, which the averaged normals of a boundary bring about.
 Vec3 curvature_vector(const Vec3& d, const Vec3& n_a, const Vec3& n_b) {
     const double cosine = n_a.dot(n_b), sine2 = 1 - cosine * cosine;
     constexpr double parallel = 1e-12; // round-off of 1 - cosine^2 has no direction to give
     if (sine2 < parallel) return Vec3::Zero();
     const double a = n_a.dot(d), b = -n_b.dot(d);
-    return ((a - cosine * b) * n_a + (b - cosine * a) * n_b) / sine2;
+    const Vec3 c = ((a - cosine * b) * n_a + (b - cosine * a) * n_b) / sine2;
+    return c.norm() > d.norm() ? Vec3::Zero() : c;
 }
 
 /// A function of the natural coordinates with its derivatives.

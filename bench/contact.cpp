@@ -19,19 +19,16 @@ std::unique_ptr<contact::MasterSurface> make(const Surface& surface, const std::
 void evaluate(benchmark::State& state, const std::string& shape, const std::string& kind, bool with_variation) {
     const Surface& on = surface(shape);
     const auto master = make(on, kind);
-    const contact::FacetSearch search = [&] {
-        contact::FacetSearch made(on.topology);
-        made.build(on.x);
-        return made;
-    }();
-    const std::vector<Vec3> points = slave_points(on, 512);
+    contact::FacetSearch search(on.topology);
+    search.build(on.x);
+    const std::vector<SlavePoint> points = slave_points(on, 512);
     std::vector<contact::FacetHit> hits;
-    for (const Vec3& s : points) hits.push_back(search.global(s, on.x));
+    for (const SlavePoint& point : points) hits.push_back(search.global(point.s, on.x));
     contact::ContactPoint point;
     contact::ContactVariation variation;
     std::size_t k = 0;
     for (auto _ : state) {
-        master->evaluate(points[k], hits[k], on.x, point, with_variation ? &variation : nullptr);
+        master->evaluate(points[k].s, hits[k], on.x, point, with_variation ? &variation : nullptr);
         benchmark::DoNotOptimize(point.gap);
         k = (k + 1) % points.size();
     }

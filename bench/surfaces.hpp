@@ -45,11 +45,17 @@ inline Surface sheet(int n) {
     return {facets, nodes};
 }
 
+/// A point and a facet that it is near.
+struct SlavePoint {
+    Vec3 s;
+    Index facet;
+};
+
 /// Points spread over the whole surface, within 5 % of a facet size of it.
-inline std::vector<Vec3> slave_points(const Surface& surface, int count) {
+inline std::vector<SlavePoint> slave_points(const Surface& surface, int count) {
     std::mt19937 engine(1);
     const auto uniform = [&](double low, double high) { return low + (high - low) * (engine() / 4294967296.0); };
-    std::vector<Vec3> points;
+    std::vector<SlavePoint> points;
     for (int k = 0; k < count; ++k) {
         const auto facet = static_cast<Index>(uniform(0, surface.topology.facet_count()));
         const auto vertices = surface.topology.facet_vertices(facet);
@@ -57,7 +63,8 @@ inline std::vector<Vec3> slave_points(const Surface& surface, int count) {
         contact::MatrixX3 corners(patch.size(), 3);
         for (Index c = 0; c < patch.size(); ++c) corners.row(c) = surface.x[vertices[c]].transpose();
         const contact::PatchPoint on = patch.point(Vec2(uniform(-1, 1), uniform(-1, 1)), corners);
-        points.push_back(on.X + uniform(-0.05, 0.05) * surface.topology.facet_size(facet) * on.normal());
+        const double gap = uniform(-0.05, 0.05) * surface.topology.facet_size(facet);
+        points.push_back({on.X + gap * on.normal(), facet});
     }
     return points;
 }

@@ -163,7 +163,7 @@ std::string plot(const scene::SurfaceStudy& study, const std::string& surface, c
 }
 
 std::string gnuplot_script(const scene::SurfaceStudy& study, const StudyResult& result) {
-    std::string text = "set key at graph 0.5, screen 0.02 center bottom maxrows 3 noenhanced\nset bmargin 9\n"
+    std::string text = "set key at graph 0.5, screen 0.02 center bottom maxrows 3 samplen 2 noenhanced\nset bmargin 9\n"
                        "set logscale y\nset format y '10^{%L}'\nset grid\n";
     int line = 0; // one colour a method, in the order of their names
     for (const char* colour : {"#808080", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#0072b2"})

@@ -8,6 +8,7 @@
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace osculate::contact {
@@ -166,16 +167,22 @@ FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x) const {
     FacetHit best;
     best.distance = std::numeric_limits<double>::max();
     if (!tree_) return best;
+    // the k nearest boxes, k doubled until the farthest of them is farther than the best facet: an incremental query for
+    // all boxes in order of distance would sort far more of them than it hands out
     const Point at = to_point(s);
     const auto every = static_cast<unsigned>(surface_->facet_count());
-    for (auto leaf = tree_->boxes.qbegin(bgi::nearest(at, every)); leaf != tree_->boxes.qend(); ++leaf) {
-        // boxes come in order of distance: once a box is farther than the best facet, so is everything behind it
-        if (best.facet >= 0 && bg::distance(at, leaf->first) > best.distance + tie * surface_->facet_size(best.facet))
-            break;
-        const FacetHit hit = closest_on(leaf->second, s, x);
-        if (better(hit, best)) best = hit;
+    std::vector<Leaf> nearest;
+    for (unsigned k = 8;; k *= 2) {
+        nearest.clear();
+        tree_->boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest));
+        double reached = 0;
+        for (const auto& [box, facet] : nearest) {
+            reached = std::max(reached, bg::distance(at, box));
+            const FacetHit hit = closest_on(facet, s, x);
+            if (better(hit, best)) best = hit;
+        }
+        if (k >= every || reached > best.distance + tie * surface_->facet_size(best.facet)) return best;
     }
-    return best;
 }
 
 FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis) const {

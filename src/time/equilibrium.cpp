@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osculate::time {
 
@@ -42,6 +43,8 @@ void Equilibrium::begin_attempt(const model::State& state, StepLoad load) {
         model_.pairs[p]->begin_step(x_, state.contact[p], timings_, threads_);
     records_.clear();
     visits_.clear();
+    best_ = std::numeric_limits<double>::max();
+    idle_ = 0;
     last_configuration_ = 0;
 }
 
@@ -50,6 +53,8 @@ void Equilibrium::set_statuses(std::vector<std::vector<Status>> statuses, Status
     rule_ = rule;
     force_next_ = force_first;
     visits_.clear();
+    best_ = std::numeric_limits<double>::max();
+    idle_ = 0;
 }
 
 void Equilibrium::unpack(const double* z) {
@@ -186,6 +191,11 @@ void Equilibrium::record(const double* F, int status_changes) {
 }
 
 bool Equilibrium::cycles(double residual) {
+    // in the slip branch Newton can also alternate with all statuses at rest
+    constexpr int patience = 8;
+    idle_ = residual < 0.99 * best_ ? 0 : idle_ + 1;
+    best_ = std::min(best_, residual);
+    if (idle_ >= patience) return true;
     // the iteration goes round when it comes back to a contact configuration it has left, for the second time and
     // without having gained anything
     std::size_t configuration = 1469598103934665603ULL;

@@ -10,7 +10,7 @@ using solve::KinsolOutcome;
 
 namespace {
 
-constexpr int most_settlings = 40; ///< KINSOL calls of rung 2
+constexpr int most_settlings = 40; ///< KINSOL calls of rung 3
 
 /// Closes every second one of the nodes that `now` has open and `before` had closed; false when there are none.
 bool take_back_half(const Statuses& before, Statuses& now) {
@@ -56,8 +56,8 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
 
 } // namespace
 
-LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Statuses& start,
-                   bool force_first, const LadderOptions& options) {
+LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Vector& unpredicted,
+                   const Statuses& start, bool force_first, const LadderOptions& options) {
     solve::KinsolOptions kinsol;
     kinsol.tolerance = options.tolerance;
     kinsol.max_iterations = options.max_iterations;
@@ -66,14 +66,19 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     kinsol.unknown_scale.head(equilibrium.constraints().equations()).setConstant(1 / options.characteristic_length);
     equilibrium.set_reference_force(options.reference_force);
 
-    const Vector z_start = z;
-    equilibrium.set_statuses(start, StatusRule::natural, force_first);
-    const auto newton = solver.solve(equilibrium, z, kinsol);
-    LadderResult result{newton.outcome, newton.iterations, newton.residual, "semismooth Newton",
-                        newton.failing_equation};
-    if (result.converged() || start.empty()) return result;
-
-    z = z_start;
+    const bool predicted = z != unpredicted;
+    LadderResult result;
+    const auto newton = [&](const char* rung) {
+        equilibrium.set_statuses(start, StatusRule::natural, force_first);
+        const auto solved = solver.solve(equilibrium, z, kinsol);
+        result = {solved.outcome, result.iterations + solved.iterations, solved.residual, rung,
+                  solved.failing_equation};
+        return result.converged();
+    };
+    if (newton("semismooth Newton") || start.empty()) return result;
+    z = unpredicted;
+    if (predicted && newton("semismooth Newton without predictor")) return result;
+    z = unpredicted;
     LadderResult settled = settle(equilibrium, solver, z, start, kinsol);
     settled.iterations += result.iterations;
     return settled;

@@ -200,6 +200,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             if (options_.predictor) predict(constraints, load.prescribed, u);
             equilibrium.begin_attempt(state_, load);
             Vector z = equilibrium.unknowns(u, state_.contact);
+            const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
             LadderOptions ladder{options_.tolerance, options_.max_iterations, characteristic_length_,
                                  reference_force(load, equilibrium, z)};
             Statuses statuses;
@@ -207,7 +208,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             const bool forced = starting_statuses(equilibrium, z, statuses);
             equilibrium.begin_attempt(state_, std::move(load));
             const long factorised = solver.factorisations();
-            const LadderResult result = climb(equilibrium, solver, z, statuses, forced, ladder);
+            const LadderResult result = climb(equilibrium, solver, z, unpredicted, statuses, forced, ladder);
             factorisations_ += solver.factorisations() - factorised;
 
             Attempt attempt;

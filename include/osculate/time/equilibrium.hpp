@@ -101,6 +101,8 @@ private:
     std::vector<IterationRecord> records_;
     std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> times seen, least residual
     std::size_t last_configuration_ = 0;
+    double best_ = 0; ///< least residual since set_statuses()
+    int idle_ = 0;    ///< iterates since
     Index worst_node_ = -1;
     long patterns_built_ = 0;
 };

@@ -25,13 +25,17 @@ struct LadderResult {
 using Statuses = std::vector<std::vector<contact::Status>>;
 
 /// 1 semismooth Newton: statuses follow the iterate
-/// 2 statuses frozen per KINSOL call and settled between calls; a release that leaves the tangent singular is taken back
+/// 2 the same from the last state instead of the predicted one: a prediction that overruns the elastic slip of a node
+///   that sticks can send Newton round in the slip branch
+/// 3 statuses frozen per KINSOL call and settled between calls; a release that leaves the tangent singular is taken back
 ///   by halves, so that no body loses its support
 /// A smaller step and a named failure are the stepper's.
-/// @param z            start values, last iterate afterwards
+/// @param z            predicted start values, last iterate afterwards
+/// @param unpredicted  start values without prediction
 /// @param start        statuses to start from
 /// @param force_first  they hold for the first iterate of rung 1, whatever the complementarity functions say
 [[nodiscard]] LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
-                                 const Statuses& start, bool force_first, const LadderOptions& options);
+                                 const Vector& unpredicted, const Statuses& start, bool force_first,
+                                 const LadderOptions& options);
 
 } // namespace osculate::time

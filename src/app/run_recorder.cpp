@@ -86,7 +86,8 @@ void RunRecorder::describe_plan() {
     for (const auto& pair : plan_.model.pairs) {
         const scene::Pair& spec = *scene::find(scene_.contact, pair->name());
         static const char* const surfaces[] = {"facets", "rpim", "blend"}; // in the order of the variant
-        summary_.pairs.push_back({pair->name(), pair->size(), pair->surface().facet_count(), surfaces[spec.master.surface.index()]});
+        summary_.pairs.push_back(
+            {pair->name(), pair->size(), pair->surface().facet_count(), surfaces[spec.master.surface.index()]});
     }
     for (const PlanItem& item : plan_.items)
         if (item.present) summary_.plan.push_back(item.part);

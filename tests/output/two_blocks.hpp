@@ -72,8 +72,8 @@ private:
         auto shape = contact::make_facets_surface(*surface);
         const std::vector<Index> vertices = surface->vertex_nodes();
         model.pairs.push_back(std::make_unique<model::ContactTerm>("joint", model.X, std::move(slaves),
-                                                                   std::move(surface), model::MasterNodes{vertices}, std::move(shape),
-                                                                   model::ContactOptions{0.3}));
+                                                                   std::move(surface), model::MasterNodes{vertices},
+                                                                   std::move(shape), model::ContactOptions{0.3}));
     }
 };
 

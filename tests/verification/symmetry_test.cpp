@@ -87,7 +87,8 @@ TEST_P(Symmetry, HalfAndQuarterModelsGiveTheFullAnswer) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Masters, Symmetry, testing::Values("facets", "blend")); // rpim takes sides where a node lies on a mesh line
+INSTANTIATE_TEST_SUITE_P(Masters, Symmetry,
+                         testing::Values("facets", "blend")); // rpim takes sides where a node lies on a mesh line
 
 } // namespace
 } // namespace osculate

@@ -32,7 +32,7 @@ struct SlaveNodes {
 
 /// What the vertices of a master surface are: nodes, or mirror images of nodes.
 struct MasterNodes {
-    std::vector<Index> node;  ///< (vertices) global
+    std::vector<Index> node;    ///< (vertices) global
     std::vector<Index> image{}; ///< (vertices) into images; empty: every vertex is its node
     std::vector<contact::Image> images{contact::Image{}};
 };

@@ -13,7 +13,7 @@ import vtk
 
 RUNS = Path("out/figures")
 IMAGES = Path("docs/images")
-MASTERS = ("facets", "rpim")
+MASTERS = ("facets", "rpim", "blend")
 LINES = {"facets": 'lw 1.5 lc rgb "#d95f02" title "facets"', "rpim": 'lw 1.5 lc rgb "#1f78b4" title "rpim"',
          "blend": 'lw 2 lc rgb "#111111" title "blend"'}
 MU = 0.1  # friction of every scene below

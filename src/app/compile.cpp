@@ -1,8 +1,9 @@
 #include "osculate/app/compile.hpp"
 
+#include "app/contact_pairs.hpp"
 #include "app/gaps.hpp"
+#include "app/overloaded.hpp"
 #include "app/supports.hpp"
-#include "osculate/contact/mirror.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 #include "osculate/mesh/generators.hpp"
@@ -21,9 +22,6 @@
 namespace osculate::app {
 
 namespace {
-
-template <class... F> struct Overloaded : F... { using F::operator()...; };
-template <class... F> Overloaded(F...) -> Overloaded<F...>;
 
 Fault fault(std::string key, std::string expected, std::string found) {
     Fault f;
@@ -254,106 +252,14 @@ private:
                     faults_.push_back(fault(key + part, "a set with facets", "a set of nodes that cover no facet"));
                     broken = true;
                 }
-            if (!broken) plan_.model.pairs.push_back(make_pair(name, key, spec, slave, master));
-        }
-        std::erase(plan_.model.pairs, nullptr);
-    }
-
-    std::unique_ptr<model::ContactTerm> make_pair(const std::string& name, const std::string& key,
-                                                  const scene::Pair& spec, const model::Set& slave,
-                                                  const model::Set& master) {
-        const ScopedTimer timer(timings_, Part::patches);
-        const std::vector<Vec3>& X = plan_.model.X;
-        std::unique_ptr<mesh::HalfEdgeSurface> surface;
-        const contact::MirroredSurface mirrored = mirror_at_symmetry(master);
-        try {
-            surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
-        } catch (const std::runtime_error& error) {
-            faults_.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
-            return nullptr;
-        }
-
-        model::SlaveNodes slaves;
-        slaves.facets = slave.facets;
-        std::map<Index, std::pair<double, double>> area_and_size; // tributary area, largest facet size at the node
-        for (const mesh::Facet& facet : slave.facets) {
-            const auto area = fe::tributary_areas(facet, X);
-            const double size = std::sqrt(std::accumulate(area.begin(), area.end(), 0.0));
-            for (int c = 0; c < facet.count; ++c) {
-                auto& [sum, largest] = area_and_size[facet.nodes[c]];
-                sum += area[static_cast<std::size_t>(c)];
-                largest = std::max(largest, size);
+            if (broken) continue;
+            const ScopedTimer timer(timings_, Part::patches);
+            try {
+                plan_.model.pairs.push_back(make_contact_term(scene_, name, spec, plan_.model, slave, master));
+            } catch (const std::runtime_error& error) {
+                faults_.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
             }
         }
-        // c = E_slave * tributary area / h: the stiffness of the slave's own first layer, so free of units
-        const double E = std::get<scene::LinearElastic>(scene_.bodies[slave.body].second.material).E;
-        for (const auto& [node, values] : area_and_size) {
-            slaves.node.push_back(node);
-            slaves.area.push_back(values.first);
-            slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
-        }
-
-        model::MasterNodes master_nodes;
-        std::vector<Vec3> vertices;
-        for (const Index node : surface->vertex_nodes()) {
-            master_nodes.node.push_back(mirrored.original[node]);
-            vertices.push_back(mirrored.positions[node]);
-            if (mirrored.images.size() > 1) master_nodes.image.push_back(mirrored.image[node]);
-        }
-        master_nodes.images = mirrored.images;
-        model::ContactOptions options;
-        options.friction = spec.friction;
-        options.closing_tolerance = spec.closing_tolerance;
-        auto shape = make_master(spec.master, *surface, vertices, options);
-        return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface),
-                                                    std::move(master_nodes), std::move(shape), options);
-    }
-
-    /// The master surface with its images beyond the symmetry planes that its body is held at. A patch cut off at such a
-    /// plane would be one-sided and wrong there.
-    contact::MirroredSurface mirror_at_symmetry(const model::Set& master) const {
-        std::vector<contact::SymmetryPlane> planes;
-        for (const auto& [name, support] : scene_.supports) {
-            const model::Set& held = set(name);
-            if (support.symmetry && held.body == master.body)
-                planes.push_back({plan_.model.X[held.nodes.front()], support.axes.col(0)});
-        }
-        double largest = 0; // facet size
-        for (const mesh::Facet& facet : master.facets) {
-            const auto area = fe::tributary_areas(facet, plan_.model.X);
-            largest = std::max(largest, std::sqrt(std::accumulate(area.begin(), area.end(), 0.0)));
-        }
-        constexpr double rings = 6; // more than patches and their bumps reach
-        return contact::mirror(master.facets, plan_.model.X, planes, rings * largest);
-    }
-
-    /// The master surface asked for, and the rule against flip-flop that it needs.
-    static std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spec,
-                                                               const mesh::HalfEdgeSurface& surface,
-                                                               const std::vector<Vec3>& vertices,
-                                                               model::ContactOptions& options) {
-        const auto coordinates = [](scene::PatchCoordinates c) {
-            return c == scene::PatchCoordinates::tangential ? contact::PatchCoordinates::tangential
-                                                            : contact::PatchCoordinates::equal_length;
-        };
-        return std::visit(Overloaded{
-                              [&](const scene::FacetsSurface& s) {
-                                  options.hysteresis = s.hysteresis;
-                                  return contact::make_facets_surface(surface);
-                              },
-                              [&](const scene::RpimSurface& s) {
-                                  options.hysteresis = s.hysteresis;
-                                  return contact::make_rpim_surface(
-                                      surface, vertices, {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
-                              },
-                              [&](const scene::BlendSurface& s) { // does not depend on the facet: no rule
-                                  options.hysteresis = 0;
-                                  options.changes_before_latch = std::numeric_limits<int>::max();
-                                  return contact::make_blend_surface(
-                                      surface, vertices, {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
-                              },
-                          },
-                          spec.surface);
     }
 
     void check_supports() {

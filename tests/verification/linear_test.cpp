@@ -1,5 +1,6 @@
 /// Bodies without contact: the Cholesky path against exact solutions.
 
+#include "osculate/output/vtk_file.hpp"
 #include "support/scene_runner.hpp"
 
 #include <cmath>
@@ -70,6 +71,23 @@ TEST(Bar, HangsUnderItsWeight) {
         const double x = run.plan.model.X[i].x(), exact = 80e3 * (2 * x - x * x / 2) / 200e9;
         EXPECT_NEAR(run.steps[0].state.u[i].x(), exact, 1e-11 * 80e3 * 2 / 200e9);
     }
+}
+
+TEST(Bar, ReadFromAFileIsTheSameBar) {
+    const std::string path = scene_file("generated.yaml", block + "stages: {pull: {pressure: {right: -100 MPa}}}\n");
+    support::SceneRun generated, read;
+    support::run_scene(generated, path);
+    const mesh::Mesh& mesh = generated.plan.model.bodies[0].mesh;
+    const std::string file = testing::TempDir() + "bar.vtu";
+    output::write_vtu(file, mesh.nodes, mesh.blocks, {}, 0);
+    support::run_scene(read, path,
+                       {{"bodies.bar.mesh", "{file: {path: '" + file + "'}}"},
+                        {"sets.left", "{body: bar, plane: {point: [0, 0, 0], normal: [1, 0, 0]}}"},
+                        {"sets.right", "{body: bar, box: {min: [2, 0, 0], max: [2, 1, 1]}}"},
+                        {"sets.front", "{body: bar, normal: {direction: [0, -1, 0], angle: 0.1}}"},
+                        {"sets.bottom", "{body: bar, plane: {point: [0, 0, 0], normal: [0, 0, 1]}}"}});
+    for (std::size_t i = 0; i < generated.plan.model.X.size(); ++i)
+        EXPECT_EQ(generated.steps[0].state.u[i], read.steps[0].state.u[i]);
 }
 
 TEST(Bar, FollowsADrivenFaceThroughStages) {

@@ -1,0 +1,109 @@
+#include "app/contact_pairs.hpp"
+
+#include "app/overloaded.hpp"
+#include "osculate/contact/mirror.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace osculate::app {
+
+namespace {
+
+/// The master surface with its images beyond the symmetry planes that its body is held at. A patch cut off at such a
+/// plane would be one-sided and wrong there.
+contact::MirroredSurface mirror_at_symmetry(const scene::Scene& scene, const model::Model& model,
+                                            const model::Set& master) {
+    std::vector<contact::SymmetryPlane> planes;
+    for (const auto& [name, support] : scene.supports) {
+        if (!support.symmetry) continue;
+        for (const model::Set& held : model.sets)
+            if (held.name == name && held.body == master.body)
+                planes.push_back({model.X[held.nodes.front()], support.axes.col(0)});
+    }
+    double largest = 0; // facet size
+    for (const mesh::Facet& facet : master.facets) {
+        const auto area = fe::tributary_areas(facet, model.X);
+        largest = std::max(largest, std::sqrt(std::accumulate(area.begin(), area.end(), 0.0)));
+    }
+    constexpr double rings = 6; // more than patches and their bumps reach
+    return contact::mirror(master.facets, model.X, planes, rings * largest);
+}
+
+/// The master surface asked for, and the rule against flip-flop that it needs.
+std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spec, const mesh::HalfEdgeSurface& surface,
+                                                    const std::vector<Vec3>& vertices, model::ContactOptions& options) {
+    const auto coordinates = [](scene::PatchCoordinates c) {
+        return c == scene::PatchCoordinates::tangential ? contact::PatchCoordinates::tangential
+                                                        : contact::PatchCoordinates::equal_length;
+    };
+    return std::visit(Overloaded{
+                          [&](const scene::FacetsSurface& s) {
+                              options.hysteresis = s.hysteresis;
+                              return contact::make_facets_surface(surface);
+                          },
+                          [&](const scene::RpimSurface& s) {
+                              options.hysteresis = s.hysteresis;
+                              return contact::make_rpim_surface(surface, vertices,
+                                                                {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
+                          },
+                          [&](const scene::BlendSurface& s) { // does not depend on the facet: no rule
+                              options.hysteresis = 0;
+                              options.changes_before_latch = std::numeric_limits<int>::max();
+                              return contact::make_blend_surface(surface, vertices,
+                                                                 {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
+                          },
+                      },
+                      spec.surface);
+}
+
+} // namespace
+
+std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene, const std::string& name,
+                                                      const scene::Pair& spec, const model::Model& model,
+                                                      const model::Set& slave, const model::Set& master) {
+    const std::vector<Vec3>& X = model.X;
+    const contact::MirroredSurface mirrored = mirror_at_symmetry(scene, model, master);
+    auto surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
+
+    model::SlaveNodes slaves;
+    slaves.facets = slave.facets;
+    std::map<Index, std::pair<double, double>> area_and_size; // tributary area, largest facet size at the node
+    for (const mesh::Facet& facet : slave.facets) {
+        const auto area = fe::tributary_areas(facet, X);
+        const double size = std::sqrt(std::accumulate(area.begin(), area.end(), 0.0));
+        for (int c = 0; c < facet.count; ++c) {
+            auto& [sum, largest] = area_and_size[facet.nodes[c]];
+            sum += area[static_cast<std::size_t>(c)];
+            largest = std::max(largest, size);
+        }
+    }
+    // c = E_slave * tributary area / h: the stiffness of the slave's own first layer, so free of units
+    const double E = std::get<scene::LinearElastic>(scene.bodies[slave.body].second.material).E;
+    for (const auto& [node, values] : area_and_size) {
+        slaves.node.push_back(node);
+        slaves.area.push_back(values.first);
+        slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
+    }
+
+    model::MasterNodes master_nodes;
+    std::vector<Vec3> vertices;
+    for (const Index node : surface->vertex_nodes()) {
+        master_nodes.node.push_back(mirrored.original[node]);
+        vertices.push_back(mirrored.positions[node]);
+        if (mirrored.images.size() > 1) master_nodes.image.push_back(mirrored.image[node]);
+    }
+    master_nodes.images = mirrored.images;
+    model::ContactOptions options;
+    options.friction = spec.friction;
+    options.closing_tolerance = spec.closing_tolerance;
+    auto shape = make_master(spec.master, *surface, vertices, options);
+    return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface), std::move(master_nodes),
+                                                std::move(shape), options);
+}
+
+} // namespace osculate::app

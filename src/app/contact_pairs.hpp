@@ -1,0 +1,19 @@
+#pragma once
+/// From a pair of the scene to the contact term that computes it.
+
+#include "osculate/model/model.hpp"
+#include "osculate/scene/scene.hpp"
+
+#include <memory>
+#include <string>
+
+namespace osculate::app {
+
+/// @param model          bodies' positions and all sets
+/// @param slave, master  sets with facets
+/// Throws std::runtime_error naming the nodes where the master is no oriented manifold.
+[[nodiscard]] std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene, const std::string& name,
+                                                                    const scene::Pair& spec, const model::Model& model,
+                                                                    const model::Set& slave, const model::Set& master);
+
+} // namespace osculate::app

@@ -62,11 +62,13 @@ TEST_P(HalfTube, DrivingForceIsTheSumOfContactForcesAndOfReactions) {
 }
 
 TEST_P(HalfTube, ContactForcesHaveNoResultantAndNoMoment) {
+    // weights sum to one to a few ulp. The moment needs g = 0, which holds to the solver's tolerance; where patches are
+    // blended, friction also acts at their mean foot, off the slave node by the product of their small gaps and turns.
+    const double arm = std::string(GetParam()) == "blend" ? 1e-8 : 1e-9; // m
     for (const RunStep& step : run(GetParam()).steps) {
         const support::PairForces& f = step.pairs[0];
-        // weights sum to one to a few ulp; the moment needs g = 0, which holds to the solver's tolerance
         EXPECT_LT((f.on_slave + f.on_master).norm(), 1e-12 * f.normal);
-        EXPECT_LT((f.moment_on_slave + f.moment_on_master).norm(), 1e-9 * f.normal);
+        EXPECT_LT((f.moment_on_slave + f.moment_on_master).norm(), arm * f.normal);
     }
 }
 

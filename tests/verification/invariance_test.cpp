@@ -146,9 +146,11 @@ TEST_P(Invariance, UnderTheComplementarityParameter) {
     support::run_scene(one, support::shipped("paper/half_tube.yaml"), overrides);
     overrides.push_back({"contact.sliding.stiffness_scale", "0.1"});
     support::run_scene(other, support::shipped("paper/half_tube.yaml"), overrides);
-    for (std::size_t k = 1; k < one.steps.size(); ++k) // held nodes stick elastically in the first
+    // held nodes stick on a spring of 100 c, so the first slide keeps a trace of c: 2e-6 was measured
+    const double elastic_stick = 1e-5;
+    for (std::size_t k = 0; k < one.steps.size(); ++k)
         EXPECT_LT((one.steps[k].pairs[0].on_slave - other.steps[k].pairs[0].on_slave).norm(),
-                  1e-3 * one.steps[k].pairs[0].normal);
+                  elastic_stick * one.steps[k].pairs[0].normal);
 }
 
 INSTANTIATE_TEST_SUITE_P(Masters, Invariance, testing::Values("facets", "rpim", "blend"));

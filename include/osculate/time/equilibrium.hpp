@@ -33,7 +33,7 @@ enum class StatusRule {
 
 /// F(z) with z = (free displacements, contact forces): equilibrium of every free component and the contact law of every
 /// slave node, in the rows SystemMatrix assigns. Contact points are located anew at every z.
-///     equilibrium   f_int(u) - f_ext - f_contact = 0,   f_contact = lambda on the slave, -Phi_i lambda on master i
+///     equilibrium   f_int(u) - f_ext - f_contact = 0,   f_contact = lambda on the slave, on its masters as ContactPoint says
 ///     contact law   see contact::Coulomb
 class Equilibrium final : public solve::NonlinearProblem {
 public:

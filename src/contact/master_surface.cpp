@@ -1,6 +1,7 @@
 #include "osculate/contact/master_surface.hpp"
 
 #include "contact/fold.hpp"
+#include "contact/merge.hpp"
 #include "contact/reach.hpp"
 #include "osculate/contact/facet_patch.hpp"
 #include "osculate/contact/projection.hpp"
@@ -57,7 +58,16 @@ public:
     RpimSurface(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const RpimOptions& options)
         : surface_(surface), facets_(surface) {
         domains_.reserve(static_cast<std::size_t>(surface.facet_count()));
-        for (Index f = 0; f < surface.facet_count(); ++f) domains_.push_back(make_domain(f, X, options));
+        const auto fewer = merged(surface, X, options.ring);
+        if (fewer) fallbacks_ = surface.vertex_count() - fewer->topology.vertex_count();
+        for (Index f = 0; f < surface.facet_count(); ++f) {
+            if (!fewer) {
+                domains_.push_back(make_domain(surface, f, X, f, X, options));
+                continue;
+            }
+            domains_.push_back(make_domain(fewer->topology, fewer->host[f], fewer->X, f, X, options));
+            for (Index& v : domains_.back().vertices) v = fewer->vertex[v];
+        }
     }
 
     std::span<const Index> patch_vertices(Index facet) const override {
@@ -93,26 +103,30 @@ private:
         MatrixX2 corners; ///< natural coordinates of the facet's own corners
     };
 
-    Domain make_domain(Index facet, const std::vector<Vec3>& X, const RpimOptions& options) {
-        const auto own = surface_.facet_vertices(facet);
-        const FacetPatch shape(static_cast<int>(own.size()));
+    /// Around a facet of a surface whose vertices are at X; `own` is the facet of surface_, vertices at X_own, that is to
+    /// use it: the same, unless vertices have been merged.
+    Domain make_domain(const mesh::HalfEdgeSurface& surface, Index facet, const std::vector<Vec3>& X, Index own,
+                       const std::vector<Vec3>& X_own, const RpimOptions& options) {
+        const auto around = surface.facet_vertices(facet), corners_own = surface_.facet_vertices(own);
+        const FacetPatch shape(static_cast<int>(around.size()));
         MatrixX3 corners(shape.size(), 3);
-        for (Index b = 0; b < shape.size(); ++b) corners.row(b) = X[own[b]].transpose();
+        for (Index b = 0; b < shape.size(); ++b) corners.row(b) = X[around[b]].transpose();
         const PatchPoint centre = shape.point(shape.centre(), corners);
         const ReferencePlane plane = ReferencePlane::through(centre.X, centre.normal());
         const auto natural = [&](const Vec3& x) {
             return options.coordinates == PatchCoordinates::tangential ? plane.tangential(x) : plane.equal_length(x);
         };
         for (int ring = options.ring; ring > 0; --ring) {
-            if (folds(surface_, surface_.ring_facets(facet, ring), plane, X)) continue;
+            if (folds(surface, surface.ring_facets(facet, ring), plane, X)) continue;
             Domain domain;
-            domain.vertices = surface_.facet_ring(facet, ring);
+            domain.vertices = surface.facet_ring(facet, ring);
             MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2);
             for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[domain.vertices[i]]).transpose();
             domain.patch = RpimPatch::fit(u, options.basis, options.polynomial_terms);
             if (!domain.patch) continue;
-            domain.corners.resize(shape.size(), 2);
-            for (Index b = 0; b < shape.size(); ++b) domain.corners.row(b) = natural(X[own[b]]).transpose();
+            domain.corners.resize(static_cast<Index>(corners_own.size()), 2);
+            for (Index b = 0; b < domain.corners.rows(); ++b)
+                domain.corners.row(b) = natural(X_own[corners_own[b]]).transpose();
             if (ring < options.ring) ++fallbacks_;
             return domain;
         }

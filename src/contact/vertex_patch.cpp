@@ -1,6 +1,7 @@
 #include "contact/vertex_patch.hpp"
 
 #include "contact/fold.hpp"
+#include "contact/merge.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +120,7 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
         if (lowest > highest) patch.kappa = lowest; // interpolation before coverage, should no ring be left
         if (good) break;
     }
-    if (patch.level == 0 && options.level > 1) { // near-duplicate nodes further out, perhaps
+    if (patch.level == 0 && options.level > 1) { // near-duplicate nodes further out that could not be merged, perhaps
         BlendOptions fewer = options;
         --fewer.level;
         return make_patch(surface, vertex, sector, X, fewer);
@@ -163,6 +164,20 @@ std::vector<std::vector<Index>> sectors(const mesh::HalfEdgeSurface& surface, In
 VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,
                              const BlendOptions& options)
     : of_facet(static_cast<std::size_t>(surface.facet_count())), bare(of_facet.size(), 0) {
+    if (const auto fewer = merged(surface, X, options.level)) {
+        VertexPatches found(fewer->topology, fewer->X, options);
+        fallbacks = found.fallbacks + surface.vertex_count() - fewer->topology.vertex_count();
+        patches = std::move(found.patches);
+        for (VertexPatch& patch : patches) {
+            patch.vertex = fewer->vertex[patch.vertex];
+            for (Index& v : patch.vertices) v = fewer->vertex[v];
+        }
+        for (Index f = 0; f < surface.facet_count(); ++f) {
+            of_facet[f] = found.of_facet[fewer->host[f]];
+            bare[f] = found.bare[fewer->host[f]];
+        }
+        return;
+    }
     std::vector<std::vector<std::pair<Index, Index>>> corner_patch(of_facet.size()); // facet -> (vertex, patch)
     for (Index v = 0; v < surface.vertex_count(); ++v)
         for (const auto& sector : sectors(surface, v)) {

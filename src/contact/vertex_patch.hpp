@@ -24,12 +24,13 @@ struct VertexPatch {
 /// Facets around a vertex that hang together over smooth edges, each sector ascending.
 [[nodiscard]] std::vector<std::vector<Index>> sectors(const mesh::HalfEdgeSurface& surface, Index vertex);
 
-/// All patches of a surface, and which of them each facet may need.
+/// All patches of a surface, and which of them each facet may need. Near-duplicate vertices are merged first: the one that
+/// is kept has a patch, and the patches do not pass through the others.
 struct VertexPatches {
     std::vector<VertexPatch> patches;
     std::vector<std::vector<Index>> of_facet; ///< patches of the vertices of a facet's 2-ring, ascending
     std::vector<char> bare;                   ///< per facet, whether one of its vertices has no patch on its side
-    Index fallbacks = 0; ///< vertices without a patch, or with a smaller or simpler one than asked for
+    Index fallbacks = 0; ///< vertices merged, without a patch, or with a smaller or simpler one than asked for
 
     VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options);
 };

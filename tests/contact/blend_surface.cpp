@@ -2,7 +2,6 @@
 
 #include "blend_surfaces.hpp"
 
-#include <cstdlib>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -17,11 +16,7 @@ constexpr double patch_round_off = 1e-10;
 /// The same sums of the same patches: no more than the order of additions may differ.
 constexpr double same_point = 1e-12;
 
-/// OSCULATE_FULL=1: a million samples and ten thousand paths over the five surfaces, some twenty minutes.
-bool full() {
-    const char* set = std::getenv("OSCULATE_FULL");
-    return set != nullptr && std::string(set) == "1";
-}
+/// OSCULATE_FULL=1: a million samples and ten thousand paths over the five surfaces.
 const int samples = full() ? 200'000 : 2'000; ///< a surface; there are five
 const int paths = full() ? 2'000 : 60;
 

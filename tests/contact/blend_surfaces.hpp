@@ -5,13 +5,31 @@
 #include "surfaces.hpp"
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
+#include <gtest/gtest.h>
 #include <map>
 #include <numbers>
+#include <string>
 
 namespace osculate::contact::testing {
 
 constexpr double pi = std::numbers::pi;
+
+/// OSCULATE_FULL=1: as many samples as are needed to find what is one in a million. Minutes.
+inline bool full() {
+    const char* set = std::getenv("OSCULATE_FULL");
+    return set != nullptr && std::string(set) == "1";
+}
+
+/// Keeps a measured figure in the test's report; with OSCULATE_FULL=1 prints it too.
+inline void record(const std::string& what, double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    ::testing::Test::RecordProperty(what, text);
+    if (full()) std::printf("    %s: %s\n", what.c_str(), text);
+}
 
 /// Facets over numbered positions, before their topology is built.
 struct Shell {

@@ -1,7 +1,7 @@
 #include "osculate/contact/search.hpp"
 
+#include "blend_surfaces.hpp"
 #include "osculate/contact/facet_patch.hpp"
-#include "surfaces.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -14,6 +14,10 @@ using namespace testing;
 using osculate::testing::Random;
 
 constexpr double round_off = 1e-12; // of coordinates of order ten
+
+/// Queries against brute force, a surface: a tenth of a million in all, with OSCULATE_FULL=1 a million.
+const int scale = full() ? 10 : 1;
+const int standing = 10'000 * scale, moving = 5'000 * scale, followed = 5'000 * scale;
 
 /// Closest distance to a triangle, by its plane, its edges and its corners.
 double distance_to_triangle(const Vec3& s, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -58,9 +62,8 @@ protected:
 };
 
 TEST_P(Search, FindsTheClosestFacetOfAll) {
-    constexpr int queries = 20000; // on each of five surfaces
     Random random(21);
-    for (int i = 0; i < queries; ++i) {
+    for (int i = 0; i < standing; ++i) {
         const Vec3 s = random_point(surface, 1.5, random);
         const FacetHit hit = search.global(s, surface.x);
         ASSERT_NEAR(hit.distance, brute_force(surface, s), round_off) << s.transpose();
@@ -93,6 +96,81 @@ TEST_P(Search, FollowsAPointToTheClosestFacet) {
     }
 }
 
+/// A surface between queries: it turns, is strained and dented anew each time it is asked to move.
+class MovingSearch : public Search {
+protected:
+    Surface moved = surface;
+
+    /// Rotation, shift and a strain up to 20 %: facets stay plane.
+    void carry(Random& random) {
+        const Mat3 turn = Eigen::AngleAxisd(pi * random.uniform(), random.direction()).toRotationMatrix();
+        Mat3 strain = Mat3::Identity();
+        for (int k = 0; k < 3; ++k) strain.col(k) += random.vector(0.1);
+        const Vec3 shift = random.vector(3);
+        for (std::size_t v = 0; v < moved.x.size(); ++v) moved.x[v] = turn * (strain * surface.x[v]) + shift;
+    }
+    /// Every node on its own: quadrilaterals warp.
+    void dent(Random& random) {
+        const double amount = 0.1 * surface.topology.mean_facet_size();
+        for (Vec3& x : moved.x) x += random.vector(amount);
+    }
+    /// Closest distance of all facets, warped or not, by looking at every one; closest_on() has its own oracle.
+    [[nodiscard]] double brute_force_warped(const Vec3& s) const {
+        double nearest = std::numeric_limits<double>::max();
+        for (Index f = 0; f < moved.topology.facet_count(); ++f)
+            nearest = std::min(nearest, search.closest_on(f, s, moved.x).distance);
+        return nearest;
+    }
+};
+
+TEST_P(MovingSearch, FindsTheClosestFacetOfAllWhereverTheSurfaceIs) {
+    constexpr int queries = 50; // a motion
+    Random random(25);
+    for (int motion = 0; motion < moving / queries; ++motion) {
+        carry(random);
+        const bool warped = motion % 2 == 1;
+        if (warped) dent(random);
+        search.build(moved.x);
+        for (int i = 0; i < queries; ++i) {
+            const Vec3 s = random_point(moved, 1, random);
+            const FacetHit hit = search.global(s, moved.x);
+            ASSERT_NEAR(hit.distance, warped ? brute_force_warped(s) : brute_force(moved, s), round_off)
+                << s.transpose() << " after motion " << motion;
+        }
+    }
+}
+
+/// As in a run: points close to a surface that moves and dents a little from query to query, each followed from the facet
+/// it was on. No tree is built.
+TEST_P(MovingSearch, FollowsPointsFromTheirLastFacet) {
+    constexpr int points = 50;
+    Random random(26);
+    std::vector<std::pair<double, double>> place(points);
+    std::vector<Index> facet(points);
+    for (int k = 0; k < points; ++k) {
+        place[k] = {random.uniform(0, 1), random.uniform(0, 1)};
+        facet[k] = search.global(near_surface(surface, place[k].first, place[k].second, 0), surface.x).facet;
+    }
+    const double size = surface.topology.mean_facet_size();
+    const std::vector<Vec3>& X = surface.x;
+    Mat3 turn = Mat3::Identity();
+    Vec3 shift = Vec3::Zero();
+    for (int i = 0; i < followed / points; ++i) {
+        turn = Eigen::AngleAxisd(0.02 * random.uniform(), random.direction()).toRotationMatrix() * turn;
+        shift += random.vector(0.1 * size);
+        for (std::size_t v = 0; v < X.size(); ++v) moved.x[v] = turn * (X[v] + random.vector(0.05 * size)) + shift;
+        for (int k = 0; k < points; ++k) {
+            auto& [a, b] = place[k];
+            a = std::clamp(a + 0.06 * random.uniform(), -0.02, 1.02);
+            b = std::clamp(b + 0.06 * random.uniform(), -0.02, 1.02);
+            const Vec3 s = turn * near_surface(surface, a, b, random.uniform()) + shift;
+            const FacetHit hit = search.track(s, facet[k], moved.x, 0);
+            ASSERT_NEAR(hit.distance, brute_force_warped(s), round_off) << s.transpose() << " from facet " << facet[k];
+            facet[k] = hit.facet;
+        }
+    }
+}
+
 TEST_P(Search, FollowsALeapAcrossTheSurface) {
     const Vec3 start = near_surface(surface, 0.1, 0.1, 0.2), end = near_surface(surface, 0.9, 0.8, 0.2);
     const Index facet = search.global(start, surface.x).facet;
@@ -100,6 +178,9 @@ TEST_P(Search, FollowsALeapAcrossTheSurface) {
 }
 
 INSTANTIATE_TEST_SUITE_P(On, Search, ::testing::Range(0, 5),
+                         [](const auto& tested) { return all_surfaces()[tested.param].name; });
+
+INSTANTIATE_TEST_SUITE_P(On, MovingSearch, ::testing::Range(0, 5),
                          [](const auto& tested) { return all_surfaces()[tested.param].name; });
 
 TEST(FacetSearch, TakesTheLowestFacetAmongEquals) {

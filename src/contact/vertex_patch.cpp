@@ -3,6 +3,7 @@
 #include "contact/fold.hpp"
 #include "contact/merge.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +16,7 @@ namespace {
 constexpr int highest_level = 5;
 constexpr double kappa_aim = 0.8;     ///< where neither interpolation nor coverage asks for another
 constexpr double beyond_nodes = 1.15; ///< least tau at nodes outside the patch: the bump has ended there
+constexpr double most_stretch = 4;    ///< of edges one way to those across, in natural coordinates
 constexpr double covered = 0.75;      ///< largest tau at the vertex's own edge midpoints and facet centres
 
 std::vector<Index> grown(const mesh::HalfEdgeSurface& surface, const std::vector<Index>& facets) {
@@ -53,28 +55,46 @@ Vec3 vertex_normal(const mesh::HalfEdgeSurface& surface, Index vertex, const std
     return sum.normalized();
 }
 
+/// Map of natural coordinates that makes strongly stretched facets square, area kept. Without it the round-off of the
+/// interpolation grows with the square of the stretch: dc is the short edge, and the long ones are far out on the basis.
+/// @param S  mean of u_j u_j^T over the edge neighbours, from the vertex
+Mat2 unstretching(const Mat2& S) {
+    const Eigen::SelfAdjointEigenSolver<Mat2> axes(S);
+    const Vec2& squares = axes.eigenvalues(); // ascending
+    if (!(squares(0) > 0) || squares(1) <= most_stretch * most_stretch * squares(0)) return Mat2::Identity();
+    return std::pow(S.determinant(), 0.25) * axes.operatorInverseSqrt();
+}
+
 std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Index vertex,
                                       const std::vector<Index>& sector, const std::vector<Vec3>& X,
                                       const BlendOptions& options) {
     const ReferencePlane plane = ReferencePlane::through(X[vertex], vertex_normal(surface, vertex, sector, X));
-    const auto natural = [&](const Vec3& x) {
+    const auto in_plane = [&](const Vec3& x) {
         return options.coordinates == PatchCoordinates::tangential ? plane.tangential(x) : plane.equal_length(x);
     };
-    // M from the edge neighbours; q = u^T M u is about 1 at them
-    Mat2 sum = Mat2::Zero();
     std::vector<Index> neighbours;
-    double near = 0;
-    std::vector<Vec2> own; // where the bump must still be high
     for (const Index f : sector) {
         const auto v = surface.facet_vertices(f);
         const std::size_t n = v.size(), c = static_cast<std::size_t>(std::find(v.begin(), v.end(), vertex) - v.begin());
-        Vec3 centroid = Vec3::Zero();
-        for (const Index w : v) centroid += X[w] / static_cast<double>(n);
-        own.push_back(natural(centroid));
         for (const Index w : {v[(c + 1) % n], v[(c + n - 1) % n]}) neighbours.push_back(w);
     }
     std::sort(neighbours.begin(), neighbours.end());
     neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+    Mat2 S = Mat2::Zero();
+    for (const Index w : neighbours)
+        S += in_plane(X[w]) * in_plane(X[w]).transpose() / static_cast<double>(neighbours.size());
+    const Mat2 W = unstretching(S);
+    const auto natural = [&](const Vec3& x) -> Vec2 { return W * in_plane(x); };
+    // M from the edge neighbours; q = u^T M u is about 1 at them
+    Mat2 sum = Mat2::Zero();
+    double near = 0;
+    std::vector<Vec2> own; // where the bump must still be high
+    for (const Index f : sector) {
+        const auto v = surface.facet_vertices(f);
+        Vec3 centroid = Vec3::Zero();
+        for (const Index w : v) centroid += X[w] / static_cast<double>(v.size());
+        own.push_back(natural(centroid));
+    }
     for (const Index w : neighbours) {
         const Vec2 u = natural(X[w]);
         sum += u * u.transpose() / static_cast<double>(neighbours.size());

@@ -215,5 +215,146 @@ TEST(NearDuplicateNodes, OfDifferentPartsStayApart) {
         EXPECT_EQ(patch.vertices.front() < offset, patch.vertices.back() < offset);
 }
 
+/// A sphere of unit radius between 60 degrees south and north; edges grow from south to north by the grading.
+Shell sphere_band(int around, int across, double south, double north, double grading) {
+    return grid(around, across, true, false, [=](double a, double b) {
+        const double t = grading == 1 ? b : (std::pow(grading, b) - 1) / (grading - 1);
+        const double angle = 2 * pi * a, up = south + (north - south) * t;
+        return Vec3(std::cos(angle) * std::cos(up), std::sin(angle) * std::cos(up), std::sin(up));
+    });
+}
+
+/// A mesh with edges or sizes in the ratio 1:20, and the one that is nowhere finer than its coarsest part.
+struct Graded {
+    const char* name;
+    Shell mesh, coarse;
+    bool sphere;    ///< or half-tube
+    double normals; ///< largest ratio of their mean errors of the normal, somewhat more than measured
+};
+void PrintTo(const Graded& graded, std::ostream* out) {
+    *out << graded.name;
+}
+
+std::vector<Graded> graded_meshes() {
+    const double north = pi / 3, south = -north;
+    const Shell tube = half_tube_grid(12, 13), band = sphere_band(24, 8, south, north, 1);
+    return {{"TubeOfThinRings", half_tube_grid(12, 13 * 20), tube, false, 3},
+            {"TubeOfNarrowStrips", half_tube_grid(12 * 20, 13), tube, false, 0.001},
+            {"TubeGradedAlong", half_tube_grid(12, 42, 1, 20), tube, false, 2},
+            {"TubeGradedAround", half_tube_grid(38, 13, 20, 1), tube, false, 0.3},
+            {"TubeGradedBothWays", half_tube_grid(38, 42, 20, 20), tube, false, 0.3},
+            {"SphereOfThinRings", sphere_band(24, 8 * 20, south, north, 1), band, true, 1},
+            {"SphereOfNarrowStrips", sphere_band(24 * 20, 8, south, north, 1), band, true, 2},
+            {"SphereGraded", sphere_band(24, 24, south, north, 20), band, true, 1.1}};
+}
+
+class GradedFacets : public ::testing::TestWithParam<Graded> {
+protected:
+    Blend blend{GetParam().mesh.surface("Graded")};
+    Random random{72};
+
+    [[nodiscard]] Vec3 normal(const Vec3& p) const {
+        return GetParam().sphere ? Vec3(p.normalized()) : Vec3(-Vec3(p.x(), 0, p.z()).normalized());
+    }
+    /// A point of a facet, natural coordinates in (0, 1).
+    static Vec3 on_facet(const Blend& blend, Index f, double a, double b) {
+        const auto v = blend.surface.topology.facet_vertices(f);
+        const auto& x = blend.x;
+        return (1 - a) * (1 - b) * x[v[0]] + a * (1 - b) * x[v[1]] + a * b * x[v[2]] + (1 - a) * b * x[v[3]];
+    }
+    /// Longest edge, m.
+    static double longest(const Blend& blend) {
+        double edge = 0;
+        for (Index f = 0; f < blend.surface.topology.facet_count(); ++f) {
+            const auto v = blend.surface.topology.facet_vertices(f);
+            for (std::size_t c = 0; c < 4; ++c) edge = std::max(edge, (blend.x[v[c]] - blend.x[v[(c + 1) % 4]]).norm());
+        }
+        return edge;
+    }
+    /// Facets whose patches reach no boundary: what is one-sided there is so in every mesh. At most so many, evenly.
+    static std::vector<Index> inner_facets(const Blend& blend, std::size_t most) {
+        const auto& topology = blend.surface.topology;
+        std::vector<Index> all, some;
+        for (Index f = 0; f < topology.facet_count(); ++f) {
+            const auto near = topology.facet_ring(f, 2);
+            if (std::none_of(near.begin(), near.end(), [&](Index v) { return topology.is_boundary_vertex(v); }))
+                all.push_back(f);
+        }
+        const std::size_t stride = 1 + all.size() / most;
+        for (std::size_t k = 0; k < all.size(); k += stride) some.push_back(all[k]);
+        return some;
+    }
+    /// Mean over the area.
+    double normal_error(const Blend& on) {
+        double sum = 0, area = 0;
+        for (const Index f : inner_facets(on, 400))
+            for (int i = 0; i < 4; ++i) {
+                const Vec3 p = on_facet(on, f, random.uniform(0, 1), random.uniform(0, 1)), n = normal(p);
+                const ContactPoint point = on.at(p);
+                EXPECT_TRUE(point.found);
+                const double share = std::pow(on.surface.topology.facet_size(f), 2);
+                area += share;
+                sum += share * std::atan2(point.normal.cross(n).norm(), point.normal.dot(n));
+            }
+        return sum / area;
+    }
+};
+
+TEST_P(GradedFacets, NeedNoFallback) {
+    EXPECT_EQ(blend.master->fallbacks(), 0);
+    for (const VertexPatchInfo& patch : vertex_patches(blend.surface.topology, blend.x, {})) EXPECT_EQ(patch.level, 2);
+}
+
+TEST_P(GradedFacets, HoldEveryVertex) {
+    // patches are as long as the longest edges, and so is their round-off
+    const double tolerance = 1e-11 * longest(blend);
+    for (Index v = 0; v < blend.surface.topology.vertex_count(); ++v) {
+        const ContactPoint point = blend.at(blend.x[v]);
+        ASSERT_TRUE(point.found) << "vertex " << v;
+        EXPECT_LT(std::abs(point.gap), tolerance) << "vertex " << v;
+    }
+}
+
+TEST_P(GradedFacets, AreCoveredAndDoNotJump) {
+    const auto& topology = blend.surface.topology;
+    int lost = 0;
+    double jump = 0;
+    const auto inner = inner_facets(blend, 500);
+    ASSERT_FALSE(inner.empty());
+    for (const Index f : inner) {
+        const auto v = topology.facet_vertices(f);
+        const double height = random.uniform(-0.3, 0.3) * topology.facet_size(f);
+        const Vec3 p = on_facet(blend, f, random.uniform(0, 1), random.uniform(0, 1));
+        lost += blend.at(p + height * normal(p)).found ? 0 : 1;
+        for (int c = 0; c < 4; ++c) { // above an edge, seen from both facets
+            const double t = random.uniform(0, 1);
+            const Vec3 edge = (1 - t) * blend.x[v[c]] + t * blend.x[v[(c + 1) % 4]], s = edge + height * normal(edge);
+            const ContactPoint here = blend.at(s, blend.search.closest_on(f, s, blend.x));
+            const Index across = topology.edge_neighbours(f)[c];
+            const ContactPoint there = blend.at(s, blend.search.closest_on(across, s, blend.x));
+            lost += here.found && there.found ? 0 : 1;
+            if (!here.found || !there.found) continue;
+            jump = std::max({jump, std::abs(here.gap - there.gap), (here.normal - there.normal).norm()});
+        }
+    }
+    EXPECT_EQ(lost, 0);
+    EXPECT_EQ(jump, 0) << "the same patches on either side";
+}
+
+/// Fine edges across a curve of coarse ones do not make up for the coarse ones: patches as wide as one edge see less of the
+/// surface than square ones, and their normals are up to 2.7 times worse. Where facets are finer along the curve, or
+/// smaller altogether, normals are better.
+TEST_P(GradedFacets, HaveAboutTheNormalsOfTheirCoarsestPart) {
+    const Blend coarse(GetParam().coarse.surface("Coarse"));
+    ASSERT_FALSE(inner_facets(blend, 400).empty());
+    ASSERT_FALSE(inner_facets(coarse, 400).empty());
+    const double error = normal_error(blend);
+    EXPECT_LT(error, GetParam().normals * normal_error(coarse));
+    EXPECT_LT(error, 1e-3); // rad: what is asked of the regular half-tube
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GradedFacets, ::testing::ValuesIn(graded_meshes()),
+                         [](const auto& tested) { return tested.param.name; });
+
 } // namespace
 } // namespace osculate::contact

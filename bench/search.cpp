@@ -54,6 +54,13 @@ struct Code {
     }
 };
 
+/// The position code's facet, then the closest one around it by exact distances, as tracking finds it.
+struct FinishedCode : Code {
+    static contact::FacetHit global(const Searched& sheet, const Vec3& s) {
+        return sheet.tree.track(s, sheet.code.global(s, sheet.on.x), sheet.on.x, 0);
+    }
+};
+
 template <class Method> void build(benchmark::State& state) {
     Searched& sheet = kept(static_cast<int>(state.range(0)));
     for (auto _ : state) Method::of(sheet).build(sheet.on.x);
@@ -104,6 +111,11 @@ template <class Method> void enter(const std::string& name, int side) {
     for (const int side : {32, 100, 316, 1000}) { // in this order a sheet is made once
         enter<Tree>("tree", side);
         enter<Code>("position_code", side);
+        for (const bool above : {false, true})
+            benchmark::RegisterBenchmark(above ? "search/global/far/position_code_finished"
+                                               : "search/global/near/position_code_finished",
+                                         global<FinishedCode>, above)
+                ->Arg(side);
     }
     return true;
 }();

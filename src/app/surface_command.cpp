@@ -45,15 +45,29 @@ std::vector<const model::ContactTerm*> chosen_pairs(const Plan& plan, const Surf
     return pairs;
 }
 
-void write_tessellation(const fs::path& path, const mesh::HalfEdgeSurface& surface, const SurfaceSamples& all) {
+/// Per facet, whether it is one of the mesh and not a mirror image beyond a symmetry plane.
+std::vector<char> own_facets(const model::ContactTerm& pair) {
+    const mesh::HalfEdgeSurface& surface = pair.surface();
+    std::vector<char> own;
+    for (Index f = 0; f < surface.facet_count(); ++f) {
+        const auto v = surface.facet_vertices(f);
+        own.push_back(std::ranges::all_of(v, [&](Index w) { return pair.own_vertex(w) == w; }) ? 1 : 0);
+    }
+    return own;
+}
+
+void write_tessellation(const fs::path& path, const mesh::HalfEdgeSurface& surface, const std::vector<char>& own,
+                        const SurfaceSamples& all) {
     std::vector<Vec3> points;
     std::vector<mesh::Facet> cells;
     std::vector<output::Array> arrays{{"normal", 3, {}},     {"mean_curvature", 1, {}},    {"gauss_curvature", 1, {}},
                                       {"distance", 1, {}},   {"patch_nodes", 1, {}, true}, {"found", 1, {}, true},
                                       {"facet", 1, {}, true}};
     for (Index f = 0; f < surface.facet_count(); ++f) {
+        if (own[f] == 0) continue;
+        const auto first = static_cast<Index>(points.size());
         for (mesh::Facet cell : all.grid(surface.facets()[f].count).cells()) {
-            for (int c = 0; c < cell.count; ++c) cell.nodes[c] += all.first[f];
+            for (int c = 0; c < cell.count; ++c) cell.nodes[c] += first;
             cells.push_back(cell);
         }
         for (Index k = all.first[f]; k < all.first[f + 1]; ++k) {
@@ -71,21 +85,28 @@ void write_tessellation(const fs::path& path, const mesh::HalfEdgeSurface& surfa
     output::write_vtp(path, points, cells, arrays, 0);
 }
 
-/// Calls f(half_edge, facet, edge of that facet) for every edge once.
-template <class F> void for_each_edge(const mesh::HalfEdgeSurface& surface, F&& f) {
+/// Calls f(half_edge, facet, edge of that facet) for every edge of own facets once.
+template <class F> void for_each_edge(const mesh::HalfEdgeSurface& surface, const std::vector<char>& own, F&& f) {
     for (Index h = 0; h < static_cast<Index>(surface.half_edges().size()); ++h) {
         const mesh::HalfEdge& edge = surface.half_edges()[h];
-        if (edge.twin < h) f(h, edge.facet, h - surface.first_half_edge(edge.facet)); // -1 on the boundary
+        if (own[edge.facet] == 0) continue;
+        const bool twin_is_own = edge.twin >= 0 && own[surface.half_edges()[edge.twin].facet] != 0;
+        if (!twin_is_own || edge.twin < h) f(h, edge.facet, h - surface.first_half_edge(edge.facet));
     }
 }
 
-/// Boundary and feature edges, as they lie on the sampled surface. @returns the number of feature edges
-Index write_edges(const fs::path& path, const mesh::HalfEdgeSurface& surface, const SurfaceSamples& all, int N) {
+struct EdgeCounts {
+    Index feature = 0, boundary = 0;
+};
+
+/// Boundary and feature edges, as they lie on the sampled surface. An edge on a symmetry plane is no boundary.
+EdgeCounts write_edges(const fs::path& path, const mesh::HalfEdgeSurface& surface, const std::vector<char>& own,
+                       const SurfaceSamples& all, int N) {
     std::vector<Vec3> points;
     std::vector<std::vector<Index>> lines;
     output::Array feature{"feature", 1, {}, true};
-    Index features = 0;
-    for_each_edge(surface, [&](Index h, Index facet, Index edge) {
+    EdgeCounts counts;
+    for_each_edge(surface, own, [&](Index h, Index facet, Index edge) {
         if (!surface.is_boundary_edge(h) && !surface.is_feature_edge(h)) return;
         std::vector<Index>& line = lines.emplace_back();
         const FacetGrid& grid = all.grid(surface.facets()[facet].count);
@@ -93,17 +114,18 @@ Index write_edges(const fs::path& path, const mesh::HalfEdgeSurface& surface, co
             line.push_back(static_cast<Index>(points.size()));
             points.push_back(all.samples[all.first[facet] + grid.on_edge(edge, k)].position);
         }
-        features += surface.is_feature_edge(h) ? 1 : 0;
+        ++(surface.is_feature_edge(h) ? counts.feature : counts.boundary);
         feature.values.push_back(surface.is_feature_edge(h) ? 1 : 0);
     });
     output::write_lines(path, points, lines, {feature});
-    return features;
+    return counts;
 }
 
 /// Largest angle, rad, between the normals of the samples that two facets have at the same place of a common edge.
-double largest_jump(const mesh::HalfEdgeSurface& surface, const SurfaceSamples& all, int N) {
+double largest_jump(const mesh::HalfEdgeSurface& surface, const std::vector<char>& own, const SurfaceSamples& all,
+                    int N) {
     double largest = 0;
-    for_each_edge(surface, [&](Index h, Index facet, Index edge) {
+    for_each_edge(surface, own, [&](Index h, Index facet, Index edge) {
         if (surface.is_boundary_edge(h) || surface.is_feature_edge(h)) return;
         const Index twin = surface.half_edges()[h].twin, other = surface.half_edges()[twin].facet;
         const Index other_edge = twin - surface.first_half_edge(other);
@@ -123,29 +145,38 @@ std::string write_pair(const model::ContactTerm& pair, const std::vector<Vec3>& 
                        int threads) {
     const mesh::HalfEdgeSurface& surface = pair.surface();
     const std::vector<Vec3> x = pair.vertices(X);
-    const SurfaceSamples all = sample_surface(surface, pair.master(), x, N, threads);
+    const std::vector<char> own = own_facets(pair);
+    const SurfaceSamples all = sample_surface(surface, pair.master(), x, N, threads); // images too: for jumps at planes
     const fs::path file = folder / (pair.name() + ".vtp"), edges = folder / (pair.name() + "_edges.vtp");
-    Index features = 0;
+    EdgeCounts counts;
     try {
-        write_tessellation(file, surface, all);
-        features = write_edges(edges, surface, all, N);
+        write_tessellation(file, surface, own, all);
+        counts = write_edges(edges, surface, own, all, N);
     } catch (const std::runtime_error& error) {
         throw RunFailure(error.what());
     }
-    Index found = 0;
+    Index facets = 0, vertices = 0, samples = 0, found = 0;
     double farthest = 0;
-    for (const SurfaceSample& sample : all.samples) {
-        found += sample.found ? 1 : 0;
-        farthest = std::max(farthest, std::abs(sample.distance));
+    for (Index v = 0; v < surface.vertex_count(); ++v) vertices += pair.own_vertex(v) == v ? 1 : 0;
+    for (Index f = 0; f < surface.facet_count(); ++f) {
+        if (own[f] == 0) continue;
+        ++facets;
+        samples += all.first[f + 1] - all.first[f];
+        for (Index k = all.first[f]; k < all.first[f + 1]; ++k) {
+            found += all.samples[k].found ? 1 : 0;
+            farthest = std::max(farthest, std::abs(all.samples[k].distance));
+        }
     }
-    std::string text =
-        fmt::format("pair {}: {} master facets, {} vertices, {} feature edge(s), {} boundary loop(s)\n", pair.name(),
-                    surface.facet_count(), surface.vertex_count(), features, surface.boundary_loop_count());
-    text += fmt::format("  {} patches had to be smaller or simpler than asked for\n", pair.master().fallbacks());
-    text += fmt::format("  surface found at {} of {} samples\n", found, all.samples.size());
+    const Index images = surface.facet_count() - facets;
+    std::string text = fmt::format("pair {}: {} master facets, {} vertices, {} feature edge(s), {} boundary edge(s)\n",
+                                   pair.name(), facets, vertices, counts.feature, counts.boundary);
+    if (images > 0) text += fmt::format("  {} mirror images of facets beyond symmetry planes, not drawn\n", images);
+    text += fmt::format("  {} patches had to be smaller or simpler than asked for{}\n", pair.master().fallbacks(),
+                        images > 0 ? ", those of mirror images among them" : "");
+    text += fmt::format("  surface found at {} of {} samples\n", found, samples);
     text += fmt::format("  largest distance to the facets {:.4g} m\n", farthest);
     text += fmt::format("  largest jump of the normal across facet edges {:.4g} degrees, feature edges left out\n",
-                        largest_jump(surface, all, N) * 180 / std::numbers::pi);
+                        largest_jump(surface, own, all, N) * 180 / std::numbers::pi);
     text += fmt::format("  see {} and {}\n", file.string(), edges.string());
     return text;
 }

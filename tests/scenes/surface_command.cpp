@@ -62,7 +62,7 @@ TEST_P(EverySurface, IsWrittenAndReadsBack) {
     const std::string kind = GetParam();
     const Outcome outcome = surface(kind);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("pair sliding: 42 master facets, 56 vertices, 0 feature edge(s), 1 boundary"));
+    EXPECT_THAT(outcome.out, HasSubstr("pair sliding: 42 master facets, 56 vertices, 0 feature edge(s), 26 boundary"));
     const auto data = read(kind + "/sliding.vtp");
     ASSERT_EQ(data->GetNumberOfPoints(), facets * samples_per_facet);
     EXPECT_EQ(data->GetNumberOfPolys(), facets * refine * refine);
@@ -167,7 +167,7 @@ TEST_F(SurfaceCommand, ShowsFeatureEdgesApartFromTheBoundary) {
     const Outcome outcome = osculate({"surface", scene_file("tests/scenes/press.yaml"), "-o", "here", "--refine", "2",
                                       "--set", "sets.ground={body: base, box: {min: [-1, -1, 0.4], max: [3, 3, 2]}}"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("pair joint: 32 master facets, 41 vertices, 20 feature edge(s), 1 boundary"));
+    EXPECT_THAT(outcome.out, HasSubstr("pair joint: 32 master facets, 41 vertices, 20 feature edge(s), 16 boundary"));
     const auto edges = read("here/joint_edges.vtp");
     ASSERT_EQ(edges->GetNumberOfLines(), 16 + 20) << "the open rim; the top's four sides and four short corners";
     vtkDataArray* feature = edges->GetCellData()->GetArray("feature");
@@ -179,6 +179,75 @@ TEST_F(SurfaceCommand, ShowsFeatureEdgesApartFromTheBoundary) {
         EXPECT_EQ(feature->GetTuple1(c), z > 0.5 + 1e-9 ? 1 : 0) << c;
     }
 }
+
+/// Half of a tube's length and the right half of its inside, with two symmetry planes, beside the whole.
+class MirroredSurface : public SurfaceCommand, public testing::WithParamInterface<const char*> {
+protected:
+    [[nodiscard]] Outcome quarter() const {
+        // boxes: the inner facets right of x = 0; the nodes of the two planes
+        return osculate(
+            {"surface",  scene_file("configs/paper/half_tube.yaml"),
+             "-o",       "quarter",
+             "--refine", "4",
+             "--set",    "bodies.tube.mesh.half_tube.divisions=[12, 3, 1]",
+             "--set",    "bodies.tube.mesh.half_tube.length=6 m",
+             "--set",    "bodies.contactor.mesh.contactor.divisions=[6, 8, 1]",
+             "--set",    "sets.tube_inner={body: tube, box: {min: [-0.001, -1, -3.001], max: [3.001, 7, 0.001]}}",
+             "--set",    "sets.middle={body: tube, box: {min: [-0.001, -1, -5], max: [0.001, 7, 1]}}",
+             "--set",    "sets.far_end={body: tube, surface: y_max}",
+             "--set",    "supports.middle={symmetry: [1, 0, 0]}",
+             "--set",    "supports.far_end={symmetry: [0, 1, 0]}",
+             "--set",    std::string("contact.sliding.surface=") + GetParam()});
+    }
+    [[nodiscard]] Outcome whole() const {
+        return osculate({"surface", scene_file("configs/paper/half_tube.yaml"), "-o", "whole", "--refine", "4", "--set",
+                         "bodies.tube.mesh.half_tube.divisions=[12, 6, 1]", "--set",
+                         "bodies.contactor.mesh.contactor.divisions=[6, 8, 1]", "--set",
+                         std::string("contact.sliding.surface=") + GetParam()});
+    }
+};
+
+TEST_P(MirroredSurface, IsDrawnOnceAndIsThatOfTheWhole) {
+    constexpr int own = 6 * 3;
+    const Outcome part = quarter(), all = whole();
+    ASSERT_EQ(part.code, 0) << part.err;
+    ASSERT_EQ(all.code, 0) << all.err;
+    EXPECT_THAT(part.out, HasSubstr("18 master facets, 28 vertices, 0 feature edge(s), 9 boundary edge(s)"));
+    EXPECT_THAT(part.out, HasSubstr("mirror images of facets beyond symmetry planes, not drawn"));
+    EXPECT_THAT(part.out, HasSubstr("surface found at 450 of 450 samples"));
+    const auto a = read("quarter/sliding.vtp"), b = read("whole/sliding.vtp");
+    ASSERT_EQ(a->GetNumberOfPolys(), own * refine * refine);
+    ASSERT_EQ(a->GetNumberOfPoints(), own * samples_per_facet);
+    EXPECT_EQ(a->GetPointData()->GetArray("facet")->GetRange()[1], own - 1);
+    EXPECT_EQ(read("quarter/sliding_edges.vtp")->GetNumberOfLines(), 9) << "the rim and the near end, not the planes";
+    for (vtkIdType c = 0; c < a->GetNumberOfPolys(); ++c) {
+        vtkNew<vtkIdList> corners;
+        a->GetCellPoints(c, corners);
+        for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k) {
+            const Vec3 p(a->GetPoint(corners->GetId(k)));
+            constexpr double lean = 1e-4; // m: a facet's own patch is not quite perpendicular to the plane
+            EXPECT_GT(p.x(), -lean);
+            EXPECT_LT(p.y(), 6 + lean);
+        }
+    }
+    for (vtkIdType i = 0; i < a->GetNumberOfPoints(); ++i) {
+        const Vec3 p(a->GetPoint(i)), n(a->GetPointData()->GetArray("normal")->GetTuple3(i));
+        constexpr double round_off = 1e-9; // curvatures: second derivatives of patches of condition 1e5
+        bool seen = false;
+        for (vtkIdType k = 0; k < b->GetNumberOfPoints() && !seen; ++k) {
+            if ((Vec3(b->GetPoint(k)) - p).norm() > round_off) continue;
+            if ((Vec3(b->GetPointData()->GetArray("normal")->GetTuple3(k)) - n).norm() > round_off) continue;
+            seen = true; // the other facets of an edge have the same place, and with patches another normal
+            for (const char* name : {"mean_curvature", "gauss_curvature", "distance", "patch_nodes"})
+                seen = seen && std::abs(a->GetPointData()->GetArray(name)->GetTuple1(i) -
+                                        b->GetPointData()->GetArray(name)->GetTuple1(k)) < round_off;
+        }
+        EXPECT_TRUE(seen) << p.transpose();
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, MirroredSurface, testing::Values("facets", "rpim", "blend"),
+                         [](const auto& test) { return std::string(test.param); });
 
 } // namespace
 } // namespace osculate::scenes

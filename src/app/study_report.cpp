@@ -166,7 +166,8 @@ std::string gnuplot_script(const scene::SurfaceStudy& study, const StudyResult& 
     std::string text = "set key at graph 0.5, screen 0.02 center bottom maxrows 3 samplen 2 noenhanced\nset bmargin 9\n"
                        "set logscale y\nset format y '10^{%L}'\nset grid\n";
     int line = 0; // one colour a method, in the order of their names
-    for (const char* colour : {"#808080", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#0072b2"})
+    for (const char* colour : {"#808080", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#0072b2", "#332288",
+                               "#44aa99", "#ddcc77", "#882255", "#117733"})
         text += fmt::format("set linetype {} linewidth 1.5 linecolor rgb '{}'\n", ++line, colour);
     text += refined(study) ? "set logscale x\nset xlabel 'mean facet size, m' noenhanced\n"
                            : fmt::format("set xlabel 'mesh'\nset xrange [0.5:{}.5]\nset xtics 1\n", result.meshes());

@@ -98,6 +98,23 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
         {"rpim_2", [](const SurfaceMesh& s) { return make_rpim(s, 2); }},
         {"blend_1", [](const SurfaceMesh& s) { return make_blend(s, 1); }},
         {"blend_2", [](const SurfaceMesh& s) { return make_blend(s, 2); }},
+        {"blend_3", [](const SurfaceMesh& s) { return make_blend(s, 3); }},
+        {"blend_2_r3",
+         [](const SurfaceMesh& s) {
+             return make_blend(s, 2, {0, 1.5});
+         }},
+        {"blend_1_r5",
+         [](const SurfaceMesh& s) {
+             return make_blend(s, 1, {0, 2.5});
+         }},
+        {"blend_2_r5",
+         [](const SurfaceMesh& s) {
+             return make_blend(s, 2, {0, 2.5});
+         }},
+        {"blend_3_r5",
+         [](const SurfaceMesh& s) {
+             return make_blend(s, 3, {0, 2.5});
+         }},
     };
     return list;
 }
@@ -118,8 +135,9 @@ std::unique_ptr<Approximation> make_rpim(const SurfaceMesh& surface, int ring) {
     return std::make_unique<Master>(surface, contact::make_rpim_surface(surface.topology, surface.x, options));
 }
 
-std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level) {
+std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level, const contact::Multiquadric& basis) {
     contact::BlendOptions options;
+    options.basis = basis;
     options.level = level;
     return std::make_unique<Master>(surface, contact::make_blend_surface(surface.topology, surface.x, options));
 }

@@ -87,6 +87,25 @@ TEST(SurfaceConvergence, BlendHasItsOrders) {
     }
 }
 
+/// What speaks for other options where the mesh resolves the surface, and against them where it does not.
+TEST(SurfaceOptions, TradeAccuracyOnFineMeshesForRobustnessOnCoarseOnes) {
+    scene::SurfaceStudy study = shipped("surface_options.yaml");
+    study.points = 1;
+    std::get<scene::RefinedMeshes>(study.meshes).levels = 1;
+    const StudyResult result = run_surface_study(study, threads);
+    for (const StudyRow& row : result.rows) EXPECT_EQ(row.errors.missing, 0) << row.surface << ' ' << row.method;
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+        const auto mean = [&](const char* surface, const char* method) {
+            return (result.row(surface, 1, method).errors.*error_kinds()[kind].measure).mean;
+        };
+        const char* name = error_kinds()[kind].name;
+        EXPECT_LT(mean("sphere", "blend_2"), mean("sphere", "blend_1")) << name;
+        EXPECT_LT(mean("sphere", "blend_3"), mean("sphere", "blend_2")) << name;
+        EXPECT_LT(mean("sphere", "blend_2_r5"), 0.4 * mean("sphere", "blend_2")) << name; // measured 0.27 to 0.28
+        EXPECT_GT(mean("torus", "blend_2_r5"), 1.2 * mean("torus", "blend_2")) << name;   // measured 1.3 to 1.45
+    }
+}
+
 TEST(FittedOrder, IsThePowerOfTheSize) {
     std::vector<StudyRow> rows(3);
     for (int i = 0; i < 3; ++i) {

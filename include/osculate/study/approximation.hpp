@@ -1,6 +1,7 @@
 #pragma once
 /// Surfaces through the nodes of a mesh, all asked in the same way: facet by facet.
 
+#include "osculate/contact/radial_basis.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <memory>
@@ -45,12 +46,14 @@ public:
 /// @pre  no facet stands upright in the x1x2 plane
 [[nodiscard]] std::unique_ptr<Approximation> make_height_patches(const SurfaceMesh& surface, int ring);
 
-/// The master surfaces `rpim` and `blend` of contact, with their default basis (m = 6, equal lengths). The point is the foot
-/// that s <- s - g n reaches from the facet's point.
+/// The master surfaces `rpim` and `blend` of contact, m = 6 and equal lengths. The point is the foot that s <- s - g n
+/// reaches from the facet's point.
 [[nodiscard]] std::unique_ptr<Approximation> make_rpim(const SurfaceMesh& surface, int ring);
-[[nodiscard]] std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level);
+[[nodiscard]] std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level,
+                                                        const contact::Multiquadric& basis = {});
 
-/// Names of all methods: facets, nagata, height_1, rpim_1, rpim_2, blend_1, blend_2.
+/// Names of all methods: facets, nagata, height_1, rpim_1, rpim_2, blend_1, blend_2, blend_3 and, with
+/// polyharmonic bases r^3 and r^5, blend_2_r3, blend_1_r5, blend_2_r5, blend_3_r5.
 [[nodiscard]] const std::vector<std::string>& method_names();
 /// @pre  the name is one of method_names()
 [[nodiscard]] std::unique_ptr<Approximation> make_approximation(const std::string& method, const SurfaceMesh& surface);

@@ -82,7 +82,7 @@ public:
         if (hit.facet < 0) return;
         const Domain& domain = domains_[hit.facet];
         if (!domain.patch) return facets_.evaluate(s, hit, x, point, variation);
-        const double size = surface_.facet_size(hit.facet);
+        const double size = domain.size;
         if (beyond_boundary(hit, size)) return;
         // start where the facet's own closest point lies in the patch's coordinates
         const FacetPatch facet(static_cast<int>(domain.corners.rows()));
@@ -101,6 +101,7 @@ private:
         std::vector<Index> vertices;
         std::optional<RpimPatch> patch;
         MatrixX2 corners; ///< natural coordinates of the facet's own corners
+        double size = 0;  ///< of the facet it is made around, m
     };
 
     /// Around a facet of a surface whose vertices are at X; `own` is the facet of surface_, vertices at X_own, that is to
@@ -119,6 +120,7 @@ private:
         for (int ring = options.ring; ring > 0; --ring) {
             if (folds(surface, surface.ring_facets(facet, ring), plane, X)) continue;
             Domain domain;
+            domain.size = surface.facet_size(facet);
             domain.vertices = surface.facet_ring(facet, ring);
             MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2);
             for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[domain.vertices[i]]).transpose();

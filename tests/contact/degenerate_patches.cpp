@@ -196,6 +196,15 @@ TEST(NearDuplicateNodes, AreMergedInRpimPatchesToo) {
             EXPECT_TRUE(variation.dn.allFinite());
             EXPECT_EQ(point.nodes, before.nodes);
         }
+        for (Index k = 1; k <= 2; ++k) { // deep below the slivers, too: their own size says nothing
+            const Index f = surface.topology.facet_count() - k;
+            const Vec3 on = mesh::facet_centroid(surface.topology.facets()[f], surface.x);
+            const Vec3 s = on - 0.2 * round.size * round.normal(on);
+            ContactPoint point;
+            master->evaluate(s, search.closest_on(f, s, surface.x), surface.x, point);
+            ASSERT_TRUE(point.found) << round.name;
+            EXPECT_NEAR(point.gap, -0.2 * round.size, 0.05 * round.size);
+        }
     }
 }
 

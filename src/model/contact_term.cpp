@@ -1,5 +1,6 @@
 #include "osculate/model/contact_term.hpp"
 
+#include "osculate/contact/facet_patch.hpp"
 #include "osculate/core/parallel.hpp"
 
 #include <map>
@@ -163,6 +164,21 @@ void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const cont
         const double phi = point.weights(i);
         by_lambda.middleRows<3>(3 * i) = (p + phi * n) * n.transpose() - phi * Mat3::Identity();
         by_y.middleRows<3>(3 * i) += (p + phi * n) * dL + phi * L * variation.dn - lambda_T * variation.dweights.row(i);
+    }
+}
+
+void ContactTerm::follow_facet(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const {
+    const auto vertices = surface_->facet_vertices(hits_[j].facet);
+    const contact::FacetPatch facet(static_cast<int>(vertices.size()));
+    Vector weights(facet.size());
+    contact::MatrixX2 slopes(facet.size(), 2);
+    facet.weights(hits_[j].u, weights, slopes);
+    nodes.clear();
+    follow.clear();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        nodes.push_back(master_nodes_.node[vertices[i]]);
+        const Index image = master_nodes_.image.empty() ? 0 : master_nodes_.image[vertices[i]];
+        follow.emplace_back(weights(static_cast<Index>(i)) * master_nodes_.images[image].M);
     }
 }
 

@@ -2,7 +2,9 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/timing.hpp"
+#include "solve/krylov.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <kinsol/kinsol.h>
@@ -33,6 +35,12 @@ struct VectorDeleter {
 using VectorPtr = std::unique_ptr<std::remove_pointer_t<N_Vector>, VectorDeleter>;
 
 constexpr int recoverable = 1, fatal = -1;
+
+// Newton's linear systems are solved to a fraction of the residual that shrinks with it, so that convergence stays
+// quadratic, and never further than the nonlinear tolerance can tell.
+constexpr double forcing_slope = 0.1, least_forcing = 1e-8, most_forcing = 1e-3, tolerance_share = 0.1;
+/// Iterations beyond which factors are worth making anew: one factorisation costs about as much as 20 to 40 of them.
+constexpr int worth_keeping = 20;
 } // namespace
 
 struct KinsolSolver::Impl {
@@ -101,31 +109,35 @@ struct KinsolSolver::Impl {
 
     int setup() {
         return guarded([&] {
-            const SparseMatrix& A = problem->jacobian();
-            if (direct != nullptr && A.pattern == factored_pattern && A.revision == factored_revision) return 0;
-            const ScopedTimer timer(timings, Part::factor);
-            if (direct == nullptr || A.symmetric_positive_definite != is_cholesky) {
-                is_cholesky = A.symmetric_positive_definite;
-                direct = is_cholesky ? make_cholesky() : make_lu();
-            }
-            factored_pattern = 0;
-            const FactorStatus status = direct->factorise(A);
-            ++factorisations;
-            if (status != FactorStatus::ok) {
-                singular = true;
-                failing_equation = direct->failing_equation();
-                return fatal;
-            }
-            factored_pattern = A.pattern;
-            factored_revision = A.revision;
-            return 0;
+            tangent = &problem->jacobian();
+            return problem->preconditioner() != nullptr || factorise(*tangent) ? 0 : fatal;
         });
+    }
+
+    /// False where A is singular.
+    bool factorise(const SparseMatrix& A) {
+        if (direct != nullptr && A.pattern == factored_pattern && A.revision == factored_revision) return true;
+        const ScopedTimer timer(timings, Part::factor);
+        if (direct == nullptr || A.symmetric_positive_definite != is_cholesky) {
+            is_cholesky = A.symmetric_positive_definite;
+            direct = is_cholesky ? make_cholesky() : make_lu();
+        }
+        factored_pattern = 0;
+        const FactorStatus status = direct->factorise(A);
+        ++factorisations;
+        if (status != FactorStatus::ok) {
+            singular = true;
+            failing_equation = direct->failing_equation();
+            return false;
+        }
+        factored_pattern = A.pattern;
+        factored_revision = A.revision;
+        return true;
     }
 
     int linear_solve(N_Vector b, N_Vector x) {
         return guarded([&] {
-            const ScopedTimer timer(timings, Part::solve);
-            direct->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+            if (!(problem->preconditioner() != nullptr ? solve_by_krylov(b, x) : solve_directly(b, x))) return fatal;
             for (Index i = 0; i < size; ++i)
                 if (!std::isfinite(N_VGetArrayPointer(x)[i])) {
                     singular = true;
@@ -133,6 +145,34 @@ struct KinsolSolver::Impl {
                 }
             return 0;
         });
+    }
+
+    bool solve_directly(N_Vector b, N_Vector x) {
+        const ScopedTimer timer(timings, Part::solve);
+        direct->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+        return true;
+    }
+
+    /// GMRES with the problem's preconditioner, which is kept while it is good and made anew where it is not; at last a
+    /// factorisation of the tangent itself.
+    bool solve_by_krylov(N_Vector b, N_Vector x) {
+        if (krylov == nullptr) krylov = std::make_unique<Krylov>(z.get(), context);
+        const double norm = std::sqrt(N_VDotProd(b, b)) * residual_scale;
+        const double forcing = std::clamp(forcing_slope * norm, least_forcing, most_forcing);
+        const double allowed = std::max(forcing * norm, tolerance_share * tolerance) / residual_scale;
+        for (bool fresh = false; !fresh;) {
+            fresh = !preconditioner_good;
+            if (fresh) {
+                const ScopedTimer timer(timings, Part::factor);
+                ++factorisations;
+                if (problem->preconditioner()->factorise() != FactorStatus::ok) break;
+            }
+            const ScopedTimer timer(timings, Part::solve);
+            const Krylov::Result result = krylov->solve(*tangent, *problem->preconditioner(), b, x, allowed);
+            preconditioner_good = result.converged && result.iterations <= worth_keeping;
+            if (result.converged) return true;
+        }
+        return factorise(*tangent) && solve_directly(b, x);
     }
 
     /// KINSOL keeps counters and scalings between calls; a fresh memory block per solve keeps calls independent.
@@ -166,6 +206,10 @@ struct KinsolSolver::Impl {
 
     NonlinearProblem* problem = nullptr;
     std::unique_ptr<DirectSolver> direct;
+    std::unique_ptr<Krylov> krylov;
+    const SparseMatrix* tangent = nullptr;
+    bool preconditioner_good = false; ///< it has factors, and they served well last time
+    double tolerance = 0;
     bool is_cholesky = false;
     std::uint64_t factored_pattern = 0, factored_revision = 0;
     double residual_scale = 1, last_residual = 0;
@@ -188,7 +232,9 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
             "KinsolSolver: sizes differ");
     s.problem = &problem;
     s.residual_scale = options.residual_scale;
+    s.tolerance = options.tolerance;
     s.stopped = s.singular = s.not_finite = false;
+    s.preconditioner_good = false; // no result may depend on what was tried before this call
     s.failing_equation = -1;
     s.error = nullptr;
     const long factorisations_before = s.factorisations;

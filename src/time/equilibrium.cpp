@@ -31,6 +31,7 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, Ti
     const ScopedTimer timer(timings_, Part::assembly);
     matrix_ = std::make_unique<model::SystemMatrix>(constraints_, model_.K, std::move(couplings));
     size_ = matrix_->size();
+    if (!model.pairs.empty()) preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, model_.K);
     const auto n = static_cast<std::size_t>(model.nodes());
     u_.assign(n, Vec3::Zero());
     x_ = internal_ = unbalanced_ = u_;
@@ -256,6 +257,32 @@ void Equilibrium::linearise(std::size_t p, Index j, ContactTangent& tangent) con
     pair.fold(j, tangent.A, tangent.E, tangent.G);
     tangent.E = -tangent.E; // the forces stand on the right of the equilibrium
     tangent.G = -tangent.G;
+}
+
+solve::FactorStatus Equilibrium::factorise() {
+    std::vector<SoftContact> contacts;
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        for (Index j = 0; j < pair.size(); ++j) {
+            SoftContact& soft = contacts.emplace_back();
+            const auto law = pair.law(j).residual(pair.state(j, x_, lambda_[p][j]), statuses_[p][j]);
+            const Index slave = pair.slaves().node[j];
+            const Mat3 mirrored = symmetry_directions(slave), kept = Mat3::Identity() - mirrored;
+            soft.coupling = first_coupling_[p] + j;
+            soft.where.slave = slave;
+            soft.D = kept * law.by_lambda + mirrored;
+            soft.c = pair.slaves().stiffness[j];
+            if (!pair.point(j).found || !contact::is_closed(statuses_[p][j])) continue;
+            soft.normal = pair.point(j).normal;
+            soft.B = kept * (law.by_gap * soft.normal.transpose() + law.by_drift);
+            pair.follow_facet(j, soft.where.masters, soft.where.follow);
+        }
+    }
+    return preconditioner_->factorise(std::move(contacts));
+}
+
+void Equilibrium::precondition(const double* r, double* z) {
+    preconditioner_->apply(*matrix_, r, z);
 }
 
 const solve::SparseMatrix& Equilibrium::jacobian() {

@@ -247,6 +247,98 @@ TEST(KinsolSolver, ChangesBetweenSymmetricAndUnsymmetricTangents) {
     EXPECT_LT((u - v).cwiseAbs().maxCoeff(), round_off);
 }
 
+/// The cubic problem, with another matrix to invert in place of its tangent.
+struct Preconditioned : Problem, Preconditioner {
+    Preconditioned(Problem problem, SparseMatrix matrix) : Problem(std::move(problem)), P(std::move(matrix)) {
+        J.symmetric_positive_definite = false;
+    }
+    Preconditioner* preconditioner() override { return this; }
+    FactorStatus factorise() override { return inverse->factorise(P); }
+    void precondition(const double* r, double* z) override { inverse->solve(r, z); }
+    [[nodiscard]] SparseIndex failing_equation() const override { return inverse->failing_equation(); }
+
+    SparseMatrix P;
+    std::unique_ptr<DirectSolver> inverse = make_cholesky();
+};
+
+struct PreconditionedNewton : ::testing::Test {
+    static constexpr int n = 12;
+    Vector load = Vector::Constant(n * n * n, 10);
+    KinsolOptions options;
+    Timings timings;
+
+    PreconditionedNewton() {
+        options.unknown_scale = Vector::Ones(n * n * n);
+        options.tolerance = 1e-10;
+    }
+    [[nodiscard]] Vector exact() {
+        Problem direct = cubic(n, load);
+        Vector u = Vector::Zero(direct.size());
+        EXPECT_EQ(run(direct, u, options).outcome, KinsolOutcome::converged);
+        return u;
+    }
+};
+
+TEST_F(PreconditionedNewton, ConvergesQuadraticallyWithOneFactorisation) {
+    Preconditioned p(cubic(n, load), laplacian(n, 3)); // the tangent's diagonal changes by up to 30
+    Vector u = Vector::Zero(p.size());
+    KinsolSolver solver(p.size(), timings);
+    const KinsolResult result = solver.solve(p, u, options);
+    EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+    EXPECT_EQ(result.factorisations, 1);
+    const double round_off = 1e-12; // of residuals, forces of order ten
+    for (std::size_t k = p.residuals.size() - 3; k < p.residuals.size(); ++k)
+        EXPECT_LT(p.residuals[k], p.residuals[k - 1] * p.residuals[k - 1] + round_off);
+    const double solved = 1e-10; // |u - exact| <= |F| / smallest eigenvalue, which is above one half
+    EXPECT_LT((u - exact()).cwiseAbs().maxCoeff(), 2 * solved);
+}
+
+TEST_F(PreconditionedNewton, FactorisesTheTangentWhereThePreconditionerFails) {
+    for (const double scale : {0.0, -1.0}) { // singular; indefinite
+        Preconditioned p(cubic(n, load), laplacian(n));
+        for (double& v : p.P.value) v *= scale;
+        Vector u = Vector::Zero(p.size());
+        KinsolSolver solver(p.size(), timings);
+        const KinsolResult result = solver.solve(p, u, options);
+        EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+        EXPECT_EQ(result.factorisations, 2 * result.iterations);
+        EXPECT_LT((u - exact()).cwiseAbs().maxCoeff(), 2 * options.tolerance);
+    }
+}
+
+TEST_F(PreconditionedNewton, FactorisesTheTangentWhereGmresDoesNotConverge) {
+    Preconditioned p(cubic(n, load), laplacian(n));
+    osculate::testing::Random random(7);
+    std::fill(p.P.value.begin(), p.P.value.end(), 0.0);
+    for (Index i = 0; i < p.size(); ++i) diagonal(p.P, i) = std::pow(10.0, random.uniform(-3, 3)); // nowhere near
+    Vector u = Vector::Zero(p.size());
+    KinsolSolver solver(p.size(), timings);
+    const KinsolResult result = solver.solve(p, u, options);
+    EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+    EXPECT_EQ(result.factorisations, 2 * result.iterations);
+}
+
+TEST_F(PreconditionedNewton, DoesNotRememberEarlierSolves) {
+    const auto solve = [&](KinsolSolver& solver, double factor) {
+        Preconditioned p(cubic(n, factor * load), laplacian(n, 3));
+        Vector u = Vector::Zero(p.size());
+        EXPECT_EQ(solver.solve(p, u, options).outcome, KinsolOutcome::converged);
+        return u;
+    };
+    KinsolSolver used(n * n * n, timings), fresh(n * n * n, timings);
+    (void)solve(used, 30);
+    EXPECT_EQ(solve(used, 1), solve(fresh, 1)); // to the bit
+}
+
+TEST_F(PreconditionedNewton, SaysWhenTheTangentItselfIsSingular) {
+    Preconditioned p(linear(n, load), laplacian(n));
+    std::fill(p.J.value.begin() + p.J.row_start[5], p.J.value.begin() + p.J.row_start[6], 0.0);
+    Vector u = Vector::Zero(p.size());
+    KinsolSolver solver(p.size(), timings);
+    EXPECT_EQ(solver.solve(p, u, options).outcome, KinsolOutcome::singular);
+    EXPECT_TRUE(u.allFinite());
+}
+
 TEST(KinsolSolver, SaysWhenIterationsAreExhausted) {
     const int n = 5;
     Problem p = cubic(n, Vector::Constant(n * n * n, 1e4));

@@ -94,6 +94,8 @@ public:
     void master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
                                 MatrixX3& by_lambda, Matrix& by_y) const;
 
+    /// How the closest point on the closest facet of slave j follows that facet's nodes: shape function times image.
+    void follow_facet(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const;
     /// Turns derivatives by the vertices of the patch into derivatives by their nodes: A (3 x 3+3n), E (3n x 3) and G
     /// (3n x 3+3n) as master_force_variation() gives them. Nothing changes but for mirror images.
     void fold(Index j, Matrix& A, MatrixX3& E, Matrix& G) const;

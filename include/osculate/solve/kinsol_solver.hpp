@@ -13,6 +13,18 @@ class Timings;
 
 namespace osculate::solve {
 
+/// A matrix P near the tangent that is cheaper to invert.
+class Preconditioner {
+public:
+    virtual ~Preconditioner() = default;
+    /// Factorises P at the z of the last residual.
+    [[nodiscard]] virtual FactorStatus factorise() = 0;
+    /// z = P^-1 r
+    virtual void precondition(const double* r, double* z) = 0;
+    /// Equation where factorise() failed, -1 unknown.
+    [[nodiscard]] virtual SparseIndex failing_equation() const = 0;
+};
+
 /// F(z) = 0 with n unknowns, as KINSOL sees it.
 class NonlinearProblem {
 public:
@@ -27,6 +39,8 @@ public:
     [[nodiscard]] virtual Verdict residual(const double* z, double* F) = 0;
     /// J = dF/dz at the z of the last residual.
     [[nodiscard]] virtual const SparseMatrix& jacobian() = 0;
+    /// How to invert about J, where the problem knows better than to factorise it.
+    [[nodiscard]] virtual Preconditioner* preconditioner() { return nullptr; }
 };
 
 struct KinsolOptions {

@@ -5,6 +5,7 @@
 #include "osculate/model/model.hpp"
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
+#include "osculate/time/contact_preconditioner.hpp"
 
 #include <map>
 #include <memory>
@@ -35,7 +36,7 @@ enum class StatusRule {
 /// slave node, in the rows SystemMatrix assigns. Contact points are located anew at every z.
 ///     equilibrium   f_int(u) - f_ext - f_contact = 0,   f_contact = lambda on the slave, on its masters as ContactPoint says
 ///     contact law   see contact::Coulomb
-class Equilibrium final : public solve::NonlinearProblem {
+class Equilibrium final : public solve::NonlinearProblem, private solve::Preconditioner {
 public:
     Equilibrium(model::Model& model, const model::Constraints& constraints, Timings& timings, int threads);
 
@@ -48,6 +49,10 @@ public:
     [[nodiscard]] Index size() const override { return size_; }
     [[nodiscard]] Verdict residual(const double* z, double* F) override;
     [[nodiscard]] const solve::SparseMatrix& jacobian() override;
+    [[nodiscard]] solve::Preconditioner* preconditioner() override { return preconditioner_ ? this : nullptr; }
+    [[nodiscard]] solve::FactorStatus factorise() override;
+    void precondition(const double* r, double* z) override;
+    [[nodiscard]] solve::SparseIndex failing_equation() const override { return preconditioner_->failing_equation(); }
 
     /// z from displacements and contact forces, and the state (time apart) from z.
     [[nodiscard]] Vector unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const;
@@ -90,6 +95,7 @@ private:
     Index size_ = 0;
     std::vector<Index> first_coupling_; ///< (pairs + 1)
     std::unique_ptr<model::SystemMatrix> matrix_;
+    std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none without contact
     StepLoad load_;
     double reference_force_ = 1;
 

@@ -1,0 +1,44 @@
+#pragma once
+/// Stiffness of the bodies with springs between slave nodes and points of their masters: symmetric, for preconditioning.
+
+#include "osculate/model/block_matrix.hpp"
+#include "osculate/model/constraints.hpp"
+#include "osculate/solve/sparse_matrix.hpp"
+
+#include <vector>
+
+namespace osculate::model {
+
+/// Spring of stiffness S (3 x 3, N/m, symmetric) between a slave node and a point that follows master nodes,
+///     energy 1/2 w^T S w,   w = u_slave - sum_i N_i u_i
+struct Spring {
+    Index slave = -1;
+    std::vector<Index> masters; ///< global nodes; one may occur more than once
+    std::vector<Mat3> follow;   ///< N_i, shape function times image
+    Mat3 stiffness = Mat3::Zero();
+};
+
+class PenaltyStiffness {
+public:
+    PenaltyStiffness(const Constraints& constraints, const BlockMatrix& K);
+    /// Rewrites the matrix for other springs; the pattern grows where it has to.
+    void set_springs(const std::vector<Spring>& springs);
+    /// Over the free components, by equation number.
+    [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
+
+private:
+    void build_pattern(const std::vector<Spring>& springs);
+    void fill_base();
+    [[nodiscard]] bool covers(const std::vector<Spring>& springs) const;
+    /// Position of block (row, column) among the blocks of its row, -1 where there is none.
+    [[nodiscard]] Index slot(Index row, Index column) const;
+    void add(Index row, Index column, const Mat3& global, std::vector<double>& into) const;
+
+    const Constraints& constraints_;
+    const BlockMatrix& K_;
+    std::vector<Index> block_row_start_, block_column_, block_offset_; ///< offset of a block's columns within a row
+    std::vector<double> base_;
+    solve::SparseMatrix matrix_;
+};
+
+} // namespace osculate::model

@@ -1,0 +1,46 @@
+#pragma once
+/// The step's tangent with contact made a little soft, so that one Cholesky factorisation inverts it.
+
+#include "osculate/model/penalty_stiffness.hpp"
+#include "osculate/model/system_matrix.hpp"
+#include "osculate/solve/direct_solver.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace osculate::time {
+
+/// Linearised contact law of one slave node, B w + D lambda = r, w the motion of the slave relative to its facet.
+struct SoftContact {
+    Index coupling = -1; ///< of SystemMatrix
+    model::Spring where; ///< its stiffness is set here
+    Vec3 normal = Vec3::Zero();
+    Mat3 B = Mat3::Zero(), D = Mat3::Identity();
+    double c = 1; ///< stiffness scale, N/m
+};
+
+/// Inverse of the tangent but for four changes, each small or smooth:
+///  - contact forces act on the corners of the closest facet with its shape functions, not on all nodes of the patch;
+///  - their change as the surface bends and turns is left out;
+///  - the law gives way by a soft spring, (D + B/gamma) lambda + B w = r with gamma = 10 c;
+///  - in the condensed stiffness K + W^T S B W, S = (D + B/gamma)^-1, the part of S B that couples friction with pressure,
+///    the only unsymmetric one, is left out. It is kept where contact forces follow from displacements.
+class ContactPreconditioner {
+public:
+    ContactPreconditioner(const model::Constraints& constraints, const model::BlockMatrix& K);
+    /// Factorises for the contacts given, every coupling of the pairs among them.
+    [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
+    /// z = P^-1 r; `rows` says where the rows of the residual are.
+    void apply(const model::SystemMatrix& rows, const double* r, double* z) const;
+    [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_->failing_equation(); }
+
+private:
+    const model::Constraints& constraints_;
+    model::PenaltyStiffness stiffness_;
+    std::unique_ptr<solve::DirectSolver> solver_;
+    std::vector<SoftContact> contacts_;
+    std::vector<Mat3> S_;
+    mutable Vector load_;
+};
+
+} // namespace osculate::time

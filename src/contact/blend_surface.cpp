@@ -2,6 +2,7 @@
 #include "contact/vertex_patch.hpp"
 #include "osculate/contact/facet_patch.hpp"
 #include "osculate/contact/projection.hpp"
+#include "osculate/core/parallel.hpp"
 
 #include <algorithm>
 
@@ -13,10 +14,36 @@ using Rows2 = Eigen::Matrix<double, 2, Eigen::Dynamic>;
 using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using Row = Eigen::Matrix<double, 1, Eigen::Dynamic>;
 
+/// A patch in one configuration, positions from its first vertex, which keeps round-off local.
+struct PlacedPatch {
+    std::vector<Vec3> x; ///< of its vertices, as given
+    MatrixX3 nodes;      ///< the same, from x[0]
+    MatrixX3 coefficients;
+    PatchPoint at_vertex;
+
+    [[nodiscard]] bool is_at(const VertexPatch& patch, const std::vector<Vec3>& vertices) const {
+        if (x.empty()) return false;
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (x[i] != vertices[patch.vertices[i]]) return false;
+        return true;
+    }
+    void place(const VertexPatch& patch, const std::vector<Vec3>& vertices) {
+        const auto n = static_cast<Index>(patch.vertices.size());
+        x.resize(patch.vertices.size());
+        nodes.resize(n, 3);
+        for (Index i = 0; i < n; ++i) {
+            x[i] = vertices[patch.vertices[i]];
+            nodes.row(i) = (x[i] - x[0]).transpose();
+        }
+        coefficients = patch.shape.coefficients(nodes);
+        at_vertex = patch.shape.point(patch.origin, coefficients);
+    }
+};
+
 /// A vertex patch seen from the slave point, within its bump. y = (s, nodes of the patch), 3 + 3n columns.
 struct ActivePatch {
     const VertexPatch* patch = nullptr;
-    MatrixX3 coefficients;
+    const PlacedPatch* placed = nullptr;
     Foot foot;
     Vec3 normal;
     double gap = 0, tau = 0, psi = 0;
@@ -53,6 +80,23 @@ public:
     std::span<const Index> patch_vertices(Index facet) const override { return reach_[facet]; }
     Index fallbacks() const override { return vertex_patches_.fallbacks; }
 
+    void prepare(std::span<const FacetHit> hits, const std::vector<Vec3>& x, int threads) override {
+        placed_.resize(vertex_patches_.patches.size());
+        wanted_.assign(placed_.size(), 0);
+        const auto want = [&](Index facet) {
+            for (const Index p : vertex_patches_.of_facet[facet]) wanted_[p] = 1;
+        };
+        for (const FacetHit& hit : hits)
+            if (hit.facet >= 0) {
+                want(hit.facet);
+                for (const Neighbour& other : creases_[hit.facet]) want(other.facet);
+            }
+        parallel_for(threads, static_cast<Index>(placed_.size()), [&](Index begin, Index end) {
+            for (Index p = begin; p < end; ++p)
+                if (wanted_[p] != 0) placed_[p].place(vertex_patches_.patches[p], x);
+        });
+    }
+
     void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
                   ContactVariation* variation) const override {
         point.found = point.behind = false;
@@ -88,7 +132,8 @@ private:
     /// A slave point seen from one smooth side of the surface.
     struct Side {
         FacetHit hit;
-        std::vector<ActivePatch> active; ///< empty where only the facet itself is left
+        std::vector<ActivePatch> active;                  ///< empty where only the facet itself is left
+        std::vector<std::unique_ptr<PlacedPatch>> placed; ///< those that prepare() has not placed
         ContactPoint point;
     };
     /// Another smooth side that meets a facet in one of its edges or corners.
@@ -99,8 +144,17 @@ private:
     };
 
     Side look(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x) const {
-        Side side{hit, {}, {}};
-        for (const Index p : vertex_patches_.of_facet[hit.facet]) see(vertex_patches_.patches[p], s, x, side.active);
+        Side side{hit, {}, {}, {}};
+        for (const Index p : vertex_patches_.of_facet[hit.facet]) {
+            const VertexPatch& patch = vertex_patches_.patches[p];
+            const PlacedPatch* placed = placed_.empty() ? nullptr : &placed_[p];
+            if (placed == nullptr || !placed->is_at(patch, x)) {
+                auto& own = side.placed.emplace_back(std::make_unique<PlacedPatch>());
+                own->place(patch, x);
+                placed = own.get();
+            }
+            see(patch, *placed, s, side.active);
+        }
         if (!side.active.empty()) {
             blend(side.active, x, side.point);
             side.point.behind = side.point.gap <= -deepest * surface_.facet_size(hit.facet);
@@ -145,54 +199,68 @@ private:
         }
     }
 
-    /// Adds the patch to `active` when s has a foot on it within its bump.
-    static void see(const VertexPatch& patch, const Vec3& s, const std::vector<Vec3>& x,
-                    std::vector<ActivePatch>& active) {
-        const Vec3 origin = x[patch.vertices[0]], from_origin = s - origin; // keeps round-off local
-        const auto n = static_cast<Index>(patch.vertices.size());
-        MatrixX3 nodes(n, 3);
-        for (Index i = 0; i < n; ++i) nodes.row(i) = (x[patch.vertices[i]] - origin).transpose();
-        // foot on the tangent plane at the vertex
-        const Matrix32 tangents = nodes.transpose() * patch.slope;
-        const Vec3 off = from_origin - nodes.transpose() * patch.at_vertex;
-        const Mat2 metric = tangents.transpose() * tangents;
-        const Vec2 away = metric.inverse() * (tangents.transpose() * off);
+    /// Foot of s on the osculating paraboloid of the patch at its vertex, from the vertex, or nothing where the bump surely
+    /// does not reach: the starting point of the projection.
+    static std::optional<Vec2> start(const VertexPatch& patch, const PatchPoint& p, const Vec3& s) {
         constexpr double surely_outside = 4; // tau on the tangent plane: twice as far as the bump reaches
-        if (!(patch.kappa * away.dot(patch.metric * away) < surely_outside)) return;
+        constexpr double margin = 1.1;       // of the bump's radius
+        const auto tau = [&](const Vec2& u) { return patch.kappa * u.dot(patch.metric * u); };
+        const Vec2 flat = (p.X_a.transpose() * p.X_a).inverse() * (p.X_a.transpose() * (s - p.X));
+        if (!(tau(flat) < surely_outside)) return std::nullopt;
+        Vec2 u = flat;
+        for (int step = 0; step < 2; ++step) {
+            Matrix32 X_a;
+            X_a.col(0) = p.X_a.col(0) + u.x() * p.X_11 + u.y() * p.X_12;
+            X_a.col(1) = p.X_a.col(1) + u.x() * p.X_12 + u.y() * p.X_22;
+            const Vec3 e = s - p.X - 0.5 * (p.X_a + X_a) * u;
+            const Mat2 K = X_a.transpose() * X_a - p.curvature(e);
+            if (!(K.determinant() > 0 && K.trace() > 0)) return flat;
+            u += K.inverse() * (X_a.transpose() * e);
+        }
+        // what the paraboloid leaves out is smaller than what it changed
+        const double bend = tau(u - flat);
+        if (!(bend < 1)) return flat;
+        if (std::sqrt(tau(u)) - 2 * std::sqrt(bend) > margin) return std::nullopt;
+        return u;
+    }
 
+    /// Adds the patch to `active` when s has a foot on it within its bump.
+    static void see(const VertexPatch& patch, const PlacedPatch& placed, const Vec3& s,
+                    std::vector<ActivePatch>& active) {
+        const Vec3 from_origin = s - placed.x[0];
+        const auto begin = start(patch, placed.at_vertex, from_origin);
+        if (!begin) return;
+        const auto radius = [&](const Vec2& u) { return std::sqrt(patch.kappa * u.dot(patch.metric * u)); };
+        const auto foot =
+            project(patch.shape, placed.coefficients, from_origin, patch.origin + *begin,
+                    [&](const Vec2& u, const Vec2& step) { // what is left is less than twice the last step
+                        return radius(u - patch.origin) - 3 * radius(step) > 1;
+                    });
+        if (!foot) return;
         ActivePatch a;
         a.patch = &patch;
-        a.coefficients = patch.shape.coefficients(nodes);
-        const auto foot = project(patch.shape, a.coefficients, from_origin, patch.origin + away);
-        if (!foot) return;
+        a.placed = &placed;
         a.foot = *foot;
         const Vec2 u = a.foot.u - patch.origin;
         a.tau = patch.kappa * u.dot(patch.metric * u);
         if (!(a.tau < 1)) return;
-        ContactPoint unique;
-        if (!locate(patch.shape, a.foot, from_origin, unique)) return;
-        a.foot.point.X += origin;
-        a.normal = unique.normal;
-        a.gap = unique.gap;
+        a.normal = a.foot.point.normal();
+        a.gap = a.normal.dot(from_origin - a.foot.point.X);
+        if (!unique(a.foot.point, a.normal, a.gap)) return;
         a.psi = (1 - a.tau) * (1 - a.tau) * (1 - a.tau);
-        first_variation(a, nodes, from_origin);
+        first_variation(a);
+        a.foot.point.X += placed.x[0];
         active.push_back(std::move(a));
     }
 
     /// du_a = K^-1_ab ( X,b.(ds - Phi_i dx_i) + g n.Phi_i,b dx_i ),  dg = n.(ds - Phi_i dx_i),
     /// dpsi = -6 kappa (1-tau)^2 u^T M du
-    static void first_variation(ActivePatch& a, const MatrixX3& nodes, const Vec3& from_origin) {
+    static void first_variation(ActivePatch& a) {
         const PatchPoint& p = a.foot.point;
         const auto n = static_cast<Index>(a.patch->vertices.size());
         a.phi.resize(n);
         a.phi_a.resize(n, 2);
         a.patch->shape.weights(a.foot.u, a.phi, a.phi_a);
-        // partition of unity and foot to the last digit, not only to the round-off of the patch: then forces and
-        // moments balance as well
-        a.phi /= a.phi.sum();
-        a.phi_a -= (a.phi * a.phi_a.colwise().sum()).eval();
-        a.phi += a.phi_a * ((p.X_a.transpose() * p.X_a - a.gap * p.curvature(a.normal)).inverse() *
-                            (p.X_a.transpose() * (from_origin - nodes.transpose() * a.phi)));
         const Mat2 K_inverse = (p.X_a.transpose() * p.X_a - a.gap * p.curvature(a.normal)).inverse();
         const Eigen::Matrix<double, 2, 3> tangents = p.X_a.transpose();
         a.du.resize(2, 3 + 3 * n);
@@ -246,8 +314,9 @@ private:
 
     /// Second variations of psi_v g_v / P in the patch's own y, but for the terms that couple it with the blended gap:
     ///   psi dDg_v + dpsi Dg_v + Dpsi dg_v + (g_v - g) dDpsi
-    /// with n.dX,a of the moving nodes alone (N), B = N + b du, and dDu from differentiating (s - X).X,a = 0 twice.
-    static Matrix second_variation(const ActivePatch& a, const Vec3& s, double g) {
+    /// with n.dX,a of the moving nodes alone (N), B = N + b du, and dDu from differentiating (s - X).X,a = 0 twice. Given
+    /// as half + half^T.
+    static void second_variation(const ActivePatch& a, const Vec3& s, double g, Matrix& half) {
         const PatchPoint& p = a.foot.point;
         const VertexPatch& patch = *a.patch;
         const auto n = static_cast<Index>(patch.vertices.size());
@@ -258,7 +327,7 @@ private:
         const Vec2 q = (metric - a.gap * b).inverse() * Mu; // (M u) . dDu = q . dDF
         const Vec3 e = s - p.X;
         const MatrixX3 phi_ab = patch.shape.second_derivatives(a.foot.u);
-        const PatchThird third = patch.shape.third(a.foot.u, a.coefficients);
+        const PatchThird third = patch.shape.third(a.foot.u, a.placed->coefficients);
         const Vec3 X_q = p.X_a * q;
         Matrix32 X_qc; // q_a X,ac
         X_qc.col(0) = q.x() * p.X_11 + q.y() * p.X_12;
@@ -282,15 +351,12 @@ private:
         const double rest = 1 - a.tau, by_tau = -3 * rest * rest; // dpsi/dtau
         const double by_u = (a.gap - g) * by_tau * 2 * patch.kappa;
         const Rows2 B = N + b * U;
-        // U^T Z + Z^T U collects all terms with du
-        const Rows2 Z = a.psi * (-N - 0.5 * b * U) + by_u * (R + 0.5 * (third_q - p.curvature(X_q) + patch.metric) * U);
-        Matrix H = U.transpose() * Z;
-        H += by_u * (A.transpose() * E);
-        H += a.dpsi.transpose() * a.dg;
-        H = (H + H.transpose()).eval();
-        H += (a.psi * a.gap) * (B.transpose() * (metric.inverse() * B));
-        if (rest > 0) H += ((a.gap - g) * 6 * rest / (by_tau * by_tau)) * (a.dpsi.transpose() * a.dpsi);
-        return H;
+        Eigen::Matrix<double, 8, Eigen::Dynamic> left(8, m), right(8, m);
+        left << U, A, B, a.dpsi;
+        right << a.psi * (-N - 0.5 * b * U) + by_u * (R + 0.5 * (third_q - p.curvature(X_q) + patch.metric) * U),
+            by_u * E, (0.5 * a.psi * a.gap) * (metric.inverse() * B), a.dg;
+        if (rest > 0) right.row(7) += ((a.gap - g) * 3 * rest / (by_tau * by_tau)) * a.dpsi;
+        half.noalias() = left.transpose() * right;
     }
 
     static void vary_blend(const std::vector<ActivePatch>& active, const Vec3& s, const ContactPoint& point,
@@ -301,38 +367,45 @@ private:
         double P = 0;
         for (const ActivePatch& a : active) P += a.psi;
         Row dg = Row::Zero(m), dpsi = Row::Zero(m);
-        Matrix H = Matrix::Zero(m, m);
-        variation.dweights = Matrix::Zero(n, m);
+        Matrix half = Matrix::Zero(m, m), own_half; // the second variation is half + half^T
+        variation.dweights.setZero(n, m);
         for (const ActivePatch& a : active) {
             const auto own = static_cast<Index>(a.place.size());
-            const Matrix Hv = second_variation(a, s, g);
+            second_variation(a, s, g, own_half);
+            const Matrix own_weights =
+                a.psi * (a.phi_a * a.du) + a.phi * a.dpsi; // d(psi Phi_i) = psi Phi_i,a du_a + dpsi Phi_i
             const auto at = [&](Index k) {
                 return k == 0 ? Index{0} : 3 + 3 * a.place[static_cast<std::size_t>(k - 1)];
             };
-            for (Index i = 0; i <= own; ++i) {
-                dg.middleCols<3>(at(i)) +=
-                    a.psi * a.dg.middleCols<3>(3 * i) + (a.gap - g) * a.dpsi.middleCols<3>(3 * i);
-                dpsi.middleCols<3>(at(i)) += a.dpsi.middleCols<3>(3 * i);
-                for (Index k = 0; k <= own; ++k) H.block<3, 3>(at(i), at(k)) += Hv.block<3, 3>(3 * i, 3 * k);
-            }
-            // d(psi Phi_i) = psi Phi_i,a du_a + dpsi Phi_i
-            for (Index i = 0; i < own; ++i) {
-                const Row row = a.psi * (a.phi_a.row(i) * a.du) + a.phi(i) * a.dpsi;
-                for (Index k = 0; k <= own; ++k)
-                    variation.dweights.block<1, 3>(a.place[static_cast<std::size_t>(i)], at(k)) +=
-                        row.middleCols<3>(3 * k);
+            for (Index k = 0; k <= own; ++k) {
+                dg.middleCols<3>(at(k)) +=
+                    a.psi * a.dg.middleCols<3>(3 * k) + (a.gap - g) * a.dpsi.middleCols<3>(3 * k);
+                dpsi.middleCols<3>(at(k)) += a.dpsi.middleCols<3>(3 * k);
+                for (int c = 0; c < 3; ++c) {
+                    const double *from = &own_half(0, 3 * k + c), *weight = &own_weights(0, 3 * k + c);
+                    double *to = &half(0, at(k) + c), *into = &variation.dweights(0, at(k) + c);
+                    for (Index i = 0; i <= own; ++i)
+                        for (int r = 0; r < 3; ++r) to[at(i) + r] += from[3 * i + r];
+                    for (Index i = 0; i < own; ++i) into[a.place[static_cast<std::size_t>(i)]] += weight[i];
+                }
             }
         }
         dg /= P;
-        H -= dpsi.transpose() * dg + dg.transpose() * dpsi;
-        H /= P;
-        variation.dweights = (variation.dweights - point.weights * dpsi) / P;
+        half.noalias() -= dpsi.transpose() * dg;
+        half /= P;
+        variation.dweights.noalias() -= point.weights * dpsi;
+        variation.dweights /= P;
         variation.dg = dg;
         const double slope = dg.leftCols<3>().norm();
         const Vec3& normal = point.normal;
-        const Row dslope = normal.transpose() * H.topRows<3>();
-        variation.dn = (H.topRows<3>() - normal * dslope) / slope;
-        variation.dpressing = (H.bottomRows(3 * n) - point.pressing.transpose().reshaped() * dslope) / slope;
+        const Eigen::Matrix<double, 3, Eigen::Dynamic> top = half.topRows<3>() + half.leftCols<3>().transpose();
+        const Row dslope = normal.transpose() * top;
+        variation.dn = (top - normal * dslope) / slope;
+        variation.dpressing.resize(3 * n, m);
+        const Vector pressing = point.pressing.transpose().reshaped();
+        for (Index c = 0; c < m; ++c)
+            variation.dpressing.col(c) =
+                (half.col(c).tail(3 * n) + half.row(c).tail(3 * n).transpose() - pressing * dslope(c)) / slope;
     }
 
     const mesh::HalfEdgeSurface& surface_;
@@ -340,6 +413,8 @@ private:
     std::unique_ptr<MasterSurface> facets_;
     std::vector<std::vector<Neighbour>> creases_; ///< per facet
     std::vector<std::vector<Index>> reach_;       ///< per facet, vertices of all patches it may need
+    std::vector<PlacedPatch> placed_;             ///< per patch, as prepare() left them
+    std::vector<char> wanted_;                    ///< per patch, scratch of prepare()
 };
 
 } // namespace

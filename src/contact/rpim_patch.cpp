@@ -94,7 +94,17 @@ std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& b
     G.bottomLeftCorner(patch.m_, n) = D.transpose();
     patch.H_ = G.partialPivLu().solve(Matrix::Identity(n + patch.m_, n));
     if (!patch.H_.allFinite()) return std::nullopt;
+    patch.D_ = D;
+    patch.fit_ = D.householderQr().solve(Matrix::Identity(n, n));
     return patch;
+}
+
+MatrixX3 RpimPatch::coefficients(const MatrixX3& x) const {
+    // H D = [0; 1]: what a polynomial fits passes through H unchanged but for round-off, which for the rest is smaller
+    const MatrixX3 polynomial = fit_ * x;
+    MatrixX3 result = H_ * (x - D_ * polynomial);
+    result.bottomRows(m_) += polynomial;
+    return result;
 }
 
 template <class F> void RpimPatch::for_each_basis(const Vec2& u, F&& f) const {
@@ -138,11 +148,16 @@ PatchPoint RpimPatch::point(const Vec2& u, const MatrixX3& coefficients) const {
 void RpimPatch::weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<MatrixX2> phi_a) const {
     phi.setZero();
     phi_a.setZero();
+    MatrixX3 p(m_, 3); // p, p,1, p,2
     for_each_basis(u, [&](Index k, const BasisRow& row) {
         phi += row.value * H_.row(k).transpose();
         phi_a.col(0) += row.first.x() * H_.row(k).transpose();
         phi_a.col(1) += row.first.y() * H_.row(k).transpose();
+        if (k >= size()) p.row(k - size()) << row.value, row.first.transpose();
     });
+    // D^T Phi = p to the last digit, as in coefficients(): forces and moments then balance
+    phi += fit_.transpose() * (p.col(0) - D_.transpose() * phi);
+    phi_a += fit_.transpose() * (p.rightCols<2>() - D_.transpose() * phi_a);
 }
 
 MatrixX3 RpimPatch::second_derivatives(const Vec2& u) const {

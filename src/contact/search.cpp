@@ -177,7 +177,9 @@ FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x) const {
         tree_->boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest));
         double reached = 0;
         for (const auto& [box, facet] : nearest) {
-            reached = std::max(reached, bg::distance(at, box));
+            const double away = bg::distance(at, box);
+            reached = std::max(reached, away);
+            if (best.facet >= 0 && away > best.distance + tie * surface_->facet_size(best.facet)) continue;
             const FacetHit hit = closest_on(facet, s, x);
             if (better(hit, best)) best = hit;
         }
@@ -191,6 +193,14 @@ FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& 
     for (Index moves = 0; moves < surface_->facet_count(); ++moves) {
         const Index centre = best.facet;
         for (Index k = neighbour_start_[centre]; k < neighbour_start_[centre + 1]; ++k) {
+            // no point of the facet is closer than the box of its corners
+            Vec3 low = x[surface_->facet_vertices(neighbours_[k])[0]], high = low;
+            for (const Index v : surface_->facet_vertices(neighbours_[k])) {
+                low = low.cwiseMin(x[v]);
+                high = high.cwiseMax(x[v]);
+            }
+            const double reach = best.distance + tie * surface_->facet_size(best.facet);
+            if ((low - s).cwiseMax(s - high).cwiseMax(0).squaredNorm() > reach * reach) continue;
             const FacetHit hit = closest_on(neighbours_[k], s, x);
             if (better(hit, best)) best = hit;
         }

@@ -90,6 +90,7 @@ void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int thr
             }
     }
     const ScopedTimer timer(timings, Part::contact);
+    master_->prepare(hits_, vertices_, threads);
     parallel_for(threads, size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j) {
             contact::ContactPoint& point = points_[j];

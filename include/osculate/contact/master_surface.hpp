@@ -30,6 +30,10 @@ public:
 
     /// Surface vertices that carry the patch of a facet.
     [[nodiscard]] virtual std::span<const Index> patch_vertices(Index facet) const = 0;
+    /// Makes ready what the facets of `hits` need at vertices x. evaluate() gives the same without it, but slower.
+    virtual void prepare(std::span<const FacetHit> hits, const std::vector<Vec3>& x, int threads) {
+        (void)hits, (void)x, (void)threads;
+    }
     /// Gap, normal and weights at slave point s above the facet of `hit`, vertices at x; with `variation`, which may be
     /// null, their first variations too. point.found is false where there is no contact partner: beyond the boundary, or
     /// no unique foot.

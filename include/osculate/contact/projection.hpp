@@ -17,15 +17,19 @@ struct Foot {
 };
 
 /// Newton iteration of eq (25) with K_ab = X,a . X,b - (s - X) . X,ab, falling back to the metric X,a . X,b where K is not
-/// positive definite; a step is at most one node distance long.                                    [Qian 2014, eq (25)]
+/// positive definite; a step is at most one node distance long. Ends after the step that follows one below 1e-6 node
+/// distances: with quadratic convergence that is far below 1e-11, which is checked.       [Qian 2014, eq (25)]
+/// @param hopeless  hopeless(u, step) after each step that was not shortened: true ends the iteration without a foot
 /// @returns nothing when it does not converge: s is then near a centre of curvature or far off the patch.
-template <class Patch>
-[[nodiscard]] std::optional<Foot> project(const Patch& patch, const MatrixX3& coefficients, const Vec3& s, Vec2 u) {
+template <class Patch, class Hopeless>
+[[nodiscard]] std::optional<Foot> project(const Patch& patch, const MatrixX3& coefficients, const Vec3& s, Vec2 u,
+                                          const Hopeless& hopeless) {
     constexpr int most_iterations = 30;
-    constexpr double tolerance = 1e-11; // of the node distance; 1e-13 would stall at round-off
+    constexpr double nearly = 1e-6, tolerance = 1e-11; // of the node distance; 1e-13 would stall at round-off
     const double distance = patch.node_distance();
+    bool last = false;
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-        const PatchPoint p = patch.point(u, coefficients);
+        PatchPoint p = patch.point(u, coefficients);
         const Vec3 d = s - p.X;
         const Vec2 H = p.X_a.transpose() * d;
         const Mat2 metric = p.X_a.transpose() * p.X_a;
@@ -34,11 +38,32 @@ template <class Patch>
         Vec2 step = K.inverse() * H;
         const double length = step.norm();
         if (!std::isfinite(length)) return std::nullopt;
+        if (length <= (last ? tolerance * 1e2 : tolerance) * distance) { // the rest is linear to the last digit
+            p.X += p.X_a * step;
+            p.X_a.col(0) += step.x() * p.X_11 + step.y() * p.X_12;
+            p.X_a.col(1) += step.x() * p.X_12 + step.y() * p.X_22;
+            return Foot{u + step, p};
+        }
         if (length > distance) step *= distance / length;
         u += step;
-        if (length <= tolerance * distance) return Foot{u, patch.point(u, coefficients)};
+        last = length <= nearly * distance;
+        if (length <= distance && hopeless(u, step)) return std::nullopt;
     }
     return std::nullopt;
+}
+template <class Patch>
+[[nodiscard]] std::optional<Foot> project(const Patch& patch, const MatrixX3& coefficients, const Vec3& s, Vec2 u) {
+    return project(patch, coefficients, s, u, [](const Vec2&, const Vec2&) { return false; });
+}
+
+/// Whether the foot with normal n and gap g is unique: g times the largest principal curvature is at most 0.8.
+[[nodiscard]] inline bool unique(const PatchPoint& p, const Vec3& n, double g) {
+    // principal curvatures are the eigenvalues of a^-1 b; the foot is unique while g * curvature stays below one
+    constexpr double largest_turn = 0.8;
+    const Mat2 shape = (p.X_a.transpose() * p.X_a).inverse() * p.curvature(n);
+    const double mean = 0.5 * shape.trace();
+    const double root = std::sqrt(std::max(0.0, mean * mean - shape.determinant()));
+    return std::max(g * (mean + root), g * (mean - root)) <= largest_turn;
 }
 
 /// Gap, normal, foot and weights of `point` from the foot of s; p_i = -Phi_i n.
@@ -49,12 +74,7 @@ template <class Patch>
     point.foot = p.X;
     point.normal = p.normal();
     point.gap = point.normal.dot(s - p.X);
-    // principal curvatures are the eigenvalues of a^-1 b; the foot is unique while g * curvature stays below one
-    constexpr double largest_turn = 0.8;
-    const Mat2 shape = (p.X_a.transpose() * p.X_a).inverse() * p.curvature(point.normal);
-    const double mean = 0.5 * shape.trace();
-    const double root = std::sqrt(std::max(0.0, mean * mean - shape.determinant()));
-    if (std::max(point.gap * (mean + root), point.gap * (mean - root)) > largest_turn) return false;
+    if (!unique(p, point.normal, point.gap)) return false;
     point.weights.resize(patch.size());
     MatrixX2 phi_a(patch.size(), 2);
     patch.weights(foot.u, point.weights, phi_a);

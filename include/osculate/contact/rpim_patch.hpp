@@ -39,7 +39,7 @@ public:
     [[nodiscard]] double node_distance() const { return dc_; } ///< dc, mean nearest-neighbour distance, m
 
     /// Coefficients H x (n + m x 3) of the surface through nodal positions x (n x 3); they make point() O(n).
-    [[nodiscard]] MatrixX3 coefficients(const MatrixX3& x) const { return H_ * x; }
+    [[nodiscard]] MatrixX3 coefficients(const MatrixX3& x) const;
     [[nodiscard]] PatchPoint point(const Vec2& u, const MatrixX3& coefficients) const;
 
     /// Weights Phi (n) and their derivatives Phi,1 Phi,2 (n x 2). Phi_i(u_j) = delta_ij; they sum to 1.  Cost O(n^2).
@@ -65,6 +65,7 @@ private:
     Multiquadric basis_;
     int m_ = 6;
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> H_; // (n + m) x n, first n columns of G^-1
+    Matrix D_, fit_; // (n x m) p(t_i), and (m x n) its least-squares inverse
 };
 
 } // namespace osculate::contact

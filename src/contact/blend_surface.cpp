@@ -367,13 +367,14 @@ private:
         double P = 0;
         for (const ActivePatch& a : active) P += a.psi;
         Row dg = Row::Zero(m), dpsi = Row::Zero(m);
-        Matrix half = Matrix::Zero(m, m), own_half; // the second variation is half + half^T
+        static thread_local Matrix half, own_half, own_weights; // the second variation is half + half^T
+        half.setZero(m, m);
         variation.dweights.setZero(n, m);
         for (const ActivePatch& a : active) {
             const auto own = static_cast<Index>(a.place.size());
             second_variation(a, s, g, own_half);
-            const Matrix own_weights =
-                a.psi * (a.phi_a * a.du) + a.phi * a.dpsi; // d(psi Phi_i) = psi Phi_i,a du_a + dpsi Phi_i
+            own_weights.noalias() = a.psi * (a.phi_a * a.du);
+            own_weights.noalias() += a.phi * a.dpsi; // d(psi Phi_i) = psi Phi_i,a du_a + dpsi Phi_i
             const auto at = [&](Index k) {
                 return k == 0 ? Index{0} : 3 + 3 * a.place[static_cast<std::size_t>(k - 1)];
             };
@@ -402,10 +403,18 @@ private:
         const Row dslope = normal.transpose() * top;
         variation.dn = (top - normal * dslope) / slope;
         variation.dpressing.resize(3 * n, m);
-        const Vector pressing = point.pressing.transpose().reshaped();
-        for (Index c = 0; c < m; ++c)
-            variation.dpressing.col(c) =
-                (half.col(c).tail(3 * n) + half.row(c).tail(3 * n).transpose() - pressing * dslope(c)) / slope;
+        const Vector pressing = point.pressing.transpose().reshaped() / slope;
+        variation.dpressing.leftCols<3>() =
+            (half.bottomLeftCorner(3 * n, 3) + half.topRightCorner(3, 3 * n).transpose()) / slope -
+            pressing * dslope.leftCols<3>();
+        constexpr Index tile = 24; // transposing by tiles stays in the cache
+        for (Index i = 3; i < m; i += tile)
+            for (Index k = 3; k < m; k += tile) {
+                const Index rows = std::min(tile, m - i), columns = std::min(tile, m - k);
+                variation.dpressing.block(i - 3, k, rows, columns) =
+                    (half.block(i, k, rows, columns) + half.block(k, i, columns, rows).transpose()) / slope -
+                    pressing.segment(i - 3, rows) * dslope.segment(k, columns);
+            }
     }
 
     const mesh::HalfEdgeSurface& surface_;

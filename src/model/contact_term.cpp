@@ -159,12 +159,22 @@ void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const cont
     const Vec3 lambda_T = lambda - L * n;
     const Eigen::Matrix<double, 1, Eigen::Dynamic> dL = lambda.transpose() * variation.dn;
     by_lambda.resize(3 * count, 3);
-    by_y = L * variation.dpressing;
+    by_y.resize(3 * count, 3 + 3 * count);
+    Eigen::Matrix3Xd along(3, count); // p_i + Phi_i n
     for (Index i = 0; i < count; ++i) {
-        const Vec3 p = point.pressing.row(i).transpose();
         const double phi = point.weights(i);
-        by_lambda.middleRows<3>(3 * i) = (p + phi * n) * n.transpose() - phi * Mat3::Identity();
-        by_y.middleRows<3>(3 * i) += (p + phi * n) * dL + phi * L * variation.dn - lambda_T * variation.dweights.row(i);
+        along.col(i) = point.pressing.row(i).transpose() + phi * n;
+        by_lambda.middleRows<3>(3 * i) = along.col(i) * n.transpose() - phi * Mat3::Identity();
+    }
+    for (Index k = 0; k < by_y.cols(); ++k) {
+        const Vec3 turn = L * variation.dn.col(k);
+        const double* dp = variation.dpressing.col(k).data();
+        const double* dphi = variation.dweights.col(k).data();
+        double* out = by_y.col(k).data();
+        for (Index i = 0; i < count; ++i)
+            for (int c = 0; c < 3; ++c)
+                out[3 * i + c] =
+                    L * dp[3 * i + c] + along(c, i) * dL(k) + point.weights(i) * turn(c) - lambda_T(c) * dphi[i];
     }
 }
 

@@ -27,6 +27,8 @@ SystemMatrix::SystemMatrix(const Constraints& constraints, const BlockMatrix& K,
         unknown += constraints.free_components(node);
     }
     for (std::size_t j = 0; j <= couplings_.size(); ++j) first_.push_back(unknown + 3 * static_cast<Index>(j));
+    for (Index node = 0; node < constraints.nodes(); ++node)
+        plain_.push_back(constraints.free_components(node) == 3 && !constraints.turned(node));
     build_pattern();
     map_slots();
     fill_base();
@@ -79,28 +81,38 @@ bool SystemMatrix::covers(Index j, std::span<const Index> masters) const {
 
 void SystemMatrix::build_pattern() {
     const Index nodes = constraints_->nodes(), blocks = nodes + static_cast<Index>(couplings_.size());
+    std::vector<std::vector<Index>> couplings_of(
+        static_cast<std::size_t>(blocks)); // row block -> couplings it sees whole
+    for (Index j = 0; j < static_cast<Index>(couplings_.size()); ++j) {
+        const Coupling& c = couplings_[j];
+        // contact rows: with the slave's free components, and with the multiplier where any is held or taken
+        const bool exchanged = exchanged_[c.slave] == j;
+        if (exchanged) couplings_of[c.slave].push_back(j);
+        if (!exchanged || constraints_->free_components(c.slave) < 3) couplings_of[nodes + j].push_back(j);
+        for (const Index master : c.masters) couplings_of[equilibrium_block(master)].push_back(j);
+    }
     std::vector<std::vector<Index>> columns(static_cast<std::size_t>(blocks));
     for (Index node = 0; node < nodes; ++node) {
         auto& row = columns[equilibrium_block(node)];
         for (Index k = K_->row_begin(node); k < K_->row_end(node); ++k) row.push_back(K_->column(k));
     }
     for (Index j = 0; j < static_cast<Index>(couplings_.size()); ++j) {
-        const Coupling& c = couplings_[j];
-        const Index multiplier_block = nodes + j;
-        std::vector<Index> reached = c.masters;
-        reached.push_back(c.slave);
-        reached.push_back(multiplier_block);
-        // contact rows: with the slave's free components, and with the multiplier where any is held or taken
-        const bool exchanged = exchanged_[c.slave] == j;
-        if (exchanged) columns[c.slave].insert(columns[c.slave].end(), reached.begin(), reached.end());
-        auto& own = columns[multiplier_block];
-        own.push_back(multiplier_block);
-        if (!exchanged || constraints_->free_components(c.slave) < 3)
-            own.insert(own.end(), reached.begin(), reached.end());
-        columns[equilibrium_block(c.slave)].push_back(multiplier_block); // the force itself
-        for (const Index master : c.masters) {
-            auto& row = columns[equilibrium_block(master)];
-            row.insert(row.end(), reached.begin(), reached.end());
+        columns[nodes + j].push_back(nodes + j);
+        columns[equilibrium_block(couplings_[j].slave)].push_back(nodes + j); // the force itself
+    }
+    std::vector<Index> seen(static_cast<std::size_t>(blocks), -1); // last row that has the column
+    for (Index block = 0; block < blocks; ++block) {
+        auto& row = columns[block];
+        for (const Index column : row) seen[column] = block;
+        const auto add = [&](Index column) {
+            if (seen[column] == block) return;
+            seen[column] = block;
+            row.push_back(column);
+        };
+        for (const Index j : couplings_of[block]) {
+            add(couplings_[j].slave);
+            add(nodes + j);
+            for (const Index master : couplings_[j].masters) add(master);
         }
     }
 
@@ -168,17 +180,23 @@ void SystemMatrix::map_slots() {
     slots_.resize(couplings_.size());
     for (Index j = 0; j < static_cast<Index>(couplings_.size()); ++j) {
         const Coupling& c = couplings_[j];
-        std::vector<Index> reached{c.slave};
-        reached.insert(reached.end(), c.masters.begin(), c.masters.end());
-        reached.push_back(constraints_->nodes() + j);
+        const Index multiplier_block = constraints_->nodes() + j;
         const bool exchanged = exchanged_[c.slave] == j;
         auto& table = slots_[j];
-        table.reserve(reached.size() * (reached.size() - 1));
+        table.reserve((c.masters.size() + 1) * (c.masters.size() + 2));
+        const auto map_row = [&](Index row) {
+            table.push_back(offset(row, c.slave));
+            Index k = block_row_start_[row]; // both lists ascend
+            for (const Index master : c.masters) {
+                while (k < block_row_start_[row + 1] && block_column_[k] < master) ++k;
+                const bool there = k < block_row_start_[row + 1] && block_column_[k] == master;
+                table.push_back(there ? block_offset_[k] : absent);
+            }
+            table.push_back(offset(row, multiplier_block));
+        };
         // row 0: contact rows in the slave's own block; rows 1..n: equilibrium of the masters
-        const Index contact_block = exchanged ? c.slave : constraints_->nodes() + j;
-        for (const Index column : reached) table.push_back(offset(contact_block, column));
-        for (const Index master : c.masters)
-            for (const Index column : reached) table.push_back(offset(equilibrium_block(master), column));
+        map_row(exchanged ? c.slave : multiplier_block);
+        for (const Index master : c.masters) map_row(equilibrium_block(master));
     }
 }
 
@@ -186,7 +204,8 @@ void SystemMatrix::reset() {
     matrix_.value = base_;
 }
 
-void SystemMatrix::add_contact(Index j, const Mat3& D) {
+void SystemMatrix::add_contact(Index j, const Mat3& D, Lane lane) {
+    if (!lane.owns(couplings_[j].slave)) return;
     const Mat3& Q = frame(couplings_[j].slave);
     const Mat3 value = Q.transpose() * D * Q;
     const auto rows = contact_rows(j);
@@ -201,7 +220,7 @@ void SystemMatrix::add_contact(Index j, const Mat3& D) {
 
 void SystemMatrix::add_contact(Index j, std::span<const Index> masters, const Eigen::Ref<const Matrix>& A,
                                const Mat3& D, const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
-                               const Eigen::Ref<const Matrix>& G) {
+                               const Eigen::Ref<const Matrix>& G, Lane lane) {
     const Coupling& coupling = couplings_[j];
     const Index n = static_cast<Index>(masters.size()), block = constraints_->nodes() + j;
     const auto stride = static_cast<Index>(coupling.masters.size()) + 2;
@@ -229,19 +248,32 @@ void SystemMatrix::add_contact(Index j, std::span<const Index> masters, const Ei
             add(one, offset(row_block, column_block), column_block, value, matrix_.value);
         }
     };
-    add_law(0, coupling.slave, turn(coupling.slave, A.leftCols<3>(), coupling.slave));
-    for (Index i = 0; i < n; ++i)
-        add_law(1 + place[i], masters[i], turn(coupling.slave, A.middleCols<3>(3 + 3 * i), masters[i]));
-    add_law(stride - 1, block, turn(coupling.slave, D, coupling.slave));
+    if (lane.owns(coupling.slave)) {
+        add_law(0, coupling.slave, turn(coupling.slave, A.leftCols<3>(), coupling.slave));
+        for (Index i = 0; i < n; ++i)
+            add_law(1 + place[i], masters[i], turn(coupling.slave, A.middleCols<3>(3 + 3 * i), masters[i]));
+        add_law(stride - 1, block, turn(coupling.slave, D, coupling.slave));
+    }
 
     // master forces
     for (Index i = 0; i < n; ++i) {
+        if (!lane.owns(masters[i])) continue;
         const auto master_rows = equilibrium_rows(masters[i]);
         const Index* slot = slots_[j].data() + (1 + place[i]) * stride;
         const auto by = [&](Index k) -> Mat3 { return G.block<3, 3>(3 * i, 3 * k); };
         add(master_rows, slot[0], coupling.slave, turn(masters[i], by(0), coupling.slave), matrix_.value);
-        for (Index k = 0; k < n; ++k)
-            add(master_rows, slot[1 + place[k]], masters[k], turn(masters[i], by(1 + k), masters[k]), matrix_.value);
+        for (Index k = 0; k < n; ++k) {
+            if (plain_[masters[i]] == 0 || plain_[masters[k]] == 0) {
+                add(master_rows, slot[1 + place[k]], masters[k], turn(masters[i], by(1 + k), masters[k]),
+                    matrix_.value);
+                continue;
+            }
+            const double* from = G.data() + 3 * i + (3 + 3 * k) * G.outerStride();
+            for (int r = 0; r < 3; ++r) {
+                double* to = &matrix_.value[matrix_.row_start[master_rows[r]] + slot[1 + place[k]]];
+                for (int c = 0; c < 3; ++c) to[c] += from[r + c * G.outerStride()];
+            }
+        }
         add(master_rows, slot[stride - 1], block, turn(masters[i], E.middleRows<3>(3 * i), coupling.slave),
             matrix_.value);
     }

@@ -231,7 +231,11 @@ void Equilibrium::cover_patches() {
     for (std::size_t p = 0; p < model_.pairs.size(); ++p)
         for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
             auto& masters = couplings[static_cast<std::size_t>(first_coupling_[p] + j)].masters;
-            if (reaches(p, j)) masters = model_.pairs[p]->point_nodes(j);
+            if (!reaches(p, j)) continue;
+            // room for the point to move about its facet
+            masters = model_.pairs[p]->patch_nodes(model_.pairs[p]->facets()[j]);
+            const auto& own = model_.pairs[p]->point_nodes(j);
+            masters.insert(masters.end(), own.begin(), own.end());
             std::sort(masters.begin(), masters.end());
             masters.erase(std::unique(masters.begin(), masters.end()), masters.end()); // mirror images repeat nodes
         }
@@ -293,7 +297,7 @@ const solve::SparseMatrix& Equilibrium::jacobian() {
         matrix_->reset();
     }
     constexpr Index batch = 64; // tangents held at a time: each takes some 100 kB on a smooth master
-    std::vector<ContactTangent> tangents(batch);
+    tangents_.resize(batch);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
         for (Index first = 0; first < pair.size(); first += batch) {
@@ -301,18 +305,20 @@ const solve::SparseMatrix& Equilibrium::jacobian() {
             {
                 const ScopedTimer timer(timings_, Part::contact);
                 parallel_for(threads_, count, [&](Index begin, Index end) {
-                    for (Index k = begin; k < end; ++k) linearise(p, first + k, tangents[k]);
+                    for (Index k = begin; k < end; ++k) linearise(p, first + k, tangents_[k]);
                 });
             }
             const ScopedTimer timer(timings_, Part::assembly);
-            for (Index k = 0; k < count; ++k) {
-                const ContactTangent& t = tangents[k];
-                const Index j = first + k, coupling = first_coupling_[p] + j;
-                if (t.reaches)
-                    matrix_->add_contact(coupling, pair.point_nodes(j), t.A, t.D, t.E, t.G);
-                else
-                    matrix_->add_contact(coupling, t.D);
-            }
+            parallel_lanes(threads_, [&](Lane lane) { // each the rows of its own nodes, in the order of the slaves
+                for (Index k = 0; k < count; ++k) {
+                    const ContactTangent& t = tangents_[k];
+                    const Index j = first + k, coupling = first_coupling_[p] + j;
+                    if (t.reaches)
+                        matrix_->add_contact(coupling, pair.point_nodes(j), t.A, t.D, t.E, t.G, lane);
+                    else
+                        matrix_->add_contact(coupling, t.D, lane);
+                }
+            });
         }
     }
     matrix_->finish();

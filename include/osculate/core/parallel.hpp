@@ -36,4 +36,31 @@ template <class Body> void parallel_for(int threads, Index n, Body&& body) {
         if (error) std::rethrow_exception(error);
 }
 
+/// One of several passes over the same items, each of which writes only what belongs to it.
+struct Lane {
+    Index index = 0, count = 1;
+    [[nodiscard]] bool owns(Index owner) const { return owner % count == index; }
+};
+
+/// Calls body(lane) for every lane, each on its own thread. Whatever has one owner is written in the order of the items,
+/// so that sums are bitwise the same for any number of threads.
+template <class Body> void parallel_lanes(int threads, Body&& body) {
+    const Index lanes = std::max(threads, 1);
+    if (lanes == 1) return body(Lane{});
+    std::vector<std::exception_ptr> errors(static_cast<std::size_t>(lanes));
+    {
+        std::vector<std::jthread> workers;
+        for (Index lane = 0; lane < lanes; ++lane)
+            workers.emplace_back([&, lane] {
+                try {
+                    body(Lane{lane, lanes});
+                } catch (...) {
+                    errors[static_cast<std::size_t>(lane)] = std::current_exception();
+                }
+            });
+    }
+    for (const std::exception_ptr& error : errors)
+        if (error) std::rethrow_exception(error);
+}
+
 } // namespace osculate

@@ -1,6 +1,7 @@
 #pragma once
 /// The tangent of a step as one sparse matrix over free displacements and contact forces, written through a slot map.
 
+#include "osculate/core/parallel.hpp"
 #include "osculate/model/block_matrix.hpp"
 #include "osculate/model/constraints.hpp"
 #include "osculate/solve/sparse_matrix.hpp"
@@ -42,12 +43,12 @@ public:
     void reset();
     /// Contact tangent of coupling j in global components: contact rows, derivatives A (3 x 3+3n) by (slave, masters) and
     /// D (3 x 3) by the contact force; equilibrium rows of the masters, derivatives E (3n x 3) by the contact force and
-    /// G (3n x 3+3n) by (slave, masters).
+    /// G (3n x 3+3n) by (slave, masters). Only rows of nodes that `lane` owns are written.
     void add_contact(Index j, std::span<const Index> masters, const Eigen::Ref<const Matrix>& A, const Mat3& D,
                      const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
-                     const Eigen::Ref<const Matrix>& G);
+                     const Eigen::Ref<const Matrix>& G, Lane lane = {});
     /// Contact tangent of an open coupling without partner: D only.
-    void add_contact(Index j, const Mat3& D);
+    void add_contact(Index j, const Mat3& D, Lane lane = {});
     /// Declares the values complete.
     void finish() { ++matrix_.revision; }
 
@@ -77,6 +78,7 @@ private:
     std::vector<Index> block_row_start_{0}; ///< (blocks + 1)
     std::vector<Index> block_column_, block_offset_;
     std::vector<std::vector<Index>> slots_; ///< per coupling, (masters + 1) x (masters + 2) offsets
+    std::vector<char> plain_;               ///< (nodes) all three components free, in global axes
     std::vector<double> base_;
     solve::SparseMatrix matrix_;
 };

@@ -104,6 +104,7 @@ private:
     std::vector<std::vector<contact::Status>> statuses_;
     StatusRule rule_ = StatusRule::natural;
     bool force_next_ = false;
+    std::vector<ContactTangent> tangents_; ///< a batch of jacobian()
     std::vector<IterationRecord> records_;
     std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> times seen, least residual
     std::size_t last_configuration_ = 0;

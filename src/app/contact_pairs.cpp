@@ -37,6 +37,13 @@ contact::MirroredSurface mirror_at_symmetry(const scene::Scene& scene, const mod
 /// The master surface asked for, and the rule against flip-flop that it needs.
 std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spec, const mesh::HalfEdgeSurface& surface,
                                                     const std::vector<Vec3>& vertices, model::ContactOptions& options) {
+    const auto radial_basis = [](const auto& s) -> contact::Multiquadric {
+        switch (s.basis) {
+        case scene::RadialBasis::r3: return {0, 1.5};
+        case scene::RadialBasis::r5: return {0, 2.5};
+        default: return {s.R, s.q};
+        }
+    };
     const auto coordinates = [](scene::PatchCoordinates c) {
         return c == scene::PatchCoordinates::tangential ? contact::PatchCoordinates::tangential
                                                         : contact::PatchCoordinates::equal_length;
@@ -48,14 +55,14 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
                           },
                           [&](const scene::RpimSurface& s) {
                               options.hysteresis = s.hysteresis;
-                              return contact::make_rpim_surface(surface, vertices,
-                                                                {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
+                              return contact::make_rpim_surface(
+                                  surface, vertices, {s.ring, radial_basis(s), s.m, coordinates(s.coordinates)});
                           },
                           [&](const scene::BlendSurface& s) { // does not depend on the facet: no rule
                               options.hysteresis = 0;
                               options.changes_before_latch = std::numeric_limits<int>::max();
-                              return contact::make_blend_surface(surface, vertices,
-                                                                 {s.ring, {s.R, s.q}, s.m, coordinates(s.coordinates)});
+                              return contact::make_blend_surface(
+                                  surface, vertices, {s.ring, radial_basis(s), s.m, coordinates(s.coordinates)});
                           },
                       },
                       spec.surface);

@@ -59,14 +59,19 @@ public:
     BlendSurface(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options)
         : surface_(surface), vertex_patches_(surface, X, options), facets_(make_facets_surface(surface)) {
         find_creases();
-        for (Index f = 0; f < surface.facet_count(); ++f) {
+        find_reach();
+    }
+
+    void find_reach() {
+        reach_.clear();
+        for (Index f = 0; f < surface_.facet_count(); ++f) {
             std::vector<Index> nodes;
             const auto add = [&](Index facet) {
                 for (const Index p : vertex_patches_.of_facet[facet]) {
                     const auto& own = vertex_patches_.patches[p].vertices;
                     nodes.insert(nodes.end(), own.begin(), own.end());
                 }
-                const auto own = surface.facet_vertices(facet);
+                const auto own = surface_.facet_vertices(facet);
                 if (vertex_patches_.bare[facet] != 0) nodes.insert(nodes.end(), own.begin(), own.end());
             };
             add(f);
@@ -95,6 +100,14 @@ public:
             for (Index p = begin; p < end; ++p)
                 if (wanted_[p] != 0) placed_[p].place(vertex_patches_.patches[p], x);
         });
+    }
+
+    Index refresh(const std::vector<Vec3>& x) override {
+        const std::vector<Index> fresh = vertex_patches_.refresh(x);
+        if (fresh.empty()) return 0;
+        placed_.clear();
+        find_reach();
+        return static_cast<Index>(fresh.size());
     }
 
     void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
@@ -157,7 +170,9 @@ private:
         }
         if (!side.active.empty()) {
             blend(side.active, x, side.point);
-            side.point.behind = side.point.gap <= -deepest * surface_.facet_size(hit.facet);
+            double size = surface_.facet_size(hit.facet); // next to nothing where its vertices are near duplicates
+            for (const ActivePatch& a : side.active) size = std::max(size, a.patch->shape.node_distance());
+            side.point.behind = side.point.gap <= -deepest * size;
             side.point.found = !side.point.behind;
         } else if (vertex_patches_.bare[hit.facet] != 0) {
             facets_->evaluate(s, hit, x, side.point, nullptr);

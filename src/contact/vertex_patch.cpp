@@ -1,12 +1,12 @@
 #include "contact/vertex_patch.hpp"
 
 #include "contact/fold.hpp"
-#include "contact/merge.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 namespace osculate::contact {
@@ -65,6 +65,21 @@ Mat2 unstretching(const Mat2& S) {
     return std::pow(S.determinant(), 0.25) * axes.operatorInverseSqrt();
 }
 
+/// Angles of facets to the normal at a vertex.
+std::vector<double> turns(const mesh::HalfEdgeSurface& surface, Index vertex, const std::vector<Index>& sector,
+                          const std::vector<Index>& facets, const std::vector<Vec3>& X) {
+    const Vec3 up = vertex_normal(surface, vertex, sector, X);
+    std::vector<double> result;
+    for (const Index f : facets) {
+        const auto v = surface.facet_vertices(f);
+        const Vec3 a = v.size() == 4 ? Vec3(X[v[2]] - X[v[0]]) : Vec3(X[v[1]] - X[v[0]]),
+                   b = v.size() == 4 ? Vec3(X[v[3]] - X[v[1]]) : Vec3(X[v[2]] - X[v[0]]);
+        const Vec3 n = a.cross(b);
+        result.push_back(std::atan2(n.cross(up).norm(), n.dot(up)));
+    }
+    return result;
+}
+
 std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Index vertex,
                                       const std::vector<Index>& sector, const std::vector<Vec3>& X,
                                       const BlendOptions& options) {
@@ -106,9 +121,10 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
                       *RpimPatch::fit((MatrixX2(3, 2) << 0, 0, 1, 0, 0, 1).finished(), {}, 3),
                       0.5 * sum.inverse(),
                       kappa_aim,
+                      natural(X[vertex]),
+                      sector,
                       {},
-                      {},
-                      natural(X[vertex])};
+                      {}};
     if (!patch.metric.allFinite()) return std::nullopt;
     const auto q = [&](const Vec2& u) { return u.dot(patch.metric * u); };
     for (const Vec2& u : own) near = std::max(near, q(u));
@@ -135,6 +151,7 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
         const bool good = lowest <= highest && shape->polynomial_terms() == options.polynomial_terms;
         patch.level = level;
         patch.vertices = vertices;
+        patch.facets = facets;
         patch.shape = std::move(*shape);
         patch.kappa = std::min(std::max(kappa_aim, lowest), highest);
         if (lowest > highest) patch.kappa = lowest; // interpolation before coverage, should no ring be left
@@ -146,9 +163,7 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
         return make_patch(surface, vertex, sector, X, fewer);
     }
     if (patch.level == 0) return std::nullopt;
-    patch.at_vertex.resize(patch.shape.size());
-    patch.slope.resize(patch.shape.size(), 2);
-    patch.shape.weights(patch.origin, patch.at_vertex, patch.slope);
+    patch.turn = turns(surface, vertex, sector, patch.facets, X);
     return patch;
 }
 
@@ -183,8 +198,9 @@ std::vector<std::vector<Index>> sectors(const mesh::HalfEdgeSurface& surface, In
 
 VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,
                              const BlendOptions& options)
-    : of_facet(static_cast<std::size_t>(surface.facet_count())), bare(of_facet.size(), 0) {
-    if (const auto fewer = merged(surface, X, options.level)) {
+    : of_facet(static_cast<std::size_t>(surface.facet_count())), bare(of_facet.size(), 0), surface_(&surface),
+      merged_(merged(surface, X, options.level)), options_(options) {
+    if (const MergedSurface* fewer = merged_.get()) {
         VertexPatches found(fewer->topology, fewer->X, options);
         fallbacks = found.fallbacks + surface.vertex_count() - fewer->topology.vertex_count();
         patches = std::move(found.patches);
@@ -218,6 +234,39 @@ VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::ve
         std::sort(list.begin(), list.end());
         list.erase(std::unique(list.begin(), list.end()), list.end());
     }
+}
+
+std::vector<Index> VertexPatches::refresh(const std::vector<Vec3>& x) {
+    constexpr double most_turning = 60 * std::numbers::pi / 180;
+    const mesh::HalfEdgeSurface& surface = merged_ ? merged_->topology : *surface_;
+    std::vector<Vec3> kept;
+    std::vector<Index> own; // vertex of the original surface -> vertex here
+    if (merged_) {
+        own.assign(x.size(), -1);
+        for (std::size_t v = 0; v < merged_->vertex.size(); ++v) {
+            kept.push_back(x[merged_->vertex[v]]);
+            own[merged_->vertex[v]] = static_cast<Index>(v);
+        }
+    }
+    const std::vector<Vec3>& at = merged_ ? kept : x;
+    std::vector<Index> result;
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        VertexPatch& patch = patches[p];
+        const Index vertex = merged_ ? own[patch.vertex] : patch.vertex;
+        const std::vector<double> now = turns(surface, vertex, patch.sector, patch.facets, at);
+        bool turned = false;
+        for (std::size_t f = 0; f < now.size(); ++f) turned = turned || std::abs(now[f] - patch.turn[f]) > most_turning;
+        if (!turned) continue;
+        auto fresh = make_patch(surface, vertex, patch.sector, at, options_);
+        if (!fresh) continue;
+        if (merged_) {
+            fresh->vertex = patch.vertex;
+            for (Index& v : fresh->vertices) v = merged_->vertex[v];
+        }
+        patch = std::move(*fresh);
+        result.push_back(static_cast<Index>(p));
+    }
+    return result;
 }
 
 std::vector<VertexPatchInfo> vertex_patches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,

@@ -1,6 +1,7 @@
 #pragma once
 /// Frozen patches around the vertices of a surface, and their bumps.
 
+#include "merge.hpp"
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/contact/rpim_patch.hpp"
 
@@ -16,9 +17,9 @@ struct VertexPatch {
     RpimPatch shape;
     Mat2 metric = Mat2::Identity(); ///< M = 1/2 (mean over edge neighbours of u_j u_j^T)^-1, m^-2
     double kappa = 0.8;
-    MatrixX2 slope;             ///< (n x 2) Phi_i,a at the vertex: X,a there is slope^T x
-    Vector at_vertex;           ///< (n) Phi_i at the vertex
-    Vec2 origin = Vec2::Zero(); ///< natural coordinates of the vertex
+    Vec2 origin = Vec2::Zero();        ///< natural coordinates of the vertex
+    std::vector<Index> sector, facets; ///< around the vertex, and all whose corners make the patch
+    std::vector<double> turn;          ///< (facets) angle of each to the vertex normal where the patch was fitted, rad
 };
 
 /// Facets around a vertex that hang together over smooth edges, each sector ascending.
@@ -33,6 +34,15 @@ struct VertexPatches {
     Index fallbacks = 0; ///< vertices merged, without a patch, or with a smaller or simpler one than asked for
 
     VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options);
+    /// Fits anew at x the patches one of whose facets has turned against the vertex by more than 60 degrees since the last
+    /// fit: their natural coordinates no longer tell how far nodes are apart. Keeps a patch that x folds over.
+    /// @returns the patches fitted anew, ascending
+    std::vector<Index> refresh(const std::vector<Vec3>& x);
+
+private:
+    const mesh::HalfEdgeSurface* surface_;
+    std::unique_ptr<MergedSurface> merged_; ///< what patches are made on, where near-duplicate vertices are merged
+    BlendOptions options_;
 };
 
 } // namespace osculate::contact

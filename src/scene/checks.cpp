@@ -56,7 +56,17 @@ public:
     }
 
     template <class Surface> void check_basis(const std::string& name, const char* tag, const Surface& surface) {
-        const std::vector<std::string> q{"contact", name, "master", "surface", tag, "q"};
+        const auto key = [&](const char* last) {
+            return std::vector<std::string>{"contact", name, "master", "surface", tag, last};
+        };
+        const auto q = key("q");
+        if (surface.basis != RadialBasis::multiquadric) {
+            const Surface defaults;
+            if (surface.R != defaults.R) fault(key("R"), "basis multiquadric with R", "another basis");
+            if (surface.q != defaults.q) fault(q, "basis multiquadric with q", "another basis");
+            if (surface.basis == RadialBasis::r5 && surface.m < 6) fault(key("m"), "6 with basis r5", "3");
+            return;
+        }
         // (r^2 + R^2)^q is conditionally definite of order ceil(q); the basis must hold all polynomials of lower degree.
         if (surface.q > 2 && surface.m < 6) fault(q, "at most 2 with m = 3", number_text(surface.q));
         if (surface.R == 0 && surface.q < 1) fault(q, "more than 1 with R = 0", number_text(surface.q));

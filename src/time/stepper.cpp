@@ -222,6 +222,11 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 state_.time = time;
                 observer.attempted(attempt, equilibrium.records());
                 observer.accepted({state_, equilibrium, dt, result.iterations, stage});
+                if (!model_.pairs.empty()) {
+                    std::vector<Vec3> x = model_.X;
+                    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];
+                    for (auto& pair : model_.pairs) refreshed_patches_ += pair->refresh(x);
+                }
                 dt = std::min(2 * dt, step);
                 continue;
             }

@@ -39,6 +39,13 @@ public:
     /// no unique foot.
     virtual void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
                           ContactVariation* variation = nullptr) const = 0;
+    /// Fits patches anew at converged positions x where the surface has been bent by more than 60 degrees within one, so
+    /// that its frozen coordinates have become misleading. To be called between steps only.
+    /// @returns how many
+    virtual Index refresh(const std::vector<Vec3>& x) {
+        (void)x;
+        return 0;
+    }
     /// Facets that had to fall back to a smaller or simpler patch.
     [[nodiscard]] virtual Index fallbacks() const { return 0; }
 };

@@ -74,6 +74,9 @@ public:
     /// Evaluates every slave node at positions x, following each from its last facet.
     void evaluate(const std::vector<Vec3>& x, Timings& timings, int threads);
 
+    /// Adapts the master to the positions x of an accepted step; returns how many patches were fitted anew.
+    Index refresh(const std::vector<Vec3>& x) { return master_->refresh(vertices(x)); }
+
     [[nodiscard]] const contact::ContactPoint& point(Index j) const { return points_[j]; }
     /// Global nodes of the patch of slave j, in the order of point(j).weights.
     [[nodiscard]] const std::vector<Index>& point_nodes(Index j) const { return point_nodes_[j]; }

@@ -135,11 +135,13 @@ struct FacetsSurface {
 };
 
 enum class PatchCoordinates { tangential, equal_length };
+enum class RadialBasis { multiquadric, r3, r5 };
 
 struct RpimSurface {
     int ring = 2;
-    double R = 1.42, q = 1.03;
-    int m = 6; ///< terms of the polynomial basis, 3 or 6
+    RadialBasis basis = RadialBasis::multiquadric;
+    double R = 1.42, q = 1.03; ///< of the multiquadric
+    int m = 6;                 ///< terms of the polynomial basis, 3 or 6
     PatchCoordinates coordinates = PatchCoordinates::equal_length;
     double hysteresis = 0.03;
     bool operator==(const RpimSurface&) const = default;
@@ -147,7 +149,8 @@ struct RpimSurface {
 
 struct BlendSurface {
     int ring = 2; ///< rings of facets around a vertex that make its patch
-    double R = 1.42, q = 1.03;
+    RadialBasis basis = RadialBasis::multiquadric;
+    double R = 1.42, q = 1.03; ///< of the multiquadric
     int m = 6;
     PatchCoordinates coordinates = PatchCoordinates::equal_length;
     bool operator==(const BlendSurface&) const = default;
@@ -155,7 +158,7 @@ struct BlendSurface {
 
 struct MasterSpec {
     std::string set;
-    std::variant<FacetsSurface, RpimSurface, BlendSurface> surface;
+    std::variant<FacetsSurface, RpimSurface, BlendSurface> surface = BlendSurface{};
     bool operator==(const MasterSpec&) const = default;
 };
 

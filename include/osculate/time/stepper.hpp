@@ -44,6 +44,8 @@ public:
 
     [[nodiscard]] const model::State& state() const { return state_; }
     [[nodiscard]] long factorisations() const { return factorisations_; }
+    /// Master patches fitted anew between steps, see contact::MasterSurface::refresh().
+    [[nodiscard]] long refreshed_patches() const { return refreshed_patches_; }
     [[nodiscard]] double end_time() const;
 
 private:
@@ -65,7 +67,7 @@ private:
     Timings& timings_;
     model::State state_;
     int attempts_ = 0;
-    long factorisations_ = 0;
+    long factorisations_ = 0, refreshed_patches_ = 0;
     double characteristic_length_ = 1;
 };
 

@@ -16,23 +16,36 @@ std::unique_ptr<contact::MasterSurface> make(const Surface& surface, const std::
     return contact::make_blend_surface(surface.topology, surface.x, {});
 }
 
+/// What a Newton iteration asks of a master: patches are placed at the nodes of the configuration, then every slave point
+/// is evaluated. Four points a facet, as many as in the foundation.
 void evaluate(benchmark::State& state, const std::string& shape, const std::string& kind, bool with_variation) {
     const Surface& on = surface(shape);
     const auto master = make(on, kind);
     contact::FacetSearch search(on.topology);
     search.build(on.x);
-    const std::vector<SlavePoint> points = slave_points(on, 512);
+    const std::vector<SlavePoint> points = slave_points(on, static_cast<int>(4 * on.topology.facet_count()));
     std::vector<contact::FacetHit> hits;
     for (const SlavePoint& point : points) hits.push_back(search.global(point.s, on.x));
     contact::ContactPoint point;
     contact::ContactVariation variation;
-    std::size_t k = 0;
     for (auto _ : state) {
-        master->evaluate(points[k].s, hits[k], on.x, point, with_variation ? &variation : nullptr);
-        benchmark::DoNotOptimize(point.gap);
-        k = (k + 1) % points.size();
+        master->prepare(hits, on.x, 1);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            master->evaluate(points[k].s, hits[k], on.x, point, with_variation ? &variation : nullptr);
+            benchmark::DoNotOptimize(point.gap);
+        }
     }
-    state.SetItemsProcessed(state.iterations());
+    state.SetItemsProcessed(state.iterations() * static_cast<Index>(points.size()));
+}
+
+/// Placing all patches of a surface in one configuration; an item is a vertex.
+void prepare(benchmark::State& state, const std::string& shape) {
+    const Surface& on = surface(shape);
+    const auto master = make(on, "blend");
+    std::vector<contact::FacetHit> hits(static_cast<std::size_t>(on.topology.facet_count()));
+    for (std::size_t f = 0; f < hits.size(); ++f) hits[f].facet = static_cast<Index>(f);
+    for (auto _ : state) master->prepare(hits, on.x, 1);
+    state.SetItemsProcessed(state.iterations() * on.topology.vertex_count());
 }
 
 /// Fitting all patches of a surface; an item is a facet (rpim) or a vertex (blend).
@@ -119,6 +132,7 @@ BENCHMARK(project_rpim)->Name("project/rpim")->Arg(4)->Arg(5)->Arg(6);
                 benchmark::RegisterBenchmark(
                     (std::string("evaluate/") + shape + (variation ? "/variation/" : "/values/") + kind).c_str(),
                     evaluate, shape, kind, variation);
+        benchmark::RegisterBenchmark((std::string("prepare/") + shape).c_str(), prepare, shape);
         for (const char* kind : {"rpim", "blend"})
             benchmark::RegisterBenchmark((std::string("build/") + shape + "/" + kind).c_str(), fit, shape, kind)
                 ->Unit(benchmark::kMillisecond);

@@ -1,36 +1,23 @@
 #include "osculate/fe/element_block.hpp"
 
 #include "fe/small_strain.hpp"
-#include "osculate/core/error.hpp"
-
-#include <Eigen/QR>
+#include "fe/solid_kernel.hpp"
 
 namespace osculate::fe {
 namespace {
 
-/// Nodes x points: carries point values to the nodes, exact for a field in the span of the shape functions where there
-/// are as many points as nodes, the mean where there is one point.
-template <ReferenceElement E> Eigen::Matrix<double, E::nodes, E::points> extrapolation(const ShapeTable<E>& table) {
-    Matrix N(E::points, E::nodes);
-    for (int q = 0; q < E::points; ++q) N.row(q) = table.N[static_cast<std::size_t>(q)].transpose();
-    return N.completeOrthogonalDecomposition().pseudoInverse();
-}
-
-template <class Formulation> class SmallStrainKernel final : public ElementKernel {
+template <class Formulation> class SmallStrainKernel final : public SolidKernel<typename Formulation::Element> {
     using E = typename Formulation::Element;
     static constexpr int n = E::nodes;
     using Positions = Eigen::Matrix<double, 3, n>;
 
 public:
-    explicit SmallStrainKernel(const material::LinearElastic& material)
-        : D_(material.stiffness()), formulation_(D_), extrapolation_(extrapolation<E>(table_)) {}
-
-    [[nodiscard]] int nodes() const override { return n; }
+    explicit SmallStrainKernel(const material::LinearElastic& material) : D_(material.stiffness()), formulation_(D_) {}
 
     void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const override {
         require(X.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n, "stiffness: sizes do not match the element");
         StrainPoints<E> points;
-        formulation_(table_, Positions(X), points);
+        formulation_(this->table_, Positions(X), points);
         Eigen::Matrix<double, 3 * n, 3 * n> K = Eigen::Matrix<double, 3 * n, 3 * n>::Zero();
         for (std::size_t q = 0; q < points.B.size(); ++q) {
             const Eigen::Matrix<double, 6, 3 * n> DB = D_ * points.B[q] * points.volumes[q];
@@ -44,39 +31,18 @@ public:
         require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,
                 "nodal_stress: sizes do not match the element");
         StrainPoints<E> points;
-        formulation_(table_, Positions(X), points);
+        formulation_(this->table_, Positions(X), points);
         const Positions displacement = u;
         Eigen::Matrix<double, 6, E::points> sigma;
         for (std::size_t q = 0; q < points.B.size(); ++q) {
             sigma.col(static_cast<int>(q)) = D_ * (points.B[q] * displacement.reshaped());
         }
-        stress.noalias() = sigma * extrapolation_.transpose();
-    }
-
-    void body_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Vec3& b,
-                    Eigen::Ref<Eigen::Matrix3Xd> f) const override {
-        require(X.cols() == n && f.cols() == n, "body_force: sizes do not match the element");
-        typename E::Shape share = E::Shape::Zero(); // integral of N_a dV
-        for (std::size_t q = 0; q < table_.N.size(); ++q) share += table_.N[q] * point_volume(X, q);
-        f.noalias() = b * share.transpose();
-    }
-
-    [[nodiscard]] double volume(const Eigen::Ref<const Eigen::Matrix3Xd>& X) const override {
-        require(X.cols() == n, "volume: sizes do not match the element");
-        double sum = 0;
-        for (std::size_t q = 0; q < table_.N.size(); ++q) sum += point_volume(X, q);
-        return sum;
+        stress.noalias() = sigma * this->extrapolation_.transpose();
     }
 
 private:
-    [[nodiscard]] double point_volume(const Positions& X, std::size_t q) const {
-        return table_.rule[q].weight * jacobian<n>(X, table_.dN[q]).det;
-    }
-
     Mat6 D_;
     Formulation formulation_;
-    ShapeTable<E> table_;
-    Eigen::Matrix<double, n, E::points> extrapolation_;
 };
 
 } // namespace

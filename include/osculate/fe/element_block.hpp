@@ -34,6 +34,14 @@ public:
     virtual void body_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Vec3& b,
                             Eigen::Ref<Eigen::Matrix3Xd> f) const = 0;
 
+    /// Consistent mass (n x n), kg, of a density rho, kg/m^3: the same for x, y and z. Its entries sum to the mass.
+    virtual void mass(const Eigen::Ref<const Eigen::Matrix3Xd>& X, double rho, Eigen::Ref<Matrix> Me) const = 0;
+
+    /// Lumped mass (n), kg, of a density rho, kg/m^3: every entry positive, their sum the mass. Row sums of the consistent
+    /// mass, which keep the centre of mass, where no shape function is negative; its scaled diagonal otherwise.
+    /// [Hinton, Rock, Zienkiewicz 1976, Earthq. Engng Struct. Dyn. 4, 245]
+    virtual void lumped_mass(const Eigen::Ref<const Eigen::Matrix3Xd>& X, double rho, Eigen::Ref<Vector> m) const = 0;
+
     /// Volume, m^3.
     [[nodiscard]] virtual double volume(const Eigen::Ref<const Eigen::Matrix3Xd>& X) const = 0;
 };

@@ -11,13 +11,13 @@ namespace osculate::fe {
 /// Gradients dN/dX (n x 3, 1/m) of n functions at one point.
 template <int n> using Gradients = Eigen::Matrix<double, n, 3>;
 
-/// Shape functions and natural gradients at every quadrature point of E; built once per kernel.
-template <ReferenceElement E> struct ShapeTable {
-    std::array<typename E::Shape, E::points> N;
-    std::array<typename E::Gradient, E::points> dN;
-    std::array<QuadraturePoint, E::points> rule = E::quadrature();
+/// Shape functions and natural gradients of E at every point of a quadrature rule; built once per kernel.
+template <ReferenceElement E, std::size_t points = std::size_t{E::points}> struct ShapeTable {
+    std::array<typename E::Shape, points> N;
+    std::array<typename E::Gradient, points> dN;
+    std::array<QuadraturePoint, points> rule;
 
-    ShapeTable() {
+    explicit ShapeTable(const std::array<QuadraturePoint, points>& quadrature) : rule(quadrature) {
         for (std::size_t q = 0; q < rule.size(); ++q) {
             N[q] = E::shape(rule[q].xi);
             dN[q] = E::gradient(rule[q].xi);

@@ -14,21 +14,25 @@ struct QuadraturePoint {
     double weight; ///< the weights of a rule sum to the volume of the reference element
 };
 
-/// What a volume element must offer: counts, natural coordinates of its nodes, N(xi), dN/dxi and a quadrature rule.
+/// What a volume element must offer: its degree, counts, natural coordinates of its nodes, N(xi), dN/dxi and two quadrature rules:
+/// one for stiffness and stress, and one for mass, body forces and volume, exact for N_a N_b on an affine element.
 template <class E>
 concept ReferenceElement = requires(const Vec3& xi) {
     requires E::nodes >
-    0 && E::points > 0;
+    0 && E::degree > 0 && E::points > 0 && E::mass_points > 0;
     { E::node_positions() } -> std::same_as<Eigen::Matrix<double, 3, E::nodes>>;
     { E::shape(xi) } -> std::same_as<Eigen::Matrix<double, E::nodes, 1>>;
     { E::gradient(xi) } -> std::same_as<Eigen::Matrix<double, E::nodes, 3>>;
     { E::quadrature() } -> std::same_as<std::array<QuadraturePoint, E::points>>;
+    { E::mass_quadrature() } -> std::same_as<std::array<QuadraturePoint, E::mass_points>>;
 };
 
 /// Trilinear hexahedron on [-1, 1]^3, 2 x 2 x 2 Gauss points in the order of the nodes.
 struct Hex8 {
     static constexpr int nodes = 8;
+    static constexpr int degree = 1;
     static constexpr int points = 8;
+    static constexpr int mass_points = 8;
     using Shape = Eigen::Matrix<double, nodes, 1>;
     using Gradient = Eigen::Matrix<double, nodes, 3>;
     using Positions = Eigen::Matrix<double, 3, nodes>;
@@ -65,12 +69,17 @@ struct Hex8 {
         for (int q = 0; q < points; ++q) rule[static_cast<std::size_t>(q)] = {c.col(q), 1.0};
         return rule;
     }
+
+    static std::array<QuadraturePoint, mass_points> mass_quadrature() { return quadrature(); }
 };
 
-/// Linear tetrahedron on 0 <= r, s, t, r + s + t <= 1; one point, exact for its constant strain.
+/// Linear tetrahedron on 0 <= r, s, t, r + s + t <= 1; one point, exact for its constant strain, and the four of degree
+/// two for its mass.
 struct Tet4 {
     static constexpr int nodes = 4;
+    static constexpr int degree = 1;
     static constexpr int points = 1;
+    static constexpr int mass_points = 4;
     using Shape = Eigen::Matrix<double, nodes, 1>;
     using Gradient = Eigen::Matrix<double, nodes, 3>;
     using Positions = Eigen::Matrix<double, 3, nodes>;
@@ -91,13 +100,20 @@ struct Tet4 {
     }
 
     static std::array<QuadraturePoint, points> quadrature() { return {{{Vec3::Constant(0.25), 1.0 / 6}}}; }
+
+    static std::array<QuadraturePoint, mass_points> mass_quadrature() {
+        const double a = (5 - std::sqrt(5.0)) / 20, b = (5 + 3 * std::sqrt(5.0)) / 20, w = 1.0 / 24;
+        return {{{{a, a, a}, w}, {{b, a, a}, w}, {{a, b, a}, w}, {{a, a, b}, w}}};
+    }
 };
 
 /// Linear wedge: triangle (r, s) times line t in [-1, 1]; 3 x 2 points, exact for its volume and its body forces.
 /// In VTK's order the triangle (0, 1, 2) has its normal out of the element, so node 1 lies on the s axis and 2 on r.
 struct Wedge6 {
     static constexpr int nodes = 6;
+    static constexpr int degree = 1;
     static constexpr int points = 6;
+    static constexpr int mass_points = 6;
     using Shape = Eigen::Matrix<double, nodes, 1>;
     using Gradient = Eigen::Matrix<double, nodes, 3>;
     using Positions = Eigen::Matrix<double, 3, nodes>;
@@ -131,6 +147,8 @@ struct Wedge6 {
         const double a = 1.0 / 6, b = 2.0 / 3, w = 1.0 / 6;
         return {{{{a, a, -g}, w}, {{a, b, -g}, w}, {{b, a, -g}, w}, {{a, a, g}, w}, {{a, b, g}, w}, {{b, a, g}, w}}};
     }
+
+    static std::array<QuadraturePoint, mass_points> mass_quadrature() { return quadrature(); }
 };
 
 static_assert(ReferenceElement<Hex8> && ReferenceElement<Tet4> && ReferenceElement<Wedge6>);

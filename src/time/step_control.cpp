@@ -1,0 +1,138 @@
+#include "osculate/time/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace osculate::time {
+
+namespace {
+
+struct Objection {
+    Reason reason = Reason::none;
+    double lambda = 1;
+    double value = 0;
+    const GapEvidence* point = nullptr;
+};
+
+/// The smaller lambda; among equals the one there already.
+void consider(Objection& governing, const Objection& other) {
+    if (governing.reason == Reason::none || other.lambda < governing.lambda) governing = other;
+}
+
+void consider_gap(Objection& governing, const GapEvidence& gap, const StepLimits& limits) {
+    const double g_p = limits.allowed_interpenetration * gap.length;
+    if (gap.g1 >= -g_p) return;
+    const double aim = gap.g0 < g_p ? limits.reserve : 1;
+    consider(governing, {Reason::interpenetration, aim * reduction_factor(gap.g0, gap.g1, g_p), gap.g1, &gap});
+}
+
+/// What speaks most strongly against the step. What is not a number does.
+Objection strongest(const StepEvidence& evidence, const StepLimits& limits) {
+    Objection governing;
+    if (!evidence.solved) return {Reason::solver, limits.failure_lambda, evidence.residual, nullptr};
+    for (const GapEvidence& gap : evidence.gaps) consider_gap(governing, gap, limits);
+    if (!(evidence.collision >= 1))
+        consider(governing, {Reason::collision, limits.reserve * evidence.collision, evidence.collision, nullptr});
+    if (!(evidence.local_error <= limits.error_tolerance)) {
+        const double lambda =
+            limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error); // of order dt^3
+        consider(governing, {Reason::error, lambda, evidence.local_error, nullptr});
+    }
+    if (!(evidence.energy_jump <= limits.energy_tolerance))
+        consider(governing, {Reason::energy, limits.failure_lambda, evidence.energy_jump, nullptr});
+    return governing;
+}
+
+void describe(std::ostream& text, const Objection& objection, const StepLimits& limits) {
+    switch (objection.reason) {
+    case Reason::solver: text << "the solve failed at a relative residual of " << objection.value; break;
+    case Reason::interpenetration:
+        text << "the trial has a gap of " << objection.value << " m, allowed is "
+             << -limits.allowed_interpenetration * objection.point->length << " m";
+        break;
+    case Reason::collision: text << "a surface is passed through at " << objection.value << " of the step"; break;
+    case Reason::error:
+        text << "the local time error is " << objection.value << " m, allowed is " << limits.error_tolerance << " m";
+        break;
+    case Reason::energy:
+        text << "the energy jumps by " << objection.value << ", allowed is " << limits.energy_tolerance;
+        break;
+    case Reason::none:
+    case Reason::forced: break;
+    }
+}
+
+/// dt after an accepted step: larger after an easy one only, and not beyond what the time error admits.
+double next_step(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats) {
+    double factor = 1;
+    if (repeats == 0 && !evidence.forced && evidence.iterations <= limits.easy_iterations) factor = limits.growth;
+    if (evidence.local_error > 0) {
+        const double admitted = limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error);
+        factor = std::min(factor, std::max(admitted, 1.0));
+    }
+    return std::min(factor * dt, limits.dt_max);
+}
+
+} // namespace
+
+double reduction_factor(double g0, double g1, double g_p) {
+    if (g1 >= -g_p) return 1;
+    const double lambda = g0 >= g_p ? g0 / (g0 - g1)          // (27)
+                                    : (g_p + g0) / (g0 - g1); // (28)
+    return g0 > -g_p ? lambda : 0;
+}
+
+Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats) {
+    Decision decision;
+    const Objection objection = strongest(evidence, limits);
+    if (objection.reason == Reason::none) {
+        decision.value = evidence.residual;
+        if (!evidence.forced) {
+            decision.dt = next_step(evidence, limits, dt, repeats);
+            return decision;
+        }
+        decision.verdict = Verdict::retry;
+        decision.reason = Reason::forced;
+        decision.dt = dt;
+        decision.cause = "repeated on purpose";
+        return decision;
+    }
+
+    decision.reason = objection.reason;
+    decision.value = objection.value;
+    if (objection.point != nullptr) {
+        decision.pair = objection.point->pair;
+        decision.slave = objection.point->slave;
+    }
+    std::ostringstream cause;
+    describe(cause, objection, limits);
+    decision.lambda = std::max(limits.smallest_lambda, objection.lambda); // NaN becomes the floor
+    constexpr double same_step = 1e-6; // relative; above what fit_to() stretches a step by
+    const bool smallest = dt <= limits.dt_min * (1 + same_step), repeated = repeats >= limits.most_repeats;
+    decision.dt = smallest || repeated ? dt : std::max(decision.lambda * dt, limits.dt_min);
+    decision.verdict = smallest || repeated ? Verdict::give_up : Verdict::retry;
+    if (smallest)
+        cause << "; the step of " << dt << " s cannot be cut: dt_min is " << limits.dt_min << " s";
+    else if (repeated)
+        cause << "; the step has been repeated " << repeats << " times, the most allowed";
+    decision.cause = cause.str();
+    return decision;
+}
+
+FittedStep fit_to(double t, double dt, const std::vector<double>& targets) {
+    constexpr double same_time = 1e-12; // relative; sums of some thousand steps differ by less
+    constexpr double same_step = 1e-9;  // relative; what a step is stretched rather than leave a sliver
+    const auto after = [](double later, double earlier) {
+        return later - earlier > same_time * std::max(std::abs(later), std::abs(earlier));
+    };
+    const auto next = std::ranges::find_if(targets, [&](double target) { return after(target, t); });
+    if (next == targets.end()) return {dt, t + dt, false};
+    const auto beyond = std::find_if(next, targets.end(), [&](double target) { return after(target, *next); });
+    const double target = *(beyond - 1), left = target - t;
+    if (left <= dt * (1 + same_step)) return {left, target, true};
+    if (left < 2 * dt) dt = 0.5 * left;
+    return {dt, t + dt, false};
+}
+
+} // namespace osculate::time

@@ -1,0 +1,459 @@
+#include "osculate/time/step_control.hpp"
+
+#include "support/random.hpp"
+
+#include <cmath>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace osculate::time {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double round_off = 1e-15; // relative; one division and two sums
+
+/// One point that falls from g0 to g1.
+StepEvidence falling(double g0, double g1) {
+    StepEvidence evidence;
+    evidence.gaps = {{g0, g1, 2, 7}};
+    return evidence;
+}
+
+StepLimits allowing(double g_p) {
+    StepLimits limits;
+    limits.allowed_interpenetration = g_p;
+    limits.smallest_lambda = 0;
+    limits.reserve = 1;
+    return limits;
+}
+
+TEST(ReductionFactor, EndsOnTheSurfaceForAPointAwayFromIt) {
+    testing::Random random(1);
+    for (int i = 0; i < 1000; ++i) {
+        const double g_p = random.uniform(1e-6, 1), g0 = random.uniform(g_p, 10), g1 = -g_p - random.uniform(1e-6, 10);
+        const double lambda = reduction_factor(g0, g1, g_p);
+        EXPECT_NEAR(lambda, g0 / (g0 - g1), round_off * lambda);
+        EXPECT_NEAR(g0 + lambda * (g1 - g0), 0, 4 * round_off * (g0 - g1));
+    }
+}
+
+TEST(ReductionFactor, EndsAtTheAllowedInterpenetrationForAPointAtTheSurfaceOrBelow) {
+    testing::Random random(2);
+    for (int i = 0; i < 1000; ++i) {
+        const double g_p = random.uniform(1e-6, 1), g0 = random.uniform(-g_p, g_p);
+        const double g1 = -g_p - random.uniform(1e-6, 10), lambda = reduction_factor(g0, g1, g_p);
+        EXPECT_NEAR(lambda, (g_p + g0) / (g0 - g1), round_off);
+        EXPECT_NEAR(g0 + lambda * (g1 - g0), -g_p, 4 * round_off * (g_p - g1));
+    }
+    EXPECT_GT(reduction_factor(0, -1, 0.1), 0); // (27) would stand still here
+    EXPECT_DOUBLE_EQ(reduction_factor(0, -1, 0.1), 0.1);
+    EXPECT_DOUBLE_EQ(reduction_factor(0.1, -1, 0.1), 0.1 / 1.1); // (27) from g0 = g_p on
+}
+
+TEST(ReductionFactor, IsOneUpToTheAllowedInterpenetration) {
+    for (const double g0 : {-0.3, -0.1, 0., 0.05, 3.})
+        for (const double g1 : {-0.1, 0., 2.}) EXPECT_EQ(reduction_factor(g0, g1, 0.1), 1);
+    EXPECT_LT(reduction_factor(3, -0.1 * (1 + 1e-12), 0.1), 1);
+}
+
+TEST(ReductionFactor, IsZeroWhereNoFractionIsAdmissible) {
+    EXPECT_EQ(reduction_factor(-0.1, -1, 0.1), 0);
+    EXPECT_EQ(reduction_factor(-0.5, -1, 0.1), 0);
+    EXPECT_EQ(reduction_factor(-2, -1, 0.1), 0); // rises, and (28) would be above 1
+    EXPECT_EQ(reduction_factor(-1, -1, 0.1), 0);
+}
+
+TEST(StepControl, AcceptsAndRemembersTheResidualWhenNothingObjects) {
+    StepEvidence evidence = falling(1, -0.1);
+    evidence.residual = 3e-11;
+    const Decision decision = judge(evidence, allowing(0.1), 0.5, 0);
+    EXPECT_EQ(decision.verdict, Verdict::accept);
+    EXPECT_EQ(decision.reason, Reason::none);
+    EXPECT_EQ(decision.lambda, 1);
+    EXPECT_EQ(decision.value, 3e-11);
+    EXPECT_EQ(decision.pair, -1);
+    EXPECT_EQ(decision.cause, "");
+    EXPECT_EQ(judge({}, StepLimits{}, 0.5, 0).verdict, Verdict::accept);
+}
+
+TEST(StepControl, TakesTheSmallestFactorOfManyPoints) {
+    testing::Random random(3);
+    for (int round = 0; round < 50; ++round) {
+        StepEvidence evidence;
+        double smallest = 1;
+        Index slave = -1;
+        for (Index i = 0; i < 200; ++i) {
+            const double g0 = random.uniform(-0.05, 1), g1 = random.uniform(-1, 1);
+            evidence.gaps.push_back({g0, g1, 1, i});
+            if (const double lambda = reduction_factor(g0, g1, 0.1); lambda < smallest) {
+                smallest = lambda;
+                slave = i;
+            }
+        }
+        const Decision decision = judge(evidence, allowing(0.1), 0.25, 0);
+        EXPECT_EQ(decision.verdict, Verdict::retry);
+        EXPECT_EQ(decision.reason, Reason::interpenetration);
+        EXPECT_EQ(decision.lambda, smallest);
+        EXPECT_EQ(decision.dt, smallest * 0.25);
+        EXPECT_EQ(decision.pair, 1);
+        EXPECT_EQ(decision.slave, slave);
+        EXPECT_EQ(decision.value, evidence.gaps[static_cast<std::size_t>(slave)].g1);
+    }
+}
+
+TEST(StepControl, TheSmallestFactorNeedNotBeTheDeepestPoints) {
+    StepEvidence evidence;
+    evidence.gaps = {{4, -1, 0, 0}, {0.2, -0.3, 0, 1}};
+    const Decision decision = judge(evidence, allowing(0.1), 1, 0);
+    EXPECT_EQ(decision.slave, 1);
+    EXPECT_DOUBLE_EQ(decision.lambda, 0.4);
+    EXPECT_EQ(decision.value, -0.3);
+}
+
+TEST(StepControl, AllowedInterpenetrationMayBeAFractionOfALengthAtThePoint) {
+    StepEvidence evidence;
+    evidence.gaps = {{1, -0.3, 0, 0, 4.}, {1, -0.3, 0, 1, 2.}}; // 0.1 of 4 m admits 0.4 m, of 2 m only 0.2 m
+    const Decision decision = judge(evidence, allowing(0.1), 1, 0);
+    EXPECT_EQ(decision.slave, 1);
+    EXPECT_DOUBLE_EQ(decision.lambda, 1 / 1.3);
+    evidence.gaps.pop_back();
+    EXPECT_EQ(judge(evidence, allowing(0.1), 1, 0).verdict, Verdict::accept);
+}
+
+TEST(StepControl, LambdaHasAFloor) {
+    StepLimits limits = allowing(1e-3);
+    limits.smallest_lambda = 0.2;
+    const Decision decision = judge(falling(0, -1), limits, 0.5, 0);
+    EXPECT_EQ(decision.lambda, 0.2);
+    EXPECT_EQ(decision.dt, 0.1);
+    EXPECT_EQ(judge(falling(-1, -2), limits, 0.5, 0).lambda, 0.2); // no fraction would do
+}
+
+TEST(StepControl, AimsShortOfABoundButNotOfTheSurface) {
+    StepLimits limits = allowing(0.1);
+    limits.reserve = 0.9;
+    EXPECT_DOUBLE_EQ(judge(falling(1, -1), limits, 1, 0).lambda, 0.5);
+    EXPECT_DOUBLE_EQ(judge(falling(0, -1), limits, 1, 0).lambda, 0.9 * 0.1);
+}
+
+TEST(StepControl, TriesTheSmallestStepBeforeGivingUpAndNamesTheCause) {
+    StepLimits limits = allowing(1e-3);
+    limits.dt_min = 0.01;
+    const Decision cut = judge(falling(0, -1), limits, 0.5, 0);
+    EXPECT_EQ(cut.verdict, Verdict::retry);
+    EXPECT_EQ(cut.dt, 0.01);
+    EXPECT_DOUBLE_EQ(cut.lambda, 1e-3);
+
+    const Decision end = judge(falling(0, -1), limits, cut.dt, 1);
+    EXPECT_EQ(end.verdict, Verdict::give_up);
+    EXPECT_EQ(end.reason, Reason::interpenetration);
+    EXPECT_EQ(end.dt, 0.01);
+    EXPECT_EQ(end.pair, 2);
+    EXPECT_EQ(end.slave, 7);
+    EXPECT_EQ(end.value, -1);
+    EXPECT_THAT(end.cause, HasSubstr("the trial has a gap of -1 m, allowed is -0.001 m"));
+    EXPECT_THAT(end.cause, HasSubstr("dt_min is 0.01 s"));
+    EXPECT_EQ(judge(falling(0, -1), limits, 0.01 * (1 + 1e-9), 1).verdict, Verdict::give_up); // stretched to a target
+}
+
+TEST(StepControl, GivesUpAfterTheMostRepeats) {
+    StepLimits limits = allowing(0.1);
+    limits.most_repeats = 3;
+    EXPECT_EQ(judge(falling(1, -1), limits, 1, 2).verdict, Verdict::retry);
+    const Decision end = judge(falling(1, -1), limits, 1, 3);
+    EXPECT_EQ(end.verdict, Verdict::give_up);
+    EXPECT_EQ(end.reason, Reason::interpenetration);
+    EXPECT_THAT(end.cause, HasSubstr("repeated 3 times"));
+    EXPECT_EQ(judge({}, limits, 1, 3).verdict, Verdict::accept);
+}
+
+TEST(StepControl, EveryObjectionGivesUpUnderItsOwnName) {
+    StepLimits limits = allowing(0.1);
+    limits.dt_min = 1;
+    limits.error_tolerance = limits.energy_tolerance = 1e-3;
+    StepEvidence solver, error, energy, collision;
+    solver.solved = false;
+    error.local_error = energy.energy_jump = 1;
+    collision.collision = 0.3;
+    const std::vector<std::pair<StepEvidence, Reason>> cases{{solver, Reason::solver},
+                                                             {falling(1, -1), Reason::interpenetration},
+                                                             {collision, Reason::collision},
+                                                             {error, Reason::error},
+                                                             {energy, Reason::energy}};
+    for (const auto& [evidence, reason] : cases) {
+        const Decision decision = judge(evidence, limits, 1, 0);
+        EXPECT_EQ(decision.verdict, Verdict::give_up) << name(reason);
+        EXPECT_EQ(decision.reason, reason) << name(reason);
+        EXPECT_THAT(decision.cause, HasSubstr("dt_min is 1 s")) << name(reason);
+        EXPECT_GT(decision.cause.find(';'), 10u) << "the cause itself comes first: " << decision.cause;
+    }
+}
+
+TEST(StepControl, AFailedSolveIsHalvedAndItsGapsMeanNothing) {
+    StepEvidence evidence = falling(1, -100);
+    evidence.solved = false;
+    evidence.residual = 0.7;
+    const Decision decision = judge(evidence, allowing(0.1), 1, 0);
+    EXPECT_EQ(decision.reason, Reason::solver);
+    EXPECT_EQ(decision.lambda, 0.5);
+    EXPECT_EQ(decision.value, 0.7);
+    EXPECT_EQ(decision.slave, -1);
+}
+
+TEST(StepControl, CutsForTimeErrorByItsOrder) {
+    StepLimits limits;
+    limits.error_tolerance = 1e-6;
+    StepEvidence evidence;
+    evidence.local_error = 8e-6; // dt^3: half the step has an eighth of the error
+    const Decision decision = judge(evidence, limits, 1, 0);
+    EXPECT_EQ(decision.reason, Reason::error);
+    EXPECT_EQ(decision.value, 8e-6);
+    EXPECT_DOUBLE_EQ(decision.lambda, limits.reserve * 0.5);
+    evidence.local_error = 1e-6;
+    EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::accept);
+}
+
+TEST(StepControl, CutsForAnEnergyJump) {
+    StepLimits limits;
+    limits.energy_tolerance = 1e-6;
+    StepEvidence evidence;
+    evidence.energy_jump = 2e-6;
+    const Decision decision = judge(evidence, limits, 1, 0);
+    EXPECT_EQ(decision.reason, Reason::energy);
+    EXPECT_EQ(decision.lambda, 0.5);
+    EXPECT_EQ(decision.value, 2e-6);
+}
+
+TEST(StepControl, CutsShortOfACollision) {
+    StepEvidence evidence;
+    evidence.collision = 0.4;
+    const Decision decision = judge(evidence, StepLimits{}, 1, 0);
+    EXPECT_EQ(decision.reason, Reason::collision);
+    EXPECT_EQ(decision.value, 0.4);
+    EXPECT_DOUBLE_EQ(decision.lambda, 0.9 * 0.4);
+}
+
+TEST(StepControl, TheStrongestObjectionGoverns) {
+    StepLimits limits = allowing(0.1);
+    limits.error_tolerance = 1;
+    StepEvidence evidence = falling(1, -1); // lambda 0.5
+    evidence.local_error = 2;               // lambda 0.79
+    EXPECT_EQ(judge(evidence, limits, 1, 0).reason, Reason::interpenetration);
+    evidence.local_error = 1000; // lambda 0.1
+    const Decision decision = judge(evidence, limits, 1, 0);
+    EXPECT_EQ(decision.reason, Reason::error);
+    EXPECT_EQ(decision.slave, -1);
+}
+
+TEST(StepControl, WhatIsNotANumberIsNeverAccepted) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    StepLimits limits;
+    StepEvidence gap = falling(1, nan), error, energy, collision;
+    error.local_error = energy.energy_jump = collision.collision = nan;
+    limits.allowed_interpenetration = 0.1;
+    for (const StepEvidence& evidence : {gap, error, energy, collision}) {
+        const Decision decision = judge(evidence, limits, 1, 0);
+        EXPECT_EQ(decision.verdict, Verdict::retry);
+        EXPECT_GE(decision.dt, 0.1);
+        EXPECT_LT(decision.dt, 1);
+    }
+}
+
+TEST(StepControl, AForcedRepeatKeepsTheStepAndYieldsToRealObjections) {
+    StepLimits limits = allowing(0.1);
+    limits.dt_min = 0.7;
+    limits.most_repeats = 0;
+    StepEvidence evidence = falling(1, 0.5);
+    evidence.forced = true;
+    const Decision decision = judge(evidence, limits, 0.7, 0);
+    EXPECT_EQ(decision.verdict, Verdict::retry);
+    EXPECT_EQ(decision.reason, Reason::forced);
+    EXPECT_EQ(decision.dt, 0.7);
+    EXPECT_EQ(decision.lambda, 1);
+    evidence.gaps.front().g1 = -1;
+    EXPECT_EQ(judge(evidence, limits, 0.7, 0).reason, Reason::interpenetration);
+}
+
+TEST(StepGrowth, FollowsEasyStepsOnly) {
+    StepLimits limits;
+    limits.growth = 2;
+    limits.easy_iterations = 4;
+    StepEvidence evidence;
+    evidence.iterations = 4;
+    EXPECT_EQ(judge(evidence, limits, 0.1, 0).dt, 0.2);
+    EXPECT_EQ(judge(evidence, limits, 0.1, 1).dt, 0.1); // had to be cut
+    evidence.iterations = 5;
+    EXPECT_EQ(judge(evidence, limits, 0.1, 0).dt, 0.1);
+}
+
+TEST(StepGrowth, EndsAtTheLargestStep) {
+    StepLimits limits;
+    limits.growth = 2;
+    limits.dt_max = 0.15;
+    EXPECT_EQ(judge({}, limits, 0.1, 0).dt, 0.15);
+    EXPECT_EQ(judge({}, limits, 0.2, 0).dt, 0.15);
+    EXPECT_EQ(judge({}, limits, 0.2, 1).dt, 0.15);
+}
+
+TEST(StepGrowth, StaysBelowWhatTheTimeErrorAdmits) {
+    StepLimits limits;
+    limits.growth = 3;
+    limits.error_tolerance = 1;
+    StepEvidence evidence;
+    evidence.local_error = 0.125;
+    EXPECT_DOUBLE_EQ(judge(evidence, limits, 1, 0).dt, limits.reserve * 2);
+    evidence.local_error = 1e-9;
+    EXPECT_EQ(judge(evidence, limits, 1, 0).dt, 3);
+    evidence.local_error = 0.99; // no reserve left, but admissible as it is
+    EXPECT_EQ(judge(evidence, limits, 1, 0).dt, 1);
+}
+
+/// Steps of fit_to() up to `end`.
+std::vector<FittedStep> march(double dt, const std::vector<double>& targets, double end) {
+    std::vector<FittedStep> steps;
+    for (double t = 0; t < end && steps.size() < 10000;) {
+        steps.push_back(fit_to(t, dt, targets));
+        t = steps.back().time;
+    }
+    return steps;
+}
+
+TEST(FitTo, HitsEveryTargetExactly) {
+    const std::vector<double> targets{0.1, 1. / 3, 0.7, std::sqrt(0.5), 1.9};
+    for (const double dt : {0.001, 0.0123, 0.07, 0.25, 1., 10.}) {
+        std::vector<double> hit;
+        for (const FittedStep& step : march(dt, targets, targets.back()))
+            if (step.on_target) hit.push_back(step.time);
+        EXPECT_EQ(hit, targets) << dt;
+    }
+}
+
+TEST(FitTo, LeavesNoSliverAndTakesNoLongerStep) {
+    constexpr double stretch = 1e-9; // relative; round-off, not time
+    testing::Random random(4);
+    for (int i = 0; i < 1000; ++i) {
+        const double dt = random.uniform(0.01, 0.5);
+        for (const FittedStep& step : march(dt, {1}, 1)) {
+            EXPECT_LE(step.dt, dt * (1 + 2 * stretch));
+            EXPECT_GT(step.dt, 0.499 * dt);
+        }
+    }
+}
+
+TEST(FitTo, HalvesTheLastTwoSteps) {
+    const FittedStep first = fit_to(0.5, 0.4, {1});
+    EXPECT_FALSE(first.on_target);
+    EXPECT_DOUBLE_EQ(first.dt, 0.25);
+    const FittedStep second = fit_to(first.time, 0.4, {1});
+    EXPECT_TRUE(second.on_target);
+    EXPECT_EQ(second.time, 1);
+    EXPECT_DOUBLE_EQ(second.dt, 0.25);
+}
+
+TEST(FitTo, EqualStepsStayEqualInSpiteOfRoundOff) {
+    for (const int n : {3, 7, 10, 30, 1000}) EXPECT_EQ(march(1. / n, {1}, 1).size(), static_cast<std::size_t>(n));
+}
+
+TEST(FitTo, TargetsEqualButForRoundOffAreOne) {
+    const double sum = 0.1 + 0.2;
+    ASSERT_GT(sum, 0.3);
+    const FittedStep step = fit_to(0, 1, {0.3, sum, 2});
+    EXPECT_EQ(step.time, sum);
+    EXPECT_EQ(fit_to(0.3, 1, {0.3, sum, 1}).time, 1);
+}
+
+TEST(FitTo, RunsFreelyBeyondTheLastTarget) {
+    const FittedStep step = fit_to(3, 0.25, {1, 2});
+    EXPECT_EQ(step.time, 3.25);
+    EXPECT_EQ(step.dt, 0.25);
+    EXPECT_FALSE(step.on_target);
+}
+
+struct Fall {
+    int cuts = 0;
+    bool gave_up = false;
+    double deepest = 0, contact_time = 0; ///< largest trial interpenetration among accepted steps, m; s
+};
+
+/// A point falls until an accepted step ends below the surface, which is when it closes.
+template <class Height> Fall fall(const Height& height, const StepLimits& limits, double dt) {
+    Fall result;
+    int repeats = 0;
+    for (double t = 0; !result.gave_up;) {
+        const Decision decision = judge(falling(height(t), height(t + dt)), limits, dt, repeats);
+        if (decision.verdict == Verdict::accept) {
+            t += dt;
+            repeats = 0;
+            result.deepest = std::max(result.deepest, -height(t));
+            if (height(t) < 0) {
+                result.contact_time = t;
+                break;
+            }
+        } else {
+            ++result.cuts;
+            ++repeats;
+            result.gave_up = decision.verdict == Verdict::give_up;
+        }
+        dt = decision.dt;
+    }
+    return result;
+}
+
+TEST(Fall, CutsGrowLikeTheLogarithmOfTheAllowedInterpenetration) {
+    // A cut takes at most one decade of dt (the floor). One landing by (27) on the surface, one or more cuts there by (28)
+    // once growth has made the step too long again: at constant speed no decade of g_p can cost more than two cuts.
+    constexpr int most_per_decade = 2;
+    for (const double speed : {1., 0.37, 2.9}) {
+        const auto height = [&](double t) { return 1 - speed * t; };
+        StepLimits limits;
+        limits.dt_max = 0.4;
+        int previous = 0;
+        for (int decade = 2; decade <= 8; ++decade) {
+            limits.allowed_interpenetration = std::pow(10., -decade);
+            const Fall result = fall(height, limits, 0.4);
+            EXPECT_FALSE(result.gave_up);
+            EXPECT_LE(result.deepest, limits.allowed_interpenetration);
+            EXPECT_NEAR(result.contact_time, 1 / speed, limits.allowed_interpenetration / speed * 1.001);
+            EXPECT_LE(result.cuts, most_per_decade * decade) << speed;
+            if (decade > 2) {
+                EXPECT_LE(result.cuts - previous, most_per_decade) << speed;
+            }
+            previous = result.cuts;
+        }
+        EXPECT_GT(previous, 0) << speed;
+    }
+}
+
+TEST(Fall, SpeedingUpAndSlowingDownArriveWithinTheAllowedInterpenetration) {
+    const auto faster = [](double t) { return 1 - 0.1 * t - 4 * t * t; };
+    const auto slower = [](double t) { return 1 - 2.5 * t + t * t; }; // through the surface at t = 0.5
+    for (const double g_p : {1e-2, 1e-4, 1e-6}) {
+        StepLimits limits;
+        limits.allowed_interpenetration = g_p;
+        limits.dt_max = 1;
+        for (const Fall& result : {fall(faster, limits, 1.), fall(slower, limits, 1.)}) {
+            EXPECT_FALSE(result.gave_up) << g_p;
+            EXPECT_GT(result.deepest, 0) << g_p;
+            EXPECT_LE(result.deepest, g_p) << g_p;
+        }
+    }
+}
+
+TEST(Fall, ReserveSavesASlowingPointFromCreepingUpToItsBound) {
+    const double g_p = 1e-4;
+    const auto height = [&](double t) { return 1.1 * g_p * (std::exp(-9 * t) - 1); }; // comes to rest 1.1 g_p deep
+    StepLimits limits;
+    limits.allowed_interpenetration = g_p;
+    const Fall with = fall(height, limits, 1.);
+    EXPECT_FALSE(with.gave_up);
+    limits.reserve = 1; // every cut leaves three quarters of the excess
+    const Fall without = fall(height, limits, 1.);
+    EXPECT_TRUE(without.gave_up);
+    EXPECT_LT(with.cuts, without.cuts / 2);
+}
+
+} // namespace
+} // namespace osculate::time

@@ -52,6 +52,7 @@ std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation f
     switch (type) {
     case mesh::CellType::tet4: return std::make_unique<SmallStrainKernel<DisplacementStrain<Tet4>>>(material);
     case mesh::CellType::wedge6: return std::make_unique<SmallStrainKernel<DisplacementStrain<Wedge6>>>(material);
+    case mesh::CellType::tet10: return std::make_unique<SmallStrainKernel<DisplacementStrain<Tet10>>>(material);
     case mesh::CellType::hex8:
         switch (formulation) {
         case HexFormulation::full: return std::make_unique<SmallStrainKernel<DisplacementStrain<Hex8>>>(material);

@@ -10,12 +10,22 @@
 
 namespace osculate::fe {
 
-/// Nodes x points: carries point values to the nodes, exact for a field in the span of the shape functions where there
-/// are as many points as nodes, the mean where there is one point.
-template <ReferenceElement E> Eigen::Matrix<double, E::nodes, E::points> extrapolation(const ShapeTable<E>& table) {
-    Matrix N(E::points, E::nodes);
-    for (int q = 0; q < E::points; ++q) N.row(q) = table.N[static_cast<std::size_t>(q)].transpose();
-    return N.completeOrthogonalDecomposition().pseudoInverse();
+/// The element whose shape functions fit the points of a stress field: as many as there are points, where possible.
+template <ReferenceElement E> struct StressField { using Element = E; };
+template <> struct StressField<Tet10> { using Element = Tet4; };
+
+/// Nodes x points: carries point values to the nodes, exact for a field in the span of the stress field's shape functions
+/// where there are as many points as those, the mean where there is one point.
+template <ReferenceElement E> Eigen::Matrix<double, E::nodes, E::points> extrapolation() {
+    using Field = typename StressField<E>::Element;
+    const auto rule = E::quadrature();
+    Matrix at_points(E::points, Field::nodes);
+    for (int q = 0; q < E::points; ++q) {
+        at_points.row(q) = Field::shape(rule[static_cast<std::size_t>(q)].xi).transpose();
+    }
+    Matrix at_nodes(E::nodes, Field::nodes);
+    for (int a = 0; a < E::nodes; ++a) at_nodes.row(a) = Field::shape(E::node_positions().col(a)).transpose();
+    return at_nodes * at_points.completeOrthogonalDecomposition().pseudoInverse();
 }
 
 template <ReferenceElement E> class SolidKernel : public ElementKernel {
@@ -55,7 +65,7 @@ public:
 
 protected:
     ShapeTable<E> table_{E::quadrature()};
-    Eigen::Matrix<double, n, E::points> extrapolation_ = extrapolation<E>(table_);
+    Eigen::Matrix<double, n, E::points> extrapolation_ = extrapolation<E>();
 
 private:
     /// w det J at a point of the mass rule, m^3.

@@ -10,6 +10,12 @@ constexpr LocalFace wedge_faces[] = {
 constexpr LocalFace hex_faces[] = {{{0, 4, 7, 3}, 4}, {{1, 2, 6, 5}, 4}, {{0, 1, 5, 4}, 4},
                                    {{3, 7, 6, 2}, 4}, {{0, 3, 2, 1}, 4}, {{4, 5, 6, 7}, 4}};
 
+// Every six-node face as its three corner triangles and the middle one.
+constexpr LocalFace tet10_faces[] = {{{0, 4, 7, -1}, 3}, {{4, 1, 8, -1}, 3}, {{7, 8, 3, -1}, 3}, {{4, 8, 7, -1}, 3}, //
+                                     {{1, 5, 8, -1}, 3}, {{5, 2, 9, -1}, 3}, {{8, 9, 3, -1}, 3}, {{5, 9, 8, -1}, 3}, //
+                                     {{2, 6, 9, -1}, 3}, {{6, 0, 7, -1}, 3}, {{9, 7, 3, -1}, 3}, {{6, 7, 9, -1}, 3}, //
+                                     {{0, 6, 4, -1}, 3}, {{6, 2, 5, -1}, 3}, {{4, 5, 1, -1}, 3}, {{6, 5, 4, -1}, 3}};
+
 constexpr std::array<int, 3> tet_corners[] = {{1, 2, 3}};
 constexpr std::array<int, 3> wedge_corners[] = {{2, 1, 3}, {0, 2, 4}, {1, 0, 5}, {4, 5, 0}, {5, 3, 1}, {3, 4, 2}};
 constexpr std::array<int, 3> hex_corners[] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
@@ -22,6 +28,7 @@ std::span<const LocalFace> cell_faces(CellType type) {
     case CellType::tet4: return tet_faces;
     case CellType::wedge6: return wedge_faces;
     case CellType::hex8: return hex_faces;
+    case CellType::tet10: return tet10_faces;
     }
     return {};
 }
@@ -31,6 +38,7 @@ std::span<const std::array<int, 3>> corner_neighbours(CellType type) {
     case CellType::tet4: return tet_corners;
     case CellType::wedge6: return wedge_corners;
     case CellType::hex8: return hex_corners;
+    case CellType::tet10: break; // its edges are curved
     }
     return {};
 }

@@ -37,12 +37,39 @@ const char* cell_name(CellType type) {
     case CellType::tet4: return "tet4";
     case CellType::wedge6: return "wedge6";
     case CellType::hex8: return "hex8";
+    case CellType::tet10: return "tet10";
     }
     return "";
 }
 
+/// Jacobian of a tet10 at the point with barycentric coordinates L, from the derivatives
+/// dx/dL_k = (4 L_k - 1) x_k + 4 sum_l L_l m_kl, m_kl the node midway between corners k and l.
+double tet10_jacobian(std::span<const Index> nodes, const std::vector<Vec3>& positions,
+                      const std::array<double, 4>& L) {
+    constexpr int mid[4][4] = {{-1, 4, 6, 7}, {4, -1, 5, 8}, {6, 5, -1, 9}, {7, 8, 9, -1}};
+    std::array<Vec3, 4> dL;
+    for (int k = 0; k < 4; ++k) {
+        dL[k] = (4 * L[k] - 1) * positions[nodes[k]];
+        for (int l = 0; l < 4; ++l)
+            if (l != k) dL[k] += 4 * L[l] * positions[nodes[mid[k][l]]];
+    }
+    return triple(dL[1] - dL[0], dL[2] - dL[0], dL[3] - dL[0]);
+}
+
+/// First node of a tet10 with a Jacobian that is not positive (NaN included), or -1.
+int bad_tet10_node(std::span<const Index> nodes, const std::vector<Vec3>& positions) {
+    constexpr int ends[10][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    for (int a = 0; a < 10; ++a) {
+        std::array<double, 4> L{};
+        for (const int end : ends[a]) L[end] += 0.5;
+        if (!(tet10_jacobian(nodes, positions, L) > 0)) return a;
+    }
+    return -1;
+}
+
 /// First corner with a Jacobian that is not positive (NaN included), or -1.
 int bad_corner(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions) {
+    if (type == CellType::tet10) return bad_tet10_node(nodes, positions);
     const auto corners = corner_neighbours(type);
     for (int c = 0; c < static_cast<int>(corners.size()); ++c) {
         const auto edge = [&](int i) -> Vec3 { return positions[nodes[corners[c][i]]] - positions[nodes[c]]; };

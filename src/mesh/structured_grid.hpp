@@ -9,10 +9,13 @@
 namespace osculate::mesh {
 
 struct StructuredGrid {
-    std::array<int, 3> divisions{1, 1, 1};
+    std::array<int, 3> divisions{1, 1, 1};       ///< between nodes: one per element, two per tet10
     std::array<const char*, 6> sides{};          ///< surface names of i_min, i_max, j_min, j_max, k_min, k_max
     std::function<Vec3(int, int, int)> position; ///< of node (i, j, k), metres; (i, j, k) is right-handed
 };
+
+/// Divisions of the grid that gives so many elements. Throws std::invalid_argument for numbers past any mesh.
+[[nodiscard]] std::array<int, 3> grid_divisions(std::array<int, 3> elements, CellType element);
 
 /// Mesh of the grid with every side as a named surface; nodes numbered with i fastest, k slowest.
 /// Columns along k are cut into wedges as the pattern says. Throws std::invalid_argument for an empty grid, for one with

@@ -54,17 +54,19 @@ private:
 /// Our type of a VTK cell and the place of every node of ours among VTK's.
 struct Translation {
     CellType type;
-    std::array<int, 8> nodes;
+    std::array<int, 10> nodes;
 };
 
 constexpr Translation tet{CellType::tet4, {0, 1, 2, 3}};
 constexpr Translation wedge{CellType::wedge6, {0, 1, 2, 3, 4, 5}};
 constexpr Translation hex{CellType::hex8, {0, 1, 2, 3, 4, 5, 6, 7}};
+constexpr Translation quadratic_tet{CellType::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}};
 constexpr Translation voxel{CellType::hex8, {0, 1, 3, 2, 4, 5, 7, 6}};
 
 const Translation* translation(int vtk_type) {
     switch (vtk_type) {
     case VTK_TETRA: return &tet;
+    case VTK_QUADRATIC_TETRA: return &quadratic_tet;
     case VTK_WEDGE: return &wedge;
     case VTK_HEXAHEDRON: return &hex;
     case VTK_VOXEL: return &voxel;
@@ -167,14 +169,15 @@ Mesh read_vtu(const std::filesystem::path& path) {
     mesh.nodes.resize(grid->GetNumberOfPoints());
     for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p) grid->GetPoint(p, mesh.nodes[p].data());
 
-    std::array<ElementBlock, 3> blocks{{{CellType::hex8, {}}, {CellType::wedge6, {}}, {CellType::tet4, {}}}};
+    std::array<ElementBlock, 4> blocks{
+        {{CellType::hex8, {}}, {CellType::wedge6, {}}, {CellType::tet4, {}}, {CellType::tet10, {}}}};
     for (vtkIdType id = 0; id < grid->GetNumberOfCells(); ++id) {
         const int vtk_type = grid->GetCellType(id);
         const Translation* to = translation(vtk_type);
         if (to == nullptr && is_volume(vtk_type))
             fail(path, "cell " + std::to_string(id) + " is a " + vtkCellTypes::GetClassNameFromTypeId(vtk_type) +
                            " (type " + std::to_string(vtk_type) +
-                           "); only tetrahedra, wedges, hexahedra and voxels are read");
+                           "); only tetrahedra of 4 or 10 nodes, wedges, hexahedra and voxels are read");
         if (to == nullptr) continue;
         vtkIdType count = 0;
         const vtkIdType* points = nullptr;

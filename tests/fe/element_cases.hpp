@@ -30,6 +30,7 @@ inline const std::vector<ElementCase> all_cases{
     {"hex8_incompatible_modes", mesh::CellType::hex8, HexFormulation::incompatible_modes},
     {"tet4", mesh::CellType::tet4, HexFormulation::full},
     {"wedge6", mesh::CellType::wedge6, HexFormulation::full},
+    {"tet10", mesh::CellType::tet10, HexFormulation::full},
 };
 
 inline std::ostream& operator<<(std::ostream& stream, const ElementCase& c) {
@@ -45,6 +46,7 @@ inline Eigen::Matrix3Xd reference_positions(mesh::CellType type) {
     switch (type) {
     case mesh::CellType::tet4: return Tet4::node_positions();
     case mesh::CellType::wedge6: return Wedge6::node_positions();
+    case mesh::CellType::tet10: return Tet10::node_positions();
     case mesh::CellType::hex8: break;
     }
     return Hex8::node_positions();
@@ -56,10 +58,17 @@ inline double scatter(int k) {
     return 2 * (s - std::floor(s)) - 1;
 }
 
-/// The reference element with every node moved by up to `amount` in every direction, then tilted and stretched.
+/// Puts the midside nodes of a tet10 midway between its corners.
+inline void straighten(Eigen::Matrix3Xd& X) {
+    for (int m = 0; m < 6; ++m) X.col(4 + m) = (X.col(Tet10::edges[m][0]) + X.col(Tet10::edges[m][1])) / 2;
+}
+
+/// The reference element with every node moved by up to `amount` in every direction, then tilted and stretched; the
+/// edges of a tet10 stay straight.
 inline Eigen::Matrix3Xd distorted_element(mesh::CellType type, double amount = 0.15) {
     Eigen::Matrix3Xd X = reference_positions(type);
     for (int k = 0; k < X.size(); ++k) X(k % 3, k / 3) += amount * scatter(k);
+    if (type == mesh::CellType::tet10) straighten(X);
     Mat3 A;
     A << 1.1, 0.2, 0.0, -0.1, 0.9, 0.1, 0.05, 0.0, 1.3;
     return A * X;
@@ -70,12 +79,15 @@ inline std::vector<std::vector<Index>> cell_faces(mesh::CellType type) {
     switch (type) {
     case mesh::CellType::tet4: return {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}};
     case mesh::CellType::wedge6: return {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
+    case mesh::CellType::tet10: // four facets per face
+        return {{0, 4, 7}, {4, 1, 8}, {7, 8, 3}, {4, 8, 7}, {1, 5, 8}, {5, 2, 9}, {8, 9, 3}, {5, 9, 8},
+                {2, 6, 9}, {6, 0, 7}, {9, 7, 3}, {6, 7, 9}, {0, 6, 4}, {6, 2, 5}, {4, 5, 1}, {6, 5, 4}};
     case mesh::CellType::hex8: break;
     }
     return {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
 }
 
-/// A box of cells and its dense stiffness.
+/// A box of cells and its dense stiffness. A tet10 spans two boxes in every direction; its divisions are even.
 struct Grid {
     std::array<int, 3> divisions;
     Eigen::Matrix3Xd X;
@@ -90,17 +102,27 @@ struct Grid {
             for (int j = 0; j <= n[1]; ++j)
                 for (int i = 0; i <= n[0]; ++i)
                     X.col(node(i, j, k)) = place(Vec3(double(i) / n[0], double(j) / n[1], double(k) / n[2]));
-        for (int k = 0; k < n[2]; ++k)
-            for (int j = 0; j < n[1]; ++j)
-                for (int i = 0; i < n[0]; ++i) add_cells(element.type, corners(i, j, k));
+        const int step = element.type == mesh::CellType::tet10 ? 2 : 1;
+        for (int k = 0; k < n[2]; k += step)
+            for (int j = 0; j < n[1]; j += step)
+                for (int i = 0; i < n[0]; i += step) add_cells(element.type, corners(i, j, k, step));
+    }
+
+    /// Puts every midside node of a tet10 midway between its corners.
+    void straighten_edges() {
+        for (const auto& cell : cells) {
+            Eigen::Matrix3Xd straight = gather(cell, X);
+            straighten(straight);
+            for (std::size_t a = 4; a < 10; ++a) X.col(cell[a]) = straight.col(int(a));
+        }
     }
 
     [[nodiscard]] int node(int i, int j, int k) const { return i + (divisions[0] + 1) * (j + (divisions[1] + 1) * k); }
 
-    /// The eight nodes of box (i, j, k), in hexahedron order.
-    [[nodiscard]] std::vector<int> corners(int i, int j, int k) const {
-        return {node(i, j, k),     node(i + 1, j, k),     node(i + 1, j + 1, k),     node(i, j + 1, k),
-                node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)};
+    /// The eight corners of `s` boxes each way from (i, j, k), in hexahedron order.
+    [[nodiscard]] std::vector<int> corners(int i, int j, int k, int s = 1) const {
+        return {node(i, j, k),     node(i + s, j, k),     node(i + s, j + s, k),     node(i, j + s, k),
+                node(i, j, k + s), node(i + s, j, k + s), node(i + s, j + s, k + s), node(i, j + s, k + s)};
     }
 
     [[nodiscard]] Eigen::Matrix3Xd gather(const std::vector<int>& cell, const Eigen::Matrix3Xd& field) const {
@@ -142,11 +164,14 @@ private:
     void add_cells(mesh::CellType type, const std::vector<int>& c) {
         std::vector<std::vector<std::size_t>> pieces{{0, 1, 2, 3, 4, 5, 6, 7}};
         if (type == mesh::CellType::wedge6) pieces = {{0, 2, 1, 4, 6, 5}, {0, 3, 2, 4, 7, 6}};
-        if (type == mesh::CellType::tet4)
+        if (type == mesh::CellType::tet4 || type == mesh::CellType::tet10)
             pieces = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
         for (const auto& piece : pieces) {
             std::vector<int> cell;
             for (const std::size_t i : piece) cell.push_back(c[i]);
+            if (type == mesh::CellType::tet10) { // node numbers are linear in (i, j, k)
+                for (const auto& edge : Tet10::edges) cell.push_back((cell[edge[0]] + cell[edge[1]]) / 2);
+            }
             cells.push_back(cell);
         }
     }

@@ -15,8 +15,9 @@ template <class E> struct Facts;
 template <> struct Facts<Hex8> { static constexpr double volume = 8; };
 template <> struct Facts<Tet4> { static constexpr double volume = 1.0 / 6; };
 template <> struct Facts<Wedge6> { static constexpr double volume = 1; };
+template <> struct Facts<Tet10> { static constexpr double volume = 1.0 / 6; };
 
-using Elements = ::testing::Types<Hex8, Tet4, Wedge6>;
+using Elements = ::testing::Types<Hex8, Tet4, Wedge6, Tet10>;
 TYPED_TEST_SUITE(ReferenceElementTest, Elements);
 
 TYPED_TEST(ReferenceElementTest, ShapeFunctionsAreOneAtTheirNodeAndZeroAtTheOthers) {
@@ -51,8 +52,37 @@ TYPED_TEST(ReferenceElementTest, QuadratureIntegratesOneAndEveryShapeFunction) {
         integral += weight * TypeParam::shape(xi);
     }
     EXPECT_NEAR(volume, Facts<TypeParam>::volume, round_off);
-    const auto share = TypeParam::Shape::Constant(Facts<TypeParam>::volume / TypeParam::nodes);
+    typename TypeParam::Shape share = TypeParam::Shape::Constant(Facts<TypeParam>::volume / TypeParam::nodes);
+    if constexpr (TypeParam::nodes == 10) share << Vector::Constant(4, -1.0 / 120), Vector::Constant(6, 1.0 / 30);
     EXPECT_LT((integral - share).norm(), round_off);
+}
+
+TYPED_TEST(ReferenceElementTest, MassQuadratureIsExactForProductsOfTwoShapeFunctions) {
+    // against a tensor product of Gauss points, exact far beyond the degree needed
+    constexpr std::array<double, 5> x{-0.906179845938664, -0.538469310105683, 0, 0.538469310105683, 0.906179845938664};
+    constexpr std::array<double, 5> w{0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
+                                      0.236926885056189};
+    constexpr int n = TypeParam::nodes;
+    Matrix exact = Matrix::Zero(n, n), found = Matrix::Zero(n, n);
+    for (std::size_t i = 0; i < 5; ++i)
+        for (std::size_t j = 0; j < 5; ++j)
+            for (std::size_t k = 0; k < 5; ++k) {
+                Vec3 xi(x[i], x[j], x[k]);
+                double weight = w[i] * w[j] * w[k];
+                if (n != 8) { // collapse the cube onto the triangle, and on to the tetrahedron
+                    const double u = (1 + x[i]) / 2, v = (1 + x[j]) / 2, t = (1 + x[k]) / 2;
+                    xi = n == 6 ? Vec3(u, v * (1 - u), x[k]) : Vec3(u, v * (1 - u), t * (1 - u) * (1 - v));
+                    weight *= n == 6 ? (1 - u) / 4 : (1 - u) * (1 - u) * (1 - v) / 8;
+                }
+                const Vector N = TypeParam::shape(xi);
+                exact += weight * N * N.transpose();
+            }
+    for (const auto& [xi, weight] : TypeParam::mass_quadrature()) {
+        EXPECT_GT(weight, 0);
+        const Vector N = TypeParam::shape(xi);
+        found += weight * N * N.transpose();
+    }
+    EXPECT_LT((found - exact).norm(), 10 * round_off); // the Gauss points above have fifteen digits
 }
 
 TEST(Wedge6, QuadratureIsExactToSecondDegreeInTheTriangleAndThirdAlongTheLine) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Every generated body in every element type, with its exact volume, and two integrals over a surface.
+/// Every generated body in every element type, with the exact volume within its facets, and two integrals over a surface.
 
 #include "osculate/mesh/generators.hpp"
 
@@ -20,7 +20,8 @@ struct Shape {
 };
 
 inline std::vector<std::pair<std::string, CellType>> element_types() {
-    return {{"hex8", CellType::hex8}, {"wedge6", CellType::wedge6}, {"tet4", CellType::tet4}};
+    return {
+        {"hex8", CellType::hex8}, {"wedge6", CellType::wedge6}, {"tet4", CellType::tet4}, {"tet10", CellType::tet10}};
 }
 
 /// Half-tube's cross-section is a ring of trapezia.
@@ -75,26 +76,36 @@ inline SurfaceIntegrals integrate(const std::vector<Facet>& facets, const std::v
     return sum;
 }
 
+/// The facets of a tet10 are half as long as the element.
+inline int facets_per_edge(CellType type) {
+    return type == CellType::tet10 ? 2 : 1;
+}
+
 inline std::vector<Shape> all_shapes() {
     std::vector<Shape> shapes;
     const auto add = [&](const std::string& name, double volume, const auto& make, CellType type,
                          BlockPattern pattern = BlockPattern::quad) {
-        const Mesh hexes = make(CellType::hex8, BlockPattern::quad);
+        const Mesh hexes = make(CellType::hex8, BlockPattern::quad, facets_per_edge(type));
         const double area = integrate(exterior_facets(hexes), hexes.nodes).area;
-        shapes.push_back({name, make(type, pattern), volume, area});
+        shapes.push_back({name, make(type, pattern, 1), volume, area});
     };
-    const auto block = [](CellType type, BlockPattern pattern) {
-        return make_block({-1, 2, 0.5}, {2, 3, 1}, {5, 4, 2}, type, pattern);
+    const auto block = [](CellType type, BlockPattern pattern, int m) {
+        return make_block({-1, 2, 0.5}, {2, 3, 1}, {5 * m, 4 * m, 2 * m}, type, pattern);
     };
-    const auto tube = [](CellType type, BlockPattern) { return make_half_tube(3, 1, 12, {13, 5, 3}, type); };
-    const auto contactor = [](CellType type, BlockPattern) {
-        return make_contactor(3, 4, 4, 1, 0.5, {12, 5, 3}, type);
+    const auto tube = [](CellType type, BlockPattern, int m) {
+        return make_half_tube(3, 1, 12, {13 * m, 5 * m, 3 * m}, type);
     };
-    const auto cell = [](CellType type, BlockPattern) { return make_block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}, type); };
+    const auto contactor = [](CellType type, BlockPattern, int m) {
+        return make_contactor(3, 4, 4, 1, 0.5, {12 * m, 5 * m, 3 * m}, type);
+    };
+    const auto cell = [](CellType type, BlockPattern, int m) {
+        return make_block({0, 0, 0}, {1, 1, 1}, {m, m, m}, type);
+    };
     for (const auto& [name, type] : element_types()) {
+        const int m = facets_per_edge(type);
         add("block " + name, 6, block, type);
-        add("half_tube " + name, half_tube_volume(3, 1, 12, 13), tube, type);
-        add("contactor " + name, contactor_volume(3, 4, 4, 1, 12), contactor, type);
+        add("half_tube " + name, half_tube_volume(3, 1, 12, 13 * m), tube, type);
+        add("contactor " + name, contactor_volume(3, 4, 4, 1, 12 * m), contactor, type);
         add("single cell " + name, 1, cell, type);
     }
     add("block triangle", 6, block, CellType::hex8, BlockPattern::triangle);

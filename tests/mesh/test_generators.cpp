@@ -161,6 +161,39 @@ TEST(Block, TetrahedraHaveAlternatingDiagonalsOnEverySide) {
     }
 }
 
+TEST(Tet10, IsTheTetrahedronOfTheSameBlockWithANodeMidwayOnEveryEdge) {
+    const Mesh linear = make_block({0, 0, 0}, {1, 2, 3}, {3, 2, 2}, CellType::tet4);
+    const Mesh mesh = make_block({0, 0, 0}, {1, 2, 3}, {3, 2, 2}, CellType::tet10);
+    EXPECT_EQ(mesh.node_count(), 7 * 5 * 5);
+    ASSERT_EQ(mesh.element_count(), linear.element_count());
+    constexpr int edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    for (Index e = 0; e < mesh.element_count(); ++e) {
+        const Index* nodes = mesh.blocks[0].connectivity.data() + 10 * e;
+        for (int c = 0; c < 4; ++c)
+            EXPECT_LT((mesh.nodes[nodes[c]] - linear.nodes[linear.blocks[0].connectivity[4 * e + c]]).norm(), 1e-15);
+        for (int m = 0; m < 6; ++m) {
+            const Vec3 middle = (mesh.nodes[nodes[edges[m][0]]] + mesh.nodes[nodes[edges[m][1]]]) / 2;
+            EXPECT_LT((mesh.nodes[nodes[4 + m]] - middle).norm(), 1e-15);
+        }
+    }
+}
+
+TEST(Tet10, HasFourFacetsPerFaceWithEveryNodeOfTheSurfaceAsACorner) {
+    const Mesh mesh = make_block({0, 0, 0}, {1, 1, 1}, {2, 1, 1}, CellType::tet10);
+    EXPECT_EQ(mesh.surfaces.at("z_max").size(), 2u * 2 * 4);
+    std::set<Index> nodes;
+    for (const Facet& facet : mesh.surfaces.at("z_max")) nodes.insert(facet.begin(), facet.end());
+    EXPECT_EQ(nodes.size(), 5u * 3);
+}
+
+TEST(Tet10, PutsMidsideNodesOnTheTrueCylinder) {
+    const Mesh mesh = make_half_tube(3, 1, 12, {4, 2, 2}, CellType::tet10);
+    for (const auto& [name, radius] : {std::pair("inner", 3.0), std::pair("outer", 4.0)})
+        for (const Facet& facet : mesh.surfaces.at(name))
+            for (const Index n : facet)
+                EXPECT_NEAR(std::hypot(mesh.nodes[n].x(), mesh.nodes[n].z()), radius, round_off);
+}
+
 TEST(Block, HybridPatternMixesAboutHalfOfEachReproducibly) {
     const auto make = [] {
         return make_block({0, 0, 0}, {1, 1, 1}, {25, 25, 2}, CellType::hex8, BlockPattern::hybrid);
@@ -224,6 +257,10 @@ TEST(Generators, RefuseImpossibleArguments) {
     };
     EXPECT_THROW(block({1, 1, 1}, {2, 2, 2}, CellType::tet4, BlockPattern::hybrid), std::invalid_argument);
     EXPECT_THROW(block({1, 1, 1}, {2, 2, 2}, CellType::wedge6, BlockPattern::hybrid), std::invalid_argument);
+    EXPECT_THROW(block({1, 1, 1}, {2, 2, 2}, CellType::tet10, BlockPattern::hybrid), std::invalid_argument);
+    EXPECT_THROW(block({1, 1, 1}, {0, 2, 2}, CellType::tet10, BlockPattern::quad), std::invalid_argument);
+    EXPECT_THROW(block({1, 1, 1}, {std::numeric_limits<int>::max(), 2, 2}, CellType::tet10, BlockPattern::quad),
+                 std::invalid_argument);
     EXPECT_THROW(block({1, 1, 1}, {1, 1, 2}, CellType::hex8, BlockPattern::hybrid), std::invalid_argument);
     EXPECT_THROW(block({1, 1, 1}, {2, 0, 2}, CellType::hex8, BlockPattern::quad), std::invalid_argument);
     EXPECT_THROW(block({1, 0, 1}, {2, 2, 2}, CellType::hex8, BlockPattern::quad), std::invalid_argument);

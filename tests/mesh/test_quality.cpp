@@ -20,12 +20,18 @@ protected:
 
 TEST_P(EveryElement, IsCaughtWhenTurnedInsideOut) {
     auto& connectivity = mesh.blocks[0].connectivity;
-    std::reverse(connectivity.begin() + 3 * stride, connectivity.begin() + 4 * stride);
-    if (GetParam().second != CellType::tet4) { // reversing keeps the sign for 4, 6 and 8 nodes unless halves swap too
+    const auto exchange = [&](int a, int b) { std::swap(connectivity[3 * stride + a], connectivity[3 * stride + b]); };
+    if (GetParam().second == CellType::tet10) { // corners 0 and 1, and the midside nodes that change places with them
+        exchange(0, 1);
+        exchange(5, 6);
+        exchange(7, 8);
+    } else if (GetParam().second !=
+               CellType::tet4) { // reversing keeps the sign for 4, 6 and 8 nodes unless halves swap too
+        std::reverse(connectivity.begin() + 3 * stride, connectivity.begin() + 4 * stride);
         std::rotate(connectivity.begin() + 3 * stride, connectivity.begin() + 3 * stride + stride / 2,
                     connectivity.begin() + 4 * stride);
     } else {
-        std::swap(connectivity[3 * stride], connectivity[3 * stride + 1]);
+        exchange(0, 1);
     }
     EXPECT_THAT(faults(mesh),
                 ElementsAre(AllOf(HasSubstr(GetParam().first + " element 3 of block 0"), HasSubstr("Jacobian"))));
@@ -45,6 +51,24 @@ TEST(Quality, CatchesACornerFoldedInward) {
     mesh.nodes[7] = {0.2, 0.2, 0.2}; // still a positive volume
     EXPECT_GT(cell_volume(CellType::hex8, mesh.blocks[0].connectivity, mesh.nodes), 0);
     EXPECT_THAT(faults(mesh), ElementsAre(HasSubstr("hex8 element 0 of block 0")));
+}
+
+TEST(Quality, CatchesAMidsideNodeTooCloseToACorner) {
+    Mesh mesh = make_block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}, CellType::tet10);
+    mesh.blocks[0].connectivity.resize(10);
+    const auto& nodes = mesh.blocks[0].connectivity;
+    const Vec3 a = mesh.nodes[nodes[0]], b = mesh.nodes[nodes[1]];
+    // on the edge at a fraction t the map is (4 t - 1) at corner 0: singular at a quarter
+    const auto jacobian_faults = [&](double t) {
+        mesh.nodes[nodes[4]] = (1 - t) * a + t * b;
+        const auto all = faults(mesh, 1000);
+        return std::count_if(all.begin(), all.end(),
+                             [](const std::string& fault) { return fault.find("tet10") != std::string::npos; });
+    };
+    EXPECT_EQ(jacobian_faults(0.26), 0);
+    EXPECT_EQ(jacobian_faults(0.24), 1);
+    EXPECT_EQ(jacobian_faults(0.74), 0);
+    EXPECT_EQ(jacobian_faults(0.76), 1);
 }
 
 TEST(Quality, NamesNodesThatAreNotFiniteOrNotUsedOrMissing) {

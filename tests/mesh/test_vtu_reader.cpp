@@ -29,6 +29,7 @@ int vtk_type(CellType type) {
     case CellType::tet4: return VTK_TETRA;
     case CellType::wedge6: return VTK_WEDGE;
     case CellType::hex8: return VTK_HEXAHEDRON;
+    case CellType::tet10: return VTK_QUADRATIC_TETRA;
     }
     return VTK_EMPTY_CELL;
 }

@@ -107,6 +107,67 @@ struct Tet4 {
     }
 };
 
+/// Quadratic tetrahedron on the same reference tetrahedron, midside nodes on the edges 01, 12, 20, 03, 13, 23. Four
+/// points of degree two for its stiffness, exact with straight edges; fourteen of degree five, all weights positive, for
+/// its mass.                                        [Walkington 2000, Quadrature on simplices of arbitrary dimension]
+struct Tet10 {
+    static constexpr int nodes = 10;
+    static constexpr int degree = 2;
+    static constexpr int points = 4;
+    static constexpr int mass_points = 14;
+    using Shape = Eigen::Matrix<double, nodes, 1>;
+    using Gradient = Eigen::Matrix<double, nodes, 3>;
+    using Positions = Eigen::Matrix<double, 3, nodes>;
+    static constexpr int edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+
+    static Positions node_positions() {
+        Positions c;
+        c.leftCols<4>() = Tet4::node_positions();
+        for (int m = 0; m < 6; ++m) c.col(4 + m) = (c.col(edges[m][0]) + c.col(edges[m][1])) / 2;
+        return c;
+    }
+
+    /// N_a = L_a (2 L_a - 1) at a corner, 4 L_a L_b midway between a and b
+    static Shape shape(const Vec3& xi) {
+        const Tet4::Shape L = Tet4::shape(xi);
+        Shape N;
+        for (int a = 0; a < 4; ++a) N[a] = L[a] * (2 * L[a] - 1);
+        for (int m = 0; m < 6; ++m) N[4 + m] = 4 * L[edges[m][0]] * L[edges[m][1]];
+        return N;
+    }
+
+    static Gradient gradient(const Vec3& xi) {
+        const Tet4::Shape L = Tet4::shape(xi);
+        const Tet4::Gradient dL = Tet4::gradient(xi);
+        Gradient dN;
+        for (int a = 0; a < 4; ++a) dN.row(a) = (4 * L[a] - 1) * dL.row(a);
+        for (int m = 0; m < 6; ++m) {
+            const int a = edges[m][0], b = edges[m][1];
+            dN.row(4 + m) = 4 * (L[a] * dL.row(b) + L[b] * dL.row(a));
+        }
+        return dN;
+    }
+
+    static std::array<QuadraturePoint, points> quadrature() { return Tet4::mass_quadrature(); }
+
+    static std::array<QuadraturePoint, mass_points> mass_quadrature() {
+        std::array<QuadraturePoint, mass_points> rule;
+        std::size_t q = 0;
+        const auto vertex_orbit = [&](double a, double weight) {
+            rule[q++] = {Vec3::Constant(a), weight};
+            for (int i = 0; i < 3; ++i) rule[q++] = {Vec3::Constant(a) + (1 - 4 * a) * Vec3::Unit(i), weight};
+        };
+        vertex_orbit(0.31088591926330060980, 0.11268792571801585080 / 6);
+        vertex_orbit(0.092735250310891226402, 0.073493043116361949544 / 6);
+        const double a = 0.045503704125649649492, b = 0.5 - a, w = 0.042546020777081466438 / 6;
+        for (int i = 0; i < 3; ++i) {
+            rule[q++] = {Vec3::Constant(a) + (b - a) * Vec3::Unit(i), w};
+            rule[q++] = {Vec3::Constant(b) + (a - b) * Vec3::Unit(i), w};
+        }
+        return rule;
+    }
+};
+
 /// Linear wedge: triangle (r, s) times line t in [-1, 1]; 3 x 2 points, exact for its volume and its body forces.
 /// In VTK's order the triangle (0, 1, 2) has its normal out of the element, so node 1 lies on the s axis and 2 on r.
 struct Wedge6 {
@@ -151,6 +212,6 @@ struct Wedge6 {
     static std::array<QuadraturePoint, mass_points> mass_quadrature() { return quadrature(); }
 };
 
-static_assert(ReferenceElement<Hex8> && ReferenceElement<Tet4> && ReferenceElement<Wedge6>);
+static_assert(ReferenceElement<Hex8> && ReferenceElement<Tet4> && ReferenceElement<Wedge6> && ReferenceElement<Tet10>);
 
 } // namespace osculate::fe

@@ -1,5 +1,6 @@
 #pragma once
-/// Meshes of simple bodies from a few numbers. Every generator throws std::invalid_argument for impossible arguments.
+/// Meshes of simple bodies from a few numbers. The midside nodes of tet10 lie on the true surface, curved where it is.
+/// Every generator throws std::invalid_argument for impossible arguments.
 
 #include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/mesh.hpp"
@@ -10,7 +11,8 @@ namespace osculate::mesh {
 ///
 /// The pattern divides the columns along z: triangle cuts every column into two wedges, with alternating diagonals;
 /// hybrid cuts half of the columns, in an irregular arrangement that is always the same. Element wedge6 is the pattern
-/// triangle; tet4 cuts every hexahedron into six; neither has a hybrid pattern.
+/// triangle; tet4 and tet10 cut every hexahedron into six; none of them has a
+/// hybrid pattern.
 /// @param origin     lower corner, metres
 /// @param size       edge lengths, metres
 /// @param divisions  elements along x, y, z

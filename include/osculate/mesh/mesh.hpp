@@ -10,15 +10,17 @@
 
 namespace osculate::mesh {
 
-/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON). Mind the wedge: its triangle
-/// (0, 1, 2) has its right-handed normal out of the element, away from (3, 4, 5).
-enum class CellType { tet4, wedge6, hex8 };
+/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA). Mind the
+/// wedge: its triangle (0, 1, 2) has its right-handed normal out of the element, away from (3, 4, 5). Nodes 4 to 9 of a
+/// tet10 stand midway on the edges 01, 12, 20, 03, 13, 23.
+enum class CellType { tet4, wedge6, hex8, tet10 };
 
 [[nodiscard]] constexpr int nodes_per_cell(CellType type) {
     switch (type) {
     case CellType::tet4: return 4;
     case CellType::wedge6: return 6;
     case CellType::hex8: return 8;
+    case CellType::tet10: return 10;
     }
     return 0;
 }
@@ -31,7 +33,8 @@ struct ElementBlock {
     [[nodiscard]] Index size() const { return static_cast<Index>(connectivity.size()) / nodes_per_cell(type); }
 };
 
-/// A triangle or quadrilateral of a surface, corners counter-clockwise seen from outside the body.
+/// A triangle or quadrilateral of a surface, corners counter-clockwise seen from outside the body. The six-node face of a
+/// tet10 is four triangles, so that its midside nodes are corners of facets like any other node.
 struct Facet {
     std::array<Index, 4> nodes{-1, -1, -1, -1}; ///< nodes[3] is -1 for a triangle
     int count = 0;                              ///< 3 or 4

@@ -7,11 +7,11 @@
 
 namespace osculate::mesh {
 
-/// Volume of one cell with (bi)linear faces, cubic metres; negative when the cell is turned inside out.
+/// Volume of one cell within its facets, (bi)linear as they are, cubic metres; negative when the cell is turned inside out.
 [[nodiscard]] double cell_volume(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions);
 
 /// What is wrong with the mesh, one sentence each: node numbers out of range, positions that are not finite, elements
-/// with a non-positive Jacobian at a corner, nodes that no element uses. Empty for a sound mesh.
+/// with a non-positive Jacobian at a node, nodes that no element uses. Empty for a sound mesh.
 /// @param limit  faults listed at most; a last sentence counts the others
 [[nodiscard]] std::vector<std::string> faults(const Mesh& mesh, std::size_t limit = 20);
 

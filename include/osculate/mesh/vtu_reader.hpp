@@ -6,7 +6,7 @@
 
 namespace osculate::mesh {
 
-/// Volume mesh from a VTK unstructured grid file (.vtu): tetrahedra, wedges, hexahedra and voxels, a block per type.
+/// Volume mesh from a VTK unstructured grid file (.vtu): tetrahedra of 4 or 10 nodes, wedges, hexahedra and voxels, a block per type.
 ///
 /// Vertex, line and surface cells are ignored, and so are points that no volume cell uses; the others keep their order.
 /// Every integer point array with one component and no value but 0 and 1 becomes the node set of the same name, and the

@@ -1,6 +1,7 @@
 #include "osculate/app/command_line.hpp"
 
 #include "app/surface_command.hpp"
+#include "osculate/app/diary.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
@@ -22,7 +23,7 @@ namespace {
 enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
 
 struct Arguments {
-    std::string scene, output, key_path;
+    std::string scene, output, key_path, run_folder;
     std::vector<std::string> changes;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
@@ -114,6 +115,8 @@ ExitCode run_command(int argc, char** argv) {
     study->add_option("STUDY", arguments.scene, "Study file")->required();
     study->add_option("-o,--output", arguments.output, "Folder of the tables and plots [out/<study name>]")
         ->type_name("DIR");
+    CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
+    steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -130,6 +133,8 @@ ExitCode run_command(int argc, char** argv) {
         run_study(arguments);
     } else if (*keys) {
         return show_keys(arguments.key_path);
+    } else if (*steps) {
+        print(diary(arguments.run_folder));
     } else {
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);

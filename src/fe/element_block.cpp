@@ -26,8 +26,45 @@ public:
         Ke = (K + K.transpose()) / 2;
     }
 
-    void nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                      Eigen::Ref<Matrix> stress) const override {
+    [[nodiscard]] bool linear() const override { return true; }
+
+    Deformation energy(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
+                       double& W) const override {
+        require(X.cols() == n && u.cols() == n, "energy: sizes do not match the element");
+        W = 0;
+        StrainPoints<E> points;
+        formulation_(this->table_, Positions(X), points);
+        const Positions displacement = u;
+        for (std::size_t q = 0; q < points.B.size(); ++q) {
+            const Vec6 strain = points.B[q] * displacement.reshaped();
+            W += strain.dot(D_ * strain) / 2 * points.volumes[q];
+        }
+        return {};
+    }
+
+    Deformation internal_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
+                               Eigen::Ref<Eigen::Matrix3Xd> f) const override {
+        require(X.cols() == n && u.cols() == n && f.cols() == n, "internal_force: sizes do not match the element");
+        StrainPoints<E> points;
+        formulation_(this->table_, Positions(X), points);
+        const Positions displacement = u;
+        Positions sum = Positions::Zero();
+        for (std::size_t q = 0; q < points.B.size(); ++q) {
+            const Vec6 sigma = D_ * (points.B[q] * displacement.reshaped());
+            sum.reshaped() += points.B[q].transpose() * (sigma * points.volumes[q]);
+        }
+        f = sum;
+        return {};
+    }
+
+    Deformation tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>&,
+                        Eigen::Ref<Matrix> Ke) const override {
+        stiffness(X, Ke);
+        return {};
+    }
+
+    Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
+                             Eigen::Ref<Matrix> stress) const override {
         require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,
                 "nodal_stress: sizes do not match the element");
         StrainPoints<E> points;
@@ -38,6 +75,7 @@ public:
             sigma.col(static_cast<int>(q)) = D_ * (points.B[q] * displacement.reshaped());
         }
         stress.noalias() = sigma * this->extrapolation_.transpose();
+        return {};
     }
 
 private:

@@ -3,6 +3,8 @@
 
 #include "osculate/core/types.hpp"
 #include "osculate/material/linear_elastic.hpp"
+#include "osculate/material/neo_hookean.hpp"
+#include "osculate/material/saint_venant_kirchhoff.hpp"
 #include "osculate/mesh/mesh.hpp"
 
 #include <memory>
@@ -10,11 +12,20 @@
 namespace osculate::fe {
 
 /// How a hexahedron keeps from locking. `full`: not at all. `b_bar`: a mean dilatation, against near incompressibility;
-/// too soft in bending with a single element through the thickness. `incompatible_modes`: internal bending modes, against
-/// locking in bending, and in near incompressibility too as long as elements are not badly distorted.
+/// too soft in bending with a single element through the thickness; F-bar at finite strain. `incompatible_modes`:
+/// internal bending modes, against locking in bending, and in near incompressibility too as long as elements are not badly
+/// distorted; small strain only.
 enum class HexFormulation { full, b_bar, incompatible_modes };
 
-/// Small-strain kernels of one block of equal elements; the formulation is chosen once, at construction.
+/// What an element says of its deformation. Where it is not admissible, results are zero, never NaN: the step is too
+/// large. Small strain does not know of volumes and calls every deformation admissible.
+struct Deformation {
+    double smallest_J = 1; ///< least det F at the quadrature points; 1 at small strain, -infinity where det F is not finite
+
+    [[nodiscard]] bool admissible() const { return smallest_J > 0; }
+};
+
+/// Kernels of one block of equal elements; strain, material and formulation are chosen once, at construction.
 /// X holds the reference positions (3 x n, metres), u the displacements (3 x n, metres), n = nodes(), node order VTK's.
 /// Every kernel throws std::runtime_error where the Jacobian of the reference map is not positive. No allocation.
 class ElementKernel {
@@ -23,12 +34,29 @@ public:
 
     [[nodiscard]] virtual int nodes() const = 0;
 
-    /// Stiffness (3n x 3n), N/m, exactly symmetric; degrees of freedom node by node, x y z.
+    /// Whether the tangent is the stiffness whatever u.
+    [[nodiscard]] virtual bool linear() const = 0;
+
+    /// Stiffness (3n x 3n) of the undeformed element, N/m, exactly symmetric; degrees of freedom node by node, x y z.
     virtual void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const = 0;
 
-    /// Stress (6 x n), Pa, Voigt xx yy zz xy yz zx, carried from the quadrature points to the nodes.
-    virtual void nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                              Eigen::Ref<Matrix> stress) const = 0;
+    /// Strain energy W, J.
+    [[nodiscard]] virtual Deformation energy(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
+                                             const Eigen::Ref<const Eigen::Matrix3Xd>& u, double& W) const = 0;
+
+    /// Internal forces f = dW/du (3 x n), N.
+    [[nodiscard]] virtual Deformation internal_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
+                                                     const Eigen::Ref<const Eigen::Matrix3Xd>& u,
+                                                     Eigen::Ref<Eigen::Matrix3Xd> f) const = 0;
+
+    /// Tangent df/du (3n x 3n), N/m, exactly symmetric.
+    [[nodiscard]] virtual Deformation tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
+                                              const Eigen::Ref<const Eigen::Matrix3Xd>& u,
+                                              Eigen::Ref<Matrix> Ke) const = 0;
+
+    /// Cauchy stress (6 x n), Pa, Voigt xx yy zz xy yz zx, carried from the quadrature points to the nodes.
+    virtual Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
+                                     const Eigen::Ref<const Eigen::Matrix3Xd>& u, Eigen::Ref<Matrix> stress) const = 0;
 
     /// Consistent nodal forces (3 x n), N, of a constant body force b, N/m^3.
     virtual void body_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Vec3& b,
@@ -46,8 +74,13 @@ public:
     [[nodiscard]] virtual double volume(const Eigen::Ref<const Eigen::Matrix3Xd>& X) const = 0;
 };
 
-/// The kernel of a cell type; the formulation matters to hexahedra only.
+/// The kernel of a cell type: small strain for LinearElastic, finite strain for the others. The formulation matters to
+/// hexahedra only; std::invalid_argument for incompatible modes at finite strain.
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
                                                          const material::LinearElastic& material);
+[[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                                         const material::SaintVenantKirchhoff& material);
+[[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                                         const material::NeoHookean& material);
 
 } // namespace osculate::fe

@@ -1,0 +1,22 @@
+#pragma once
+/// Symmetric tensors as vectors in Voigt order xx yy zz xy yz zx.
+
+#include "osculate/core/types.hpp"
+
+namespace osculate::material {
+
+/// A stress: components as they are.
+[[nodiscard]] inline Vec6 stress_vector(const Mat3& S) {
+    Vec6 v;
+    v << S(0, 0), S(1, 1), S(2, 2), (S(0, 1) + S(1, 0)) / 2, (S(1, 2) + S(2, 1)) / 2, (S(2, 0) + S(0, 2)) / 2;
+    return v;
+}
+
+/// A strain: shear components twice, so that stress and strain vectors multiply to the work.
+[[nodiscard]] inline Vec6 strain_vector(const Mat3& E) {
+    Vec6 v;
+    v << E(0, 0), E(1, 1), E(2, 2), E(0, 1) + E(1, 0), E(1, 2) + E(2, 1), E(2, 0) + E(0, 2);
+    return v;
+}
+
+} // namespace osculate::material

@@ -38,7 +38,9 @@ public:
         const Kinematics k(this->table_, X, u);
         if (!k.deformation.admissible()) return k.deformation;
         for (std::size_t q = 0; q < E::points; ++q) W += material_.energy(k.strain(q)) * k.points.volumes[q];
-        return k.deformation;
+        if (std::isfinite(W)) return k.deformation;
+        W = 0;
+        return overflow;
     }
 
     Deformation internal_force(const ConstPositions& X, const ConstPositions& u,
@@ -64,6 +66,7 @@ public:
             }
         }
         if constexpr (mean_dilatation) sum.noalias() += pressure * k.mean_gradients().transpose();
+        if (!sum.allFinite()) return overflow;
         f = sum;
         return k.deformation;
     }
@@ -87,6 +90,7 @@ public:
                 add_initial_stress(k.points.gradients[q], material_.pk2(strain) * dV, K);
             }
         }
+        if (!K.allFinite()) return overflow;
         Ke = (K + K.transpose()) / 2;
         return k.deformation;
     }
@@ -106,11 +110,16 @@ public:
             sigma.col(static_cast<int>(q)) =
                 material::stress_vector(k.scale_squared(q) / J * k.F(q) * S * k.F(q).transpose());
         }
+        if (!sigma.allFinite()) return overflow;
         stress.noalias() = sigma * this->extrapolation_.transpose();
         return k.deformation;
     }
 
 private:
+    static constexpr Deformation overflow{-std::numeric_limits<double>::infinity()};
+    /// Below this, C = 1 + 2 E, whose least eigenvalue can be J^2, has too few digits left: it counts as no volume.
+    static constexpr double least_J = 1e-6;
+
     /// Deformation at the quadrature points, written in H = F - 1 and j = J - 1, so that small strains keep their digits.
     struct Kinematics {
         ElementPoints<E> points;
@@ -136,7 +145,7 @@ private:
                 if (!std::isfinite(j[q])) break;
             }
             mean_j /= reference;
-            deformation.smallest_J = smallest;
+            deformation.smallest_J = smallest < least_J ? std::min(smallest, 0.0) : smallest;
         }
 
         [[nodiscard]] Mat3 F(std::size_t q) const { return H[q] + Mat3::Identity(); }

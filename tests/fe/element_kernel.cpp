@@ -64,6 +64,22 @@ TEST_P(Kernel, StiffnessIsSymmetric) {
     EXPECT_EQ((K - K.transpose()).norm(), 0);
 }
 
+TEST_P(Kernel, EnergyForceAndTangentAreThoseOfTheStiffness) {
+    Eigen::Matrix3Xd u(3, n), f(3, n);
+    for (int k = 0; k < u.size(); ++k) u(k % 3, k / 3) = scatter(50 + k);
+    const Matrix K = stiffness(X);
+    Matrix tangent(3 * n, 3 * n);
+    double W = 0;
+    EXPECT_TRUE(kernel->linear());
+    EXPECT_TRUE(kernel->energy(X, u, W).admissible());
+    EXPECT_TRUE(kernel->internal_force(X, u, f).admissible());
+    EXPECT_TRUE(kernel->tangent(X, u, tangent).admissible());
+    const Vector expected = K * u.reshaped();
+    EXPECT_LT((f.reshaped() - expected).norm(), round_off * expected.norm());
+    EXPECT_NEAR(W, u.reshaped().dot(expected) / 2, round_off * W);
+    EXPECT_EQ(tangent, K);
+}
+
 TEST_P(Kernel, EnergyOfALinearFieldIsExact) {
     const Mat3 H = displacement_gradient();
     const Vector u = (H * X).reshaped();

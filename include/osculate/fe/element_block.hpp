@@ -20,7 +20,9 @@ enum class HexFormulation { full, b_bar, incompatible_modes };
 /// What an element says of its deformation. Where it is not admissible, results are zero, never NaN: the step is too
 /// large. Small strain does not know of volumes and calls every deformation admissible.
 struct Deformation {
-    double smallest_J = 1; ///< least det F at the quadrature points; 1 at small strain, -infinity where det F is not finite
+    /// Least det F at the quadrature points; 0 where positive but below 1e-6, -infinity where numbers overflow, 1 at
+    /// small strain.
+    double smallest_J = 1;
 
     [[nodiscard]] bool admissible() const { return smallest_J > 0; }
 };

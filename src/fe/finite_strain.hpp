@@ -29,7 +29,8 @@ public:
     [[nodiscard]] bool linear() const override { return false; }
 
     void stiffness(const ConstPositions& X, Eigen::Ref<Matrix> Ke) const override {
-        (void)tangent(X, Positions::Zero(), Ke); // J = 1
+        const Positions rest = Positions::Zero();
+        (void)tangent(X, rest, Ke); // J = 1
     }
 
     Deformation energy(const ConstPositions& X, const ConstPositions& u, double& W) const override {

@@ -74,6 +74,7 @@ public:
         {
             const ScopedTimer timer(timings_, Part::assembly);
             plan_.model.K = model::assemble_stiffness(plan_.model.bodies, plan_.model.nodes());
+            add_mass();
         }
         plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, scene_.solver.smallest_step,
                          scene_.solver.predictor, threads_};
@@ -93,6 +94,7 @@ private:
                 faults_.push_back(fault("bodies." + name + ".mesh", "a sound mesh", what));
             model::Body body;
             body.name = name;
+            body.density = std::visit([](const auto& material) { return material.density; }, spec.material);
             body.mesh = std::move(meshes[b]);
             body.first_node = plan_.model.nodes();
             const auto& elastic = std::get<scene::LinearElastic>(spec.material);
@@ -186,12 +188,17 @@ private:
             stage.duration = spec.duration;
             stage.steps = spec.steps;
             stage.ramp = spec.ramp;
+            if (const auto* analysis = std::get_if<scene::DynamicAnalysis>(&spec.analysis)) {
+                stage.dynamics = time::Dynamics{integrator(*analysis), analysis->mass == scene::MassMatrix::lumped,
+                                                analysis->mass_damping, analysis->stiffness_damping};
+            }
             for (const auto& [set_name, components] : spec.displacement)
                 for (std::size_t k = 0; k < 3; ++k)
                     if (components[k]) driven[set_name][k] = components[k];
             for (const auto& [set_name, value] : spec.pressure) pressure[set_name] = value;
             for (const auto& [body, value] : spec.body_force) body_force[body] = value;
             add_constraints(driven, stage.constraints);
+            if (plan_.stages.empty()) add_gravity(force); // in full from the start
             stage.force_start = force;
             force.assign(force.size(), Vec3::Zero());
             for (const auto& [set_name, value] : pressure) {
@@ -206,6 +213,7 @@ private:
             }
             for (const auto& [body, value] : body_force)
                 model::add_body_force(plan_.model.bodies[body_index(body)], value, force);
+            add_gravity(force);
             stage.force_end = force;
             try {
                 (void)model::Constraints(plan_.model.nodes(), stage.constraints);
@@ -218,6 +226,40 @@ private:
             const std::string& name = plan_.model.sets[s].name;
             if (scene::find(scene_.supports, name) != nullptr || driven.contains(name))
                 plan_.constrained_sets.push_back(static_cast<Index>(s));
+        }
+    }
+
+    static time::Integrator integrator(const scene::DynamicAnalysis& analysis) {
+        return std::visit(Overloaded{
+                              [](const scene::GeneralisedAlpha& s) { return time::generalised_alpha(s.rho_inf); },
+                              [](const scene::Newmark& s) { return time::newmark(s.beta, s.gamma); },
+                              [](const scene::Hht& s) { return time::hht(s.alpha); },
+                              [](const scene::BackwardEuler&) { return time::backward_euler(); },
+                          },
+                          analysis.integrator);
+    }
+
+    void add_gravity(std::vector<Vec3>& force) const {
+        if (scene_.gravity.isZero(0)) return;
+        for (const model::Body& body : plan_.model.bodies)
+            if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, force);
+    }
+
+    /// Masses and velocities, where a stage is dynamic.
+    void add_mass() {
+        model::Model& m = plan_.model;
+        for (const time::Stage& stage : plan_.stages) {
+            if (!stage.dynamics) continue;
+            model::BlockMatrix& mass = stage.dynamics->lumped_mass ? m.lumped_mass : m.consistent_mass;
+            if (mass.empty()) mass = model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass);
+            if (!m.initial_velocity.empty()) continue;
+            for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+                const model::Body& body = m.bodies[b];
+                const scene::Body& spec = scene_.bodies[b].second;
+                const Vec3 centre = model::centre_of_mass(body);
+                for (const Vec3& X : body.mesh.nodes)
+                    m.initial_velocity.push_back(spec.initial_velocity + spec.initial_spin.cross(X - centre));
+            }
         }
     }
 
@@ -263,6 +305,9 @@ private:
     }
 
     void check_supports() {
+        if (std::all_of(plan_.stages.begin(), plan_.stages.end(),
+                        [](const time::Stage& s) { return s.dynamics.has_value(); }))
+            return; // inertia holds every body
         for (const std::string& body : unsupported_bodies(plan_))
             faults_.push_back(fault("bodies." + body, "supports or contact that hold the body",
                                     "free rigid-body motions: add supports, or a contact pair that touches it"));
@@ -302,14 +347,18 @@ void Compiler::add_items() {
         smooth = smooth || !std::holds_alternative<scene::FacetsSurface>(pair.master.surface);
     }
     say("stiffness", true, "assembled once: small strain and linear elasticity keep it constant");
-    say("inertia, damping", false, "every stage is static");
+    const auto dynamic = std::count_if(plan_.stages.begin(), plan_.stages.end(),
+                                       [](const time::Stage& s) { return s.dynamics.has_value(); });
+    say("inertia, damping", dynamic > 0,
+        dynamic > 0 ? std::to_string(dynamic) + " dynamic stage(s)" : "every stage is static");
     say("contact", contact, contact ? std::to_string(scene_.contact.size()) + " pair(s)" : "the scene has no pair");
     say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
     say("smooth master surface", smooth,
         smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
-    say("Cholesky factorisation", !contact,
-        contact ? "contact makes the tangent unsymmetric" : "the tangent is symmetric positive definite");
-    say("LU factorisation", contact, contact ? "unsymmetric tangent with contact" : "not needed without contact");
+    say("Cholesky factorisation", true,
+        contact ? "of the stiffness with softened contact, to precondition GMRES"
+                : "the tangent is symmetric positive definite");
+    say("GMRES", contact, contact ? "unsymmetric tangent with contact" : "not needed without contact");
     const scene::Output& out = scene_.output;
     say("nodal stresses",
         std::any_of(out.body_fields.begin(), out.body_fields.end(),

@@ -59,8 +59,11 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
             folder,
             frames ? output::FrameFields{out.body_fields, out.slave_fields, out.master_fields} : output::FrameFields{},
             plan.model);
-        history_ = std::make_unique<output::History>(folder / "history.csv", plan.model, out.history_pairs,
-                                                     reactions ? plan.constrained_sets : std::vector<Index>{});
+        history_ = std::make_unique<output::History>(
+            folder / "history.csv", plan.model, out.history_pairs,
+            reactions ? plan.constrained_sets : std::vector<Index>{},
+            std::any_of(plan.stages.begin(), plan.stages.end(),
+                        [](const time::Stage& stage) { return stage.dynamics.has_value(); }));
         steps_ = std::make_unique<output::CsvTable>(
             folder / "steps.csv", std::vector<std::string>{"attempt", "time", "dt", "verdict", "reason", "body", "node",
                                                            "value", "lambda", "iterations"});
@@ -124,7 +127,7 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
                                         needs_reactions_
                                             ? output::nodal_reactions(constraints, step.equilibrium.unbalanced())
                                             : std::vector<Vec3>(plan_.model.X.size(), Vec3::Zero()));
-        history_->row(snapshot, constraints, step.dt, step.iterations);
+        history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
         const int every = scene_.output.frame_every;
         const double end = stepper_.end_time();
         const bool last = step.state.time >= end * (1 - 1e-12);

@@ -1,5 +1,6 @@
 #include "osculate/model/block_matrix.hpp"
 
+#include "osculate/core/error.hpp"
 #include "osculate/core/parallel.hpp"
 
 #include <algorithm>
@@ -31,6 +32,20 @@ void BlockMatrix::add(const std::vector<Index>& nodes, const Matrix& element) {
     const auto n = static_cast<Index>(nodes.size());
     for (Index i = 0; i < n; ++i)
         for (Index j = 0; j < n; ++j) block_[slot(nodes[i], nodes[j])] += element.block<3, 3>(3 * i, 3 * j);
+}
+
+void BlockMatrix::set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B) {
+    if (row_start_ != A.row_start_ || column_ != A.column_) {
+        row_start_ = A.row_start_;
+        column_ = A.column_;
+        block_.resize(column_.size());
+    }
+    if (B.empty()) {
+        for (std::size_t k = 0; k < block_.size(); ++k) block_[k] = a * A.block_[k];
+        return;
+    }
+    require(B.column_.size() == column_.size(), "set_combination: patterns differ");
+    for (std::size_t k = 0; k < block_.size(); ++k) block_[k] = a * A.block_[k] + b * B.block_[k];
 }
 
 void BlockMatrix::multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const {

@@ -24,9 +24,9 @@ ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNode
                          std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options)
     : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
       master_nodes_(std::move(master_nodes)), master_(std::move(master)),
-      search_(*surface_, vertices(X), centre(X, slaves_.node)), options_(options), held_(slaves_.node.size(), 0),
-      facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0), hits_(slaves_.node.size()),
-      points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {
+      search_(*surface_, vertices(X), centre(X, slaves_.node)), options_(options), inertia_(slaves_.node.size(), 0.0),
+      held_(slaves_.node.size(), 0), facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0),
+      hits_(slaves_.node.size()), points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {
     if (master_nodes_.image.empty()) return;
     std::map<Index, Index> own; // node -> vertex
     for (std::size_t v = 0; v < master_nodes_.node.size(); ++v)
@@ -103,7 +103,7 @@ void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int thr
 }
 
 contact::Coulomb ContactTerm::law(Index j) const {
-    const double c = slaves_.stiffness[j];
+    const double c = stiffness(j);
     if (held_[j] == 0) return {options_.friction, c};
     return contact::Coulomb::elastic(options_.friction, c, held_stick_stiffness * c, lambda_start_[j]);
 }
@@ -114,15 +114,19 @@ std::vector<Index> ContactTerm::patch_nodes(Index facet) const {
     return nodes;
 }
 
-contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const {
-    // drift d = (s - s_start) - sum_i Phi_i (x_i - x_i,start)                                   [Qian 2014, eq (8)]
-    const contact::ContactPoint& point = points_[j];
-    Vec3 drift = x[slaves_.node[j]] - x_start_[slaves_.node[j]];
+Vec3 ContactTerm::drift(Index j, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const {
+    // d = (s - s_start) - sum_i Phi_i (x_i - x_i,start)                                   [Qian 2014, eq (8)]
+    Vec3 drift = to[slaves_.node[j]] - from[slaves_.node[j]];
     for (std::size_t i = 0; i < point_nodes_[j].size(); ++i) {
         const Index node = point_nodes_[j][i];
-        drift -= point.weights(static_cast<Index>(i)) * (image(j, static_cast<Index>(i)) * (x[node] - x_start_[node]));
+        drift -=
+            points_[j].weights(static_cast<Index>(i)) * (image(j, static_cast<Index>(i)) * (to[node] - from[node]));
     }
-    return {lambda, point.gap, point.normal, drift};
+    return drift;
+}
+
+contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const {
+    return {lambda, points_[j].gap, points_[j].normal, drift(j, x_start_, x)};
 }
 
 void ContactTerm::vary(Index j, const std::vector<Vec3>& x, contact::ContactVariation& variation) const {

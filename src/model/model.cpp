@@ -25,12 +25,42 @@ template <class F> void for_each_element(const Body& body, F&& f) {
 
 } // namespace
 
-BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
+namespace {
+BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
     std::vector<std::vector<Index>> elements;
     for (const Body& body : bodies)
         for_each_element(body, [&](const fe::ElementKernel&, const std::vector<Index>& element,
                                    const Eigen::Matrix3Xd&) { elements.push_back(element); });
-    BlockMatrix K(nodes, elements);
+    return {nodes, elements};
+}
+} // namespace
+
+BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped) {
+    BlockMatrix M = pattern_of(bodies, nodes);
+    for (const Body& body : bodies) {
+        Matrix scalar, Me;
+        for_each_element(
+            body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
+                const Index n = kernel.nodes();
+                scalar.setZero(n, n);
+                if (lumped) {
+                    Vector m(n);
+                    kernel.lumped_mass(X, body.density, m);
+                    scalar.diagonal() = m;
+                } else {
+                    kernel.mass(X, body.density, scalar);
+                }
+                Me.setZero(3 * n, 3 * n);
+                for (Index i = 0; i < n; ++i)
+                    for (Index k = 0; k < n; ++k) Me.block<3, 3>(3 * i, 3 * k).diagonal().setConstant(scalar(i, k));
+                M.add(element, Me);
+            });
+    }
+    return M;
+}
+
+BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
+    BlockMatrix K = pattern_of(bodies, nodes);
     for (const Body& body : bodies) {
         Matrix Ke;
         for_each_element(
@@ -41,6 +71,20 @@ BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
             });
     }
     return K;
+}
+
+Vec3 centre_of_mass(const Body& body) {
+    // nodal shares of the volume are exact for the first moment, too
+    std::vector<Vec3> share(static_cast<std::size_t>(body.first_node + body.nodes()), Vec3::Zero());
+    add_body_force(body, Vec3::UnitX(), share);
+    Vec3 moment = Vec3::Zero();
+    double volume = 0;
+    for (Index i = 0; i < body.nodes(); ++i) {
+        const double v = share[static_cast<std::size_t>(body.first_node + i)].x();
+        moment += v * body.mesh.nodes[i];
+        volume += v;
+    }
+    return moment / volume;
 }
 
 void add_body_force(const Body& body, const Vec3& b, std::vector<Vec3>& f) {

@@ -84,6 +84,10 @@ void PenaltyStiffness::fill_base() {
         for (Index k = K_.row_begin(node); k < K_.row_end(node); ++k) add(node, K_.column(k), K_.block(k), base_);
 }
 
+void PenaltyStiffness::stiffness_changed() {
+    if (!block_row_start_.empty()) fill_base();
+}
+
 void PenaltyStiffness::set_springs(const std::vector<Spring>& springs) {
     if (!covers(springs)) {
         build_pattern(springs);

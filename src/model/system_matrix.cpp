@@ -200,6 +200,12 @@ void SystemMatrix::map_slots() {
     }
 }
 
+void SystemMatrix::stiffness_changed() {
+    fill_base();
+    reset();
+    finish();
+}
+
 void SystemMatrix::reset() {
     matrix_.value = base_;
 }

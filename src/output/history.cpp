@@ -10,7 +10,18 @@ namespace {
 
 constexpr const char* axes[] = {"_x", "_y", "_z"};
 
-std::vector<std::string> columns(const model::Model& model, bool pairs, const std::vector<Index>& sets) {
+struct EnergyColumn {
+    const char* name;
+    double time::Ledger::*value;
+};
+constexpr EnergyColumn energies[] = {
+    {"kinetic", &time::Ledger::kinetic},   {"strain", &time::Ledger::strain},
+    {"external", &time::Ledger::external}, {"friction", &time::Ledger::friction},
+    {"damping", &time::Ledger::damping},   {"algorithmic", &time::Ledger::algorithmic},
+    {"contact", &time::Ledger::contact},   {"balance", &time::Ledger::balance},
+};
+
+std::vector<std::string> columns(const model::Model& model, bool pairs, const std::vector<Index>& sets, bool ledger) {
     std::vector<std::string> names{"time", "dt", "iterations"};
     const auto vector = [&](const std::string& name) {
         for (const char* axis : axes) names.push_back(name + axis);
@@ -24,6 +35,11 @@ std::vector<std::string> columns(const model::Model& model, bool pairs, const st
             for (const char* name : {"area", "open", "stick", "slip", "penetration"}) names.push_back(prefix + name);
         }
     for (const Index set : sets) vector("set." + model.sets[set].name + ".reaction");
+    if (ledger) {
+        for (const EnergyColumn& energy : energies) names.push_back(std::string("energy.") + energy.name);
+        vector("momentum.linear");
+        vector("momentum.angular");
+    }
     return names;
 }
 
@@ -52,10 +68,13 @@ std::vector<Vec3> nodal_reactions(const model::Constraints& constraints, const s
     return reactions;
 }
 
-History::History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets)
-    : pairs_(pairs ? model.pairs.size() : 0), sets_(std::move(sets)), table_(path, columns(model, pairs, sets_)) {}
+History::History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets,
+                 bool ledger)
+    : pairs_(pairs ? model.pairs.size() : 0), sets_(std::move(sets)), ledger_(ledger),
+      table_(path, columns(model, pairs, sets_, ledger)) {}
 
-void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations) {
+void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
+                  const time::Ledger* ledger) {
     std::vector<Cell> cells{snapshot.state().time, dt, long{iterations}};
     for (std::size_t p = 0; p < pairs_; ++p) {
         const ContactResultants sum = contact_resultants(snapshot, static_cast<Index>(p));
@@ -67,6 +86,13 @@ void History::row(const Snapshot& snapshot, const model::Constraints& constraint
     if (!sets_.empty()) {
         const std::vector<Vec3> reactions = set_reactions(snapshot, constraints);
         for (const Index set : sets_) append(cells, reactions[set]);
+    }
+    if (ledger_ && ledger != nullptr) {
+        for (const EnergyColumn& energy : energies) cells.emplace_back(ledger->*energy.value);
+        append(cells, ledger->linear);
+        append(cells, ledger->angular);
+    } else if (ledger_) {
+        cells.resize(cells.size() + std::size(energies) + 6, std::string());
     }
     table_.row(cells);
 }

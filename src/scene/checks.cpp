@@ -72,6 +72,15 @@ public:
         if (surface.R == 0 && surface.q < 1) fault(q, "more than 1 with R = 0", number_text(surface.q));
     }
 
+    void check_density(const std::string& name, const Body& body, const std::string& reason) {
+        std::visit(
+            [&](const auto& m) {
+                if (m.density == 0)
+                    fault({"bodies", name, "material"}, "a density, which " + reason + " needs", "none");
+            },
+            body.material);
+    }
+
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {
         const std::vector<std::string> path{"stages", name, "displacement"};
         for (const auto& [set, components] : stage.displacement) {
@@ -115,6 +124,12 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     for (const auto& [name, body] : scene.bodies)
         std::visit([&, &n = name](const auto& source) { rules.check_mesh(n, source); }, body.mesh.source);
     for (const auto& [name, set] : scene.sets) rules.check_set(name, set);
+    for (const auto& [stage_name, stage] : scene.stages)
+        if (std::holds_alternative<DynamicAnalysis>(stage.analysis)) {
+            for (const auto& [name, body] : scene.bodies)
+                rules.check_density(name, body, "dynamic stage '" + stage_name + "'");
+            break;
+        }
     for (const auto& [name, pair] : scene.contact) rules.check_pair(name, pair);
     for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);
 }

@@ -89,7 +89,64 @@ void describe(Visitor& v, Pair& pair) {
              pair.stiffness_scale);
 }
 
+namespace {
+
+void describe(Visitor& v, GeneralisedAlpha& s) {
+    v.number(
+        {.name = "rho_inf",
+         .meaning = "Spectral radius at infinite frequency: 1 keeps all vibrations, 0 damps the fastest out at once.",
+         .range = range::fraction},
+        s.rho_inf);
+}
+void describe(Visitor& v, Newmark& s) {
+    v.number({.name = "beta",
+              .meaning = "Share of the new acceleration in the displacement.",
+              .range = {.low = 0, .high = 1, .open_low = true}},
+             s.beta);
+    v.number({.name = "gamma",
+              .meaning = "Share of the new acceleration in the velocity.",
+              .range = {.low = 0.5, .high = 1}},
+             s.gamma);
+}
+void describe(Visitor& v, Hht& s) {
+    v.number({.name = "alpha",
+              .meaning = "Share of forces at the start of the step, negative.",
+              .range = {.low = -1.0 / 3, .high = 0}},
+             s.alpha);
+}
+void describe(Visitor& /*v*/, BackwardEuler& /*s*/) {}
+
+void describe(Visitor& /*v*/, StaticAnalysis& /*s*/) {}
+void describe(Visitor& v, DynamicAnalysis& s) {
+    v.group({.name = "integrator", .meaning = "Integration in time.", .bare_word = true}, [&] {
+        static const Words tags{"generalised_alpha", "newmark", "hht", "backward_euler"};
+        one_of(v, tags,
+               {"Generalised-alpha of Chung and Hulbert.", "Newmark's method.", "Hilber, Hughes and Taylor's method.",
+                "Backward Euler: first order, damps strongly."},
+               true, s.integrator, [&v](auto& alternative) { describe(v, alternative); });
+    });
+    static const Words masses{"consistent", "lumped"};
+    word(v, {.name = "mass", .meaning = "Mass matrix."}, masses, s.mass);
+    v.number({.name = "mass_damping",
+              .meaning = "Rayleigh damping proportional to mass.",
+              .unit = dimension::rate,
+              .range = range::not_negative},
+             s.mass_damping);
+    v.number({.name = "stiffness_damping",
+              .meaning = "Rayleigh damping proportional to stiffness.",
+              .unit = dimension::time,
+              .range = range::not_negative},
+             s.stiffness_damping);
+}
+
+} // namespace
+
 void describe(Visitor& v, Stage& stage) {
+    v.group({.name = "analysis", .meaning = "Statics, or dynamics with inertia.", .bare_word = true}, [&] {
+        static const Words tags{"static", "dynamic"};
+        one_of(v, tags, {"Equilibrium at the end of every step.", "Implicit dynamics; every body needs a density."},
+               true, stage.analysis, [&v](auto& alternative) { describe(v, alternative); });
+    });
     v.number({.name = "duration",
               .meaning = "Length of the stage.",
               .unit = dimension::time,
@@ -209,8 +266,14 @@ void describe(Visitor& v, Scene& scene) {
         {.name = "supports", .meaning = "Constraints of sets, for the whole run.", .names = Names::set, .item = "set"},
         scene.supports, group);
     named(v, {.name = "contact", .meaning = "Contact pairs.", .item = "pair"}, scene.contact, group);
-    named(v, {.name = "stages", .meaning = "Static stages, in order.", .required = true, .item = "stage"}, scene.stages,
-          group);
+    v.vector({.name = "gravity",
+              .meaning = "Acceleration of gravity, on every body with a density, in full from the start.",
+              .unit = dimension::acceleration,
+              .range = range::position},
+             scene.gravity);
+    named(v,
+          {.name = "stages", .meaning = "Stages, in order; the state carries over.", .required = true, .item = "stage"},
+          scene.stages, group);
     v.group({.name = "solver", .meaning = "Nonlinear solution."}, [&] { describe(v, scene.solver); });
     v.group({.name = "output", .meaning = "What the run writes."}, [&] {
         v.text({.name = "template",

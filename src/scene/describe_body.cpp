@@ -91,6 +91,11 @@ void describe(Visitor& v, LinearElastic& m) {
               .range = {.low = -1, .high = 0.5, .open_low = true, .open_high = true},
               .required = true},
              m.nu);
+    v.number({.name = "density",
+              .meaning = "Mass per volume; 0 where the body has none.",
+              .unit = dimension::density,
+              .range = range::not_negative},
+             m.density);
 }
 
 void describe(Visitor& v, MeshSpec& mesh) {
@@ -132,6 +137,16 @@ void describe(Visitor& v, Body& body) {
     static const Words formulations{"full", "b_bar", "incompatible_modes"};
     word(v, {.name = "hex_formulation", .meaning = "Formulation of the body's hexahedra."}, formulations,
          body.hex_formulation);
+    v.vector({.name = "initial_velocity",
+              .meaning = "Velocity of every point at the start.",
+              .unit = dimension::velocity,
+              .range = range::position},
+             body.initial_velocity);
+    v.vector({.name = "initial_spin",
+              .meaning = "Angular velocity at the start, about the centre of mass, on top of initial_velocity.",
+              .unit = dimension::spin,
+              .range = range::position},
+             body.initial_spin);
 }
 
 namespace {

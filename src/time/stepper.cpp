@@ -129,7 +129,44 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
     return forced;
 }
 
-double Stepper::reference_force(const StepLoad& load, const Equilibrium& equilibrium, const Vector& z) const {
+void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& constraints,
+                                        const std::vector<Vec3>& force) {
+    const Dynamics& dynamics = *stage.dynamics;
+    const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
+    const auto n = static_cast<std::size_t>(model_.nodes());
+    std::vector<Vec3> f = force, by_K(n), by_M(n), x = model_.X;
+    for (std::size_t i = 0; i < n; ++i) {
+        by_K[i] = -(state_.u[i] + dynamics.stiffness_damping * state_.v[i]);
+        by_M[i] = -dynamics.mass_damping * state_.v[i];
+        x[i] += state_.u[i];
+    }
+    model_.K.multiply_add(by_K, f, options_.threads);
+    M.multiply_add(by_M, f, options_.threads);
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        model::ContactTerm& pair = *model_.pairs[p];
+        pair.begin_step(x, state_.contact[p], timings_, options_.threads);
+        pair.evaluate(x, timings_, options_.threads);
+        for (Index j = 0; j < pair.size(); ++j) {
+            const Vec3& lambda = state_.contact[p].lambda[j];
+            f[pair.slaves().node[j]] += lambda;
+            for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i)
+                f[pair.point_nodes(j)[i]] += pair.master_force(j, static_cast<Index>(i), lambda);
+        }
+    }
+    model::PenaltyStiffness free_mass(constraints, M);
+    free_mass.set_springs({});
+    const auto solver = solve::make_cholesky();
+    if (solver->factorise(free_mass.matrix()) != solve::FactorStatus::ok)
+        throw RunFailure("stage '" + stage.name + "': the mass matrix is not positive definite");
+    Vector right(constraints.equations()), a(constraints.equations());
+    constraints.gather(f, right.data());
+    solver->solve(right.data(), a.data());
+    state_.a.assign(n, Vec3::Zero());
+    constraints.scatter(a.data(), std::vector<Vec3>(n, Vec3::Zero()), state_.a);
+}
+
+double Stepper::reference_force(const Stage& stage, const StepLoad& load, const Equilibrium& equilibrium,
+                                const Vector& z, double dt) const {
     const auto norm = [](const std::vector<Vec3>& f) {
         double sum = 0;
         for (const Vec3& v : f) sum += v.squaredNorm();
@@ -137,7 +174,17 @@ double Stepper::reference_force(const StepLoad& load, const Equilibrium& equilib
     };
     std::vector<Vec3> internal(model_.X.size(), Vec3::Zero());
     model_.K.multiply_add(state_.u, internal, options_.threads);
-    const double carried = std::max(norm(load.force), norm(internal));
+    double carried = std::max(norm(load.force), norm(internal));
+    if (stage.dynamics) {
+        // a thousandth of the force that would stop every motion within the step
+        constexpr double share = 1e-3;
+        const model::BlockMatrix& M = model_.mass(stage.dynamics->lumped_mass);
+        for (const auto& [motion, factor] : {std::pair{&state_.a, 1.0}, std::pair{&state_.v, share / dt}}) {
+            std::fill(internal.begin(), internal.end(), Vec3::Zero());
+            M.multiply_add(*motion, internal, options_.threads);
+            carried = std::max(carried, factor * norm(internal));
+        }
+    }
     if (carried > 0) return carried;
     const model::State predicted = equilibrium.state(z);
     std::fill(internal.begin(), internal.end(), Vec3::Zero());
@@ -179,34 +226,53 @@ std::string Stepper::explain(const LadderResult& result, const Equilibrium& equi
 
 void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const Constraints constraints(model_.nodes(), stage.constraints);
-    Equilibrium equilibrium(model_, constraints, timings_, options_.threads);
+    const Dynamics* dynamics = stage.dynamics ? &*stage.dynamics : nullptr;
+    Equilibrium equilibrium(model_, constraints, dynamics, timings_, options_.threads);
     solve::KinsolSolver solver(equilibrium.size(), timings_);
     std::vector<Vec3> prescribed_start(model_.X.size());
     for (Index node = 0; node < model_.nodes(); ++node)
         prescribed_start[node] = constraints.to_local(node, state_.u[node]);
 
+    if (dynamics != nullptr && state_.v.empty()) {
+        state_.v = model_.initial_velocity;
+        find_initial_acceleration(stage, constraints, load_at(stage, constraints, prescribed_start, 0).force);
+        ledger_ = opened(model_, *dynamics, state_);
+    }
+
     const double t_start = state_.time, step = stage.duration / stage.steps;
     for (int k = 0; k < stage.steps; ++k) {
-        const double begin = t_start + k * step, end = t_start + (k + 1) * step; // times that are hit exactly
-        double dt = end - begin;
+        const double end = t_start + (k + 1) * step; // a time that is hit exactly
+        double dt = step;                            // not end - begin: round-off would make every step another one
         while (state_.time < end) {
             const double left = end - state_.time;
-            const bool to_end = dt >= left * (1 - 1e-9);
+            constexpr double sliver = 1e-9; // of the step: round-off of the times, not a step of its own
+            const bool to_end = dt >= left * (1 - sliver);
             const double time = to_end ? end : state_.time + dt;
-            if (to_end) dt = left;
+            if (to_end && dt > left * (1 + sliver)) dt = left;
 
             StepLoad load = load_at(stage, constraints, prescribed_start, (time - t_start) / stage.duration);
             std::vector<Vec3> u = state_.u;
-            if (options_.predictor) predict(constraints, load.prescribed, u);
-            equilibrium.begin_attempt(state_, load);
+            if (dynamics != nullptr) {
+                const StepLoad before =
+                    load_at(stage, constraints, prescribed_start, (state_.time - t_start) / stage.duration);
+                const double alpha = dynamics->integrator.alpha_f;
+                for (std::size_t i = 0; i < u.size(); ++i) {
+                    load.force[i] = (1 - alpha) * load.force[i] + alpha * before.force[i];
+                    u[i] = dynamics->integrator.predictor(state_.u[i], state_.v[i], state_.a[i], dt);
+                }
+            } else if (options_.predictor) {
+                predict(constraints, load.prescribed, u);
+            }
+            equilibrium.begin_attempt(state_, load, dt);
             Vector z = equilibrium.unknowns(u, state_.contact);
             const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
             LadderOptions ladder{options_.tolerance, options_.max_iterations, characteristic_length_,
-                                 reference_force(load, equilibrium, z)};
+                                 reference_force(stage, load, equilibrium, z, dt)};
             Statuses statuses;
             equilibrium.set_reference_force(ladder.reference_force);
-            const bool forced = starting_statuses(equilibrium, z, statuses);
-            equilibrium.begin_attempt(state_, std::move(load));
+            const bool forced = starting_statuses(equilibrium, z, statuses) && dynamics == nullptr;
+            const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};
+            equilibrium.begin_attempt(state_, std::move(load), dt);
             const long factorised = solver.factorisations();
             const LadderResult result = climb(equilibrium, solver, z, unpredicted, statuses, forced, ladder);
             factorisations_ += solver.factorisations() - factorised;
@@ -218,10 +284,14 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             attempt.iterations = result.iterations;
             if (result.converged()) {
                 attempt.value = result.residual;
-                state_ = equilibrium.state(z);
-                state_.time = time;
+                model::State next = equilibrium.state(z);
+                next.time = time;
+                if (dynamics != nullptr)
+                    ledger_ = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
+                state_ = std::move(next);
                 observer.attempted(attempt, equilibrium.records());
-                observer.accepted({state_, equilibrium, dt, result.iterations, stage});
+                observer.accepted(
+                    {state_, equilibrium, dt, result.iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
                 if (!model_.pairs.empty()) {
                     std::vector<Vec3> x = model_.X;
                     for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];

@@ -51,8 +51,8 @@ TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
     EXPECT_EQ(reactions[1], Vec3(5, 10, 0));
     EXPECT_EQ(reactions[3], Vec3(0, 0, 0)) << "round-off of free nodes is no reaction";
     {
-        History history(folder / "history.csv", blocks.model, true, {0, 1});
-        history.row({blocks.model, blocks.state, reactions}, constraints, 0.5, 3);
+        History history(folder / "history.csv", blocks.model, true, {0, 1}, false);
+        history.row({blocks.model, blocks.state, reactions}, constraints, 0.5, 3, nullptr);
         // bed: 11 (0.6, 0.8, 0) + (5, 0, 0); side: (0, 10, 0) + (0, 0, 20)
         EXPECT_EQ(content(folder / "history.csv"),
                   "time,dt,iterations,set.bed.reaction_x,set.bed.reaction_y,set.bed.reaction_z,set.side.reaction_x,"
@@ -63,7 +63,7 @@ TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
 
 TEST_F(HistoryFile, LeavesOutWhatIsNotAskedFor) {
     const TwoBlocks blocks;
-    const History nothing(folder / "history.csv", blocks.model, false, {});
+    const History nothing(folder / "history.csv", blocks.model, false, {}, false);
     EXPECT_EQ(content(folder / "history.csv"), "time,dt,iterations\n");
 }
 

@@ -130,6 +130,14 @@ TEST(BadScene, NothingInIt) {
                             "nothing"));
 }
 
+TEST(BadScene, DynamicsWithoutMass) {
+    const std::vector<std::string> faults =
+        messages(faults_of(replaced(small_scene, "steps: 2", "steps: 2\n    analysis: dynamic")));
+    ASSERT_EQ(faults.size(), 2u); // one a body
+    EXPECT_THAT(faults[0],
+                ::testing::HasSubstr("bodies.base.material: expected a density, which dynamic stage 'load' needs"));
+}
+
 TEST(BadScene, AllFaultsAtOnceInOrder) {
     std::string text = replaced(small_scene, "nu: 0.3", "nu: 3");
     text = replaced(text, "steps: 2", "stpes: 2");
@@ -141,7 +149,7 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
                     "'3'",
                     "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
                     "for both",
-                    "bad.yaml:22:5: stages.load.stpes: expected one of the keys duration, steps, ramp, "
+                    "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, ramp, "
                     "displacement, pressure, body_force, found unknown key 'stpes' (did you mean 'steps'?)",
                     "bad.yaml:24:16: stages.load.pressure.tpo: expected the name of a set: bed, ground, under, "
                     "top, found 'tpo' (did you mean 'top'?)",

@@ -27,6 +27,7 @@ struct RunStep {
     std::vector<Vec3> reactions; ///< per constrained set
     Vec3 load = Vec3::Zero();    ///< sum of external forces
     model::State state;
+    time::Ledger ledger; ///< of a dynamic step
 };
 
 struct SceneRun {
@@ -67,6 +68,7 @@ public:
         kept.iterations = step.iterations;
         kept.records = records_;
         kept.state = step.state;
+        if (step.ledger != nullptr) kept.ledger = *step.ledger;
         const auto x = [&](Index node) -> Vec3 { return model.X[node] + step.state.u[node]; };
         for (std::size_t p = 0; p < model.pairs.size(); ++p) {
             const model::ContactTerm& pair = *model.pairs[p];

@@ -48,7 +48,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     Timings timings;
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const model::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
-    time::Equilibrium equilibrium(plan.model, constraints, timings, 1);
+    time::Equilibrium equilibrium(plan.model, constraints, nullptr, timings, 1);
 
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -71,7 +71,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         statuses[0].push_back(static_cast<Status>(j % 4));
     }
     time::StepLoad load{std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
-    equilibrium.begin_attempt(state, load);
+    equilibrium.begin_attempt(state, load, 1);
     equilibrium.set_statuses(statuses, time::StatusRule::frozen, false);
     Vector z = equilibrium.unknowns(u, state.contact);
 

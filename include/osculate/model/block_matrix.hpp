@@ -22,6 +22,9 @@ public:
     [[nodiscard]] const Mat3& block(Index slot) const { return block_[slot]; }
     /// Adds an element matrix (3n x 3n) at its nodes.
     void add(const std::vector<Index>& nodes, const Matrix& element);
+    /// *this = a A + b B, B of the same pattern or empty.
+    void set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B);
+    [[nodiscard]] bool empty() const { return block_.empty(); }
     /// y += A x over 3-vectors per node.
     void multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const;
 

@@ -82,7 +82,13 @@ public:
     [[nodiscard]] const std::vector<Index>& point_nodes(Index j) const { return point_nodes_[j]; }
     /// Global nodes of the patch that the facet of slave j would use, whether or not there is contact.
     [[nodiscard]] std::vector<Index> patch_nodes(Index facet) const;
+    /// Displacement of slave j relative to the master between two displacement fields, at its current contact point, m.
+    [[nodiscard]] Vec3 drift(Index j, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const;
     [[nodiscard]] contact::ContactState state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const;
+    /// c of the complementarity function of slave j, N/m: stiffness and, in dynamics, what inertia adds to it.
+    [[nodiscard]] double stiffness(Index j) const { return slaves_.stiffness[j] + inertia_[j]; }
+    /// Inertia of the slave nodes, N/m: mass over the square of the time step, more or less.
+    void set_inertia(std::vector<double> inertia) { inertia_ = std::move(inertia); }
     /// Declares which slave nodes are held or driven along some direction: their stick is elastic, see contact::Coulomb.
     void hold(std::vector<char> held) { held_ = std::move(held); }
     [[nodiscard]] contact::Coulomb law(Index j) const;
@@ -120,7 +126,8 @@ private:
     contact::FacetSearch search_;
     ContactOptions options_;
 
-    std::vector<char> held_; ///< (slaves) of the current stage
+    std::vector<double> inertia_; ///< (slaves) N/m
+    std::vector<char> held_;      ///< (slaves) of the current stage
     // scratch of an attempt
     std::vector<Vec3> lambda_start_;
     std::vector<Vec3> x_start_;  ///< all nodes

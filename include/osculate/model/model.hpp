@@ -17,6 +17,7 @@ struct Body {
     mesh::Mesh mesh;
     Index first_node = 0;                                    ///< global number of its node 0
     std::vector<std::unique_ptr<fe::ElementKernel>> kernels; ///< one per element block
+    double density = 0;                                      ///< kg/m^3
 
     [[nodiscard]] Index nodes() const { return mesh.node_count(); }
 };
@@ -34,13 +35,21 @@ struct Model {
     std::vector<Vec3> X; ///< reference positions of all nodes, m
     std::vector<Set> sets;
     std::vector<std::unique_ptr<ContactTerm>> pairs;
-    BlockMatrix K; ///< stiffness of all bodies, constant: small strain, linear elasticity
+    BlockMatrix K;                            ///< stiffness of all bodies, constant: small strain, linear elasticity
+    BlockMatrix consistent_mass, lumped_mass; ///< of all bodies, kg, pattern of K; empty where no stage asks for it
+
+    std::vector<Vec3> initial_velocity; ///< (nodes) m/s; empty where no stage is dynamic
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
+    [[nodiscard]] const BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
 /// Stiffness of all bodies.
 [[nodiscard]] BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
+/// Mass of all bodies, multiples of the unit matrix in the pattern of the stiffness; lumped: diagonal.
+[[nodiscard]] BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped);
+/// Centre of mass of a body of uniform density in its reference configuration, m.
+[[nodiscard]] Vec3 centre_of_mass(const Body& body);
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).
 void add_body_force(const Body& body, const Vec3& b, std::vector<Vec3>& f);
 /// Nodal stress of one body (nodes x 6, Pa, Voigt): element values averaged with the element volumes as weights.
@@ -49,7 +58,8 @@ void add_body_force(const Body& body, const Vec3& b, std::vector<Vec3>& f);
 /// What an accepted step leaves behind, and a rejected one restores: plain values.
 struct State {
     double time = 0;
-    std::vector<Vec3> u; ///< displacements, m
+    std::vector<Vec3> u;    ///< displacements, m
+    std::vector<Vec3> v, a; ///< velocities, m/s, and accelerations, m/s^2; empty before the first dynamic stage
     std::vector<ContactHistory> contact;
 };
 

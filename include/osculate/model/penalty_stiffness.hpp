@@ -21,6 +21,8 @@ struct Spring {
 class PenaltyStiffness {
 public:
     PenaltyStiffness(const Constraints& constraints, const BlockMatrix& K);
+    /// Takes over new values of K; they count from the next set_springs() on.
+    void stiffness_changed();
     /// Rewrites the matrix for other springs; the pattern grows where it has to.
     void set_springs(const std::vector<Spring>& springs);
     /// Over the free components, by equation number.

@@ -39,6 +39,8 @@ public:
     /// First unknown of the contact force of coupling j.
     [[nodiscard]] Index multiplier(Index j) const { return displacement_equations_ + 3 * j; }
 
+    /// Takes over new values of K.
+    void stiffness_changed();
     /// Sets the values to the stiffness and the unit columns of the contact forces.
     void reset();
     /// Contact tangent of coupling j in global components: contact rows, derivatives A (3 x 3+3n) by (slave, masters) and

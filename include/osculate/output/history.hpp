@@ -4,6 +4,7 @@
 #include "osculate/model/constraints.hpp"
 #include "osculate/output/csv_table.hpp"
 #include "osculate/output/snapshot.hpp"
+#include "osculate/time/ledger.hpp"
 
 #include <filesystem>
 #include <vector>
@@ -17,17 +18,22 @@ namespace osculate::output {
 class History {
 public:
     /// @param pairs  whether the pairs have columns
+    /// @param ledger whether energies and momenta have columns, for runs with a dynamic stage
     /// @param sets   of model.sets, those that have reaction columns
     /// @throws std::runtime_error with path and reason, as row() does
-    History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets);
+    History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets,
+            bool ledger);
 
     /// A direction that several sets hold at one node counts for the set that Constraints names, so that the sets'
     /// reactions add up to the whole.
-    void row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations);
+    /// @param ledger  null in a static step: its cells stay empty
+    void row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
+             const time::Ledger* ledger);
 
 private:
     std::size_t pairs_;
     std::vector<Index> sets_;
+    bool ledger_;
     CsvTable table_;
 };
 

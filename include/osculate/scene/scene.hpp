@@ -71,8 +71,9 @@ struct MeshSpec {
 // ---- bodies --------------------------------------------------------------------------------------------------------
 
 struct LinearElastic {
-    double E = 0;  ///< Young's modulus, Pa
-    double nu = 0; ///< Poisson's ratio
+    double E = 0;       ///< Young's modulus, Pa
+    double nu = 0;      ///< Poisson's ratio
+    double density = 0; ///< kg/m^3; 0: none, which statics does not need
     bool operator==(const LinearElastic&) const = default;
 };
 
@@ -82,6 +83,7 @@ struct Body {
     MeshSpec mesh;
     std::variant<LinearElastic> material;
     HexFormulation hex_formulation = HexFormulation::full;
+    Vec3 initial_velocity = Vec3::Zero(), initial_spin = Vec3::Zero(); ///< m/s; rad/s about the centre of mass
     bool operator==(const Body&) const = default;
 };
 
@@ -175,8 +177,37 @@ struct Pair {
 
 // ---- stages ------------------------------------------------------------------------------------------------------------
 
-/// Static stage. Every value is reached at the end of the stage; values not named keep theirs.
+struct GeneralisedAlpha {
+    double rho_inf = 0.8; ///< spectral radius at infinite frequency
+    bool operator==(const GeneralisedAlpha&) const = default;
+};
+struct Newmark {
+    double beta = 0.25, gamma = 0.5;
+    bool operator==(const Newmark&) const = default;
+};
+struct Hht {
+    double alpha = -0.1;
+    bool operator==(const Hht&) const = default;
+};
+struct BackwardEuler {
+    bool operator==(const BackwardEuler&) const = default;
+};
+
+enum class MassMatrix { consistent, lumped };
+
+struct StaticAnalysis {
+    bool operator==(const StaticAnalysis&) const = default;
+};
+struct DynamicAnalysis {
+    std::variant<GeneralisedAlpha, Newmark, Hht, BackwardEuler> integrator;
+    MassMatrix mass = MassMatrix::consistent;
+    double mass_damping = 0, stiffness_damping = 0; ///< Rayleigh's C = mass_damping M + stiffness_damping K, 1/s and s
+    bool operator==(const DynamicAnalysis&) const = default;
+};
+
+/// Every value is reached at the end of the stage; values not named keep theirs.
 struct Stage {
+    std::variant<StaticAnalysis, DynamicAnalysis> analysis;
     double duration = 1; ///< s
     int steps = 1;
     bool ramp = true; ///< linear from the last value; false: the full value from the first step on
@@ -209,9 +240,10 @@ struct Output {
 };
 
 struct Scene {
-    std::string name;        ///< fit for a file name: letters, digits, _ and -
-    std::string description; ///< free text
-    std::string directory;   ///< of the scene file, absolute
+    std::string name;            ///< fit for a file name: letters, digits, _ and -
+    std::string description;     ///< free text
+    std::string directory;       ///< of the scene file, absolute
+    Vec3 gravity = Vec3::Zero(); ///< m/s^2, on every body with a density, in every stage
     Named<Body> bodies;
     Named<SetSpec> sets;
     Named<Support> supports; ///< keyed by set

@@ -20,6 +20,9 @@ inline constexpr Dimension angle{0, 0, 0, 1};
 inline constexpr Dimension force{1, 1, -2, 0};
 inline constexpr Dimension pressure{-1, 1, -2, 0};
 inline constexpr Dimension density{-3, 1, 0, 0};
+inline constexpr Dimension velocity{1, 0, -1, 0};
+inline constexpr Dimension spin{0, 0, -1, 1};
+inline constexpr Dimension rate{0, 0, -1, 0};
 inline constexpr Dimension acceleration{1, 0, -2, 0};
 inline constexpr Dimension force_per_volume{-2, 1, -2, 0};
 } // namespace dimension

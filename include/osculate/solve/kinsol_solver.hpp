@@ -72,7 +72,9 @@ struct KinsolResult {
 
 [[nodiscard]] std::string describe(KinsolOutcome outcome);
 
-/// One solver per problem size. Full Newton: every iteration factorises the tangent, unless its values are the same.
+/// One solver per problem size. Every Newton step is solved with the tangent at the iterate: by its factors, or, where the
+/// problem offers a preconditioner, by GMRES, to a fraction of the residual that shrinks with it; factors are kept as long
+/// as they serve, within one call of solve().
 /// What KINSOL's return codes are taken to mean: 0 and 1 converged; 2 (step test) only if the residual test holds too.
 class KinsolSolver {
 public:

@@ -6,6 +6,7 @@
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 #include "osculate/time/contact_preconditioner.hpp"
+#include "osculate/time/stage.hpp"
 
 #include <map>
 #include <memory>
@@ -32,16 +33,23 @@ enum class StatusRule {
     frozen   ///< as given; the problem is smooth
 };
 
+/// In dynamics inertia and damping join in, all but contact forces weighted between the ends of the step:
+///     (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + K u - f) + alpha_f (C v_n + K u_n - f_n) - f_contact = 0
+/// with v and a affine in u by the integrator's kinematics, so that the tangent is the constant effective stiffness
+///     (1-alpha_m) da/du M + (1-alpha_f) (dv/du C + K)
 /// F(z) with z = (free displacements, contact forces): equilibrium of every free component and the contact law of every
 /// slave node, in the rows SystemMatrix assigns. Contact points are located anew at every z.
 ///     equilibrium   f_int(u) - f_ext - f_contact = 0,   f_contact = lambda on the slave, on its masters as ContactPoint says
 ///     contact law   see contact::Coulomb
 class Equilibrium final : public solve::NonlinearProblem, private solve::Preconditioner {
 public:
-    Equilibrium(model::Model& model, const model::Constraints& constraints, Timings& timings, int threads);
+    /// @param dynamics  null in statics; must outlive this object
+    Equilibrium(model::Model& model, const model::Constraints& constraints, const Dynamics* dynamics, Timings& timings,
+                int threads);
 
-    /// Opens an attempt: slips and facets start from `state`, loads are those at the end of the step.
-    void begin_attempt(const model::State& state, StepLoad load);
+    /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
+    /// their weighted mean over the step.
+    void begin_attempt(const model::State& state, StepLoad load, double dt);
     /// Statuses for the next solve. With `natural` they hold for the first iterate only, where `force_first` asks for it.
     void set_statuses(std::vector<std::vector<contact::Status>> statuses, StatusRule rule, bool force_first);
     void set_reference_force(double force) { reference_force_ = force; }
@@ -80,6 +88,9 @@ private:
         Matrix A, G, dd;
         contact::ContactVariation variation;
     };
+    void set_step(double dt);
+    [[nodiscard]] const model::BlockMatrix& mass() const { return model_.mass(dynamics_->lumped_mass); }
+    [[nodiscard]] const model::BlockMatrix& stiffness() const { return dynamics_ == nullptr ? model_.K : effective_; }
     void linearise(std::size_t p, Index j, ContactTangent& tangent) const;
     void unpack(const double* z);
     void fill(double* F);
@@ -98,6 +109,13 @@ private:
     std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none without contact
     StepLoad load_;
     double reference_force_ = 1;
+
+    const Dynamics* dynamics_;
+    Kinematics kinematics_; ///< of the current dt
+    double dt_ = 0;
+    model::BlockMatrix effective_;                  ///< dynamics only
+    std::vector<Vec3> u_start_, v_start_, a_start_; ///< dynamics only
+    std::vector<Vec3> force_start_; ///< inertia, damping and internal forces at u_start, N; dynamics only
 
     std::vector<Vec3> u_, x_, internal_, unbalanced_;
     std::vector<std::vector<Vec3>> lambda_;

@@ -1,17 +1,27 @@
 #pragma once
-/// One static stage as the stepper sees it.
+/// One stage as the stepper sees it.
 
 #include "osculate/model/constraints.hpp"
+#include "osculate/time/integrator.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace osculate::time {
 
+/// What makes a stage dynamic.
+struct Dynamics {
+    Integrator integrator;
+    bool lumped_mass = false;
+    double mass_damping = 0, stiffness_damping = 0; ///< C = mass_damping M + stiffness_damping K, 1/s and s
+};
+
 struct Stage {
     std::string name;
     double duration = 1; ///< s
     int steps = 1;
+    std::optional<Dynamics> dynamics;               ///< absent: static
     bool ramp = true;                               ///< linear from the last value; false: full value at once
     std::vector<model::NodeConstraint> constraints; ///< every direction held during this stage
     std::vector<Vec3> force_start, force_end;       ///< (nodes) external forces at its two ends, N

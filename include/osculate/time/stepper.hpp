@@ -3,6 +3,7 @@
 
 #include "osculate/time/attempt.hpp"
 #include "osculate/time/equilibrium.hpp"
+#include "osculate/time/ledger.hpp"
 #include "osculate/time/solve_ladder.hpp"
 #include "osculate/time/stage.hpp"
 
@@ -25,6 +26,7 @@ struct AcceptedStep {
     double dt = 0;
     int iterations = 0;
     const Stage& stage;
+    const Ledger* ledger = nullptr; ///< null in statics
 };
 
 class StepObserver {
@@ -57,7 +59,11 @@ private:
                  std::vector<Vec3>& u) const;
     /// Statuses to start from; true where a pair is brought into contact by hand because nothing of it is closed yet.
     [[nodiscard]] bool starting_statuses(Equilibrium& equilibrium, const Vector& z, Statuses& statuses) const;
-    [[nodiscard]] double reference_force(const StepLoad& load, const Equilibrium& equilibrium, const Vector& z) const;
+    [[nodiscard]] double reference_force(const Stage& stage, const StepLoad& load, const Equilibrium& equilibrium,
+                                         const Vector& z, double dt) const;
+    /// M a = f - K u - C v + contact forces of the state, a = 0 along held directions.
+    void find_initial_acceleration(const Stage& stage, const model::Constraints& constraints,
+                                   const std::vector<Vec3>& force);
     [[nodiscard]] std::string explain(const LadderResult& result, const Equilibrium& equilibrium,
                                       Attempt& attempt) const;
 
@@ -66,6 +72,7 @@ private:
     StepperOptions options_;
     Timings& timings_;
     model::State state_;
+    Ledger ledger_;
     int attempts_ = 0;
     long factorisations_ = 0, refreshed_patches_ = 0;
     double characteristic_length_ = 1;

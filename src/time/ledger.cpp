@@ -1,0 +1,90 @@
+#include "osculate/time/ledger.hpp"
+
+namespace osculate::time {
+
+namespace {
+
+using Field = std::vector<Vec3>;
+
+double dot(const Field& a, const Field& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+    return sum;
+}
+
+Field weighted(double a, const Field& x, double b, const Field& y) {
+    Field result(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) result[i] = a * x[i] + b * y[i];
+    return result;
+}
+
+Field times(const model::BlockMatrix& A, const Field& x) {
+    Field y(x.size(), Vec3::Zero());
+    A.multiply_add(x, y, 1);
+    return y;
+}
+
+/// Fills in what depends on the state alone.
+void take_stock(Ledger& ledger, const model::Model& model, const Dynamics& dynamics, const model::State& state) {
+    const Field p = times(model.mass(dynamics.lumped_mass), state.v);
+    ledger.kinetic = 0.5 * dot(state.v, p);
+    ledger.strain = 0.5 * dot(state.u, times(model.K, state.u));
+    ledger.linear.setZero();
+    ledger.angular.setZero();
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        ledger.linear += p[i];
+        ledger.angular += (model.X[i] + state.u[i]).cross(p[i]);
+    }
+}
+
+} // namespace
+
+Ledger opened(const model::Model& model, const Dynamics& dynamics, const model::State& state) {
+    Ledger ledger;
+    take_stock(ledger, model, dynamics, state);
+    return ledger;
+}
+
+Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics& dynamics,
+                const Equilibrium& equilibrium, const model::State& from, const model::State& to, const Field& force) {
+    Ledger next = ledger;
+    take_stock(next, model, dynamics, to);
+    const Integrator& w = dynamics.integrator;
+    const model::BlockMatrix& M = model.mass(dynamics.lumped_mass);
+    const Field Du = weighted(1, to.u, -1, from.u);
+    const Field v = weighted(1 - w.alpha_f, to.v, w.alpha_f, from.v);
+
+    double external = dot(Du, force);
+    for (Index i = 0; i < model.nodes(); ++i)
+        external += Du[i].dot(equilibrium.constraints().reaction(i, equilibrium.unbalanced()[i]));
+    const double damping =
+        dynamics.mass_damping * dot(Du, times(M, v)) + dynamics.stiffness_damping * dot(Du, times(model.K, v));
+    const double inertia = dot(Du, times(M, weighted(1 - w.alpha_m, to.a, w.alpha_m, from.a)));
+    const double stiffness = dot(Du, times(model.K, weighted(1 - w.alpha_f, to.u, w.alpha_f, from.u)));
+    double contact = 0, friction = 0;
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model.pairs[p];
+        for (Index j = 0; j < pair.size(); ++j) {
+            const Vec3& lambda = to.contact[p].lambda[j];
+            if (lambda.isZero(0) || !pair.point(j).found) continue;
+            contact += lambda.dot(Du[pair.slaves().node[j]]);
+            for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i)
+                contact += pair.master_force(j, static_cast<Index>(i), lambda).dot(Du[pair.point_nodes(j)[i]]);
+            const Vec3& n = pair.point(j).normal;
+            const Vec3 tangential = lambda - n * n.dot(lambda);
+            const Vec3 drift = pair.drift(j, from.u, to.u);
+            friction -= tangential.dot(drift);
+        }
+    }
+    const double change = next.kinetic - ledger.kinetic + next.strain - ledger.strain;
+    const double algorithmic = inertia + stiffness - change;
+    next.external += external;
+    next.friction += friction;
+    next.damping += damping;
+    next.algorithmic += algorithmic;
+    next.contact += contact + friction;
+    next.balance += change - (external + contact - damping - algorithmic);
+    return next;
+}
+
+} // namespace osculate::time

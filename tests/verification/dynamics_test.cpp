@@ -1,0 +1,159 @@
+/// Implicit dynamics against exact solutions of bars.
+
+#include "support/scene_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace osculate {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::string scene_file(const std::string& name, const std::string& text) {
+    const std::string path = testing::TempDir() + name;
+    std::ofstream(path) << text;
+    return path;
+}
+
+/// A bar clamped at its right end, compressed by 0.1 Pa and let go. L = E = density = 1, nu = 0: wave speed 1, period 4.
+std::string free_bar(const std::string& analysis, int steps) {
+    return R"(
+bodies:
+  bar:
+    mesh: {block: {size: [1 m, 0.1 m, 0.1 m], divisions: [20, 1, 1]}}
+    material: {linear_elastic: {E: 1 Pa, nu: 0, density: 1 kg/m^3}}
+sets:
+  clamped: {body: bar, surface: x_max}
+  tip: {body: bar, surface: x_min}
+supports:
+  clamped: {fix: [x, y, z]}
+stages:
+  compress: {pressure: {tip: 0.1 Pa}}
+  swing:
+    analysis: {dynamic: )" +
+           analysis + R"(}
+    duration: 4 s
+    steps: )" +
+           std::to_string(steps) + R"(
+    ramp: step
+    pressure: {tip: 0 Pa}
+)";
+}
+
+const support::RunStep& last(const support::SceneRun& run) {
+    return run.steps.back();
+}
+
+double energy(const support::RunStep& step) {
+    return step.ledger.kinetic + step.ledger.strain;
+}
+
+TEST(FreeBar, KeepsItsEnergyWithNewmark) {
+    for (const char* mass : {"consistent", "lumped"}) {
+        support::SceneRun run;
+        support::run_scene(
+            run, scene_file("bar.yaml", free_bar(std::string("{integrator: {newmark: {}}, mass: ") + mass + "}", 200)));
+        const double E0 = 0.5 * 0.1 * 0.1 * 0.01; // sigma^2 V / 2 E
+        const double round_off = 1e-10;           // of factorisations and 200 steps
+        for (std::size_t k = 1; k < run.steps.size(); ++k) {
+            ASSERT_NEAR(energy(run.steps[k]), E0, round_off * E0);
+            ASSERT_NEAR(run.steps[k].ledger.balance, 0, round_off * E0);
+            ASSERT_NEAR(run.steps[k].ledger.algorithmic, 0, round_off * E0);
+        }
+    }
+}
+
+/// Displacement of the tip after `time` of the swing, from the same mesh in ever smaller steps.
+double tip(const std::string& analysis, int steps) {
+    support::SceneRun run;
+    support::run_scene(run, scene_file("bar.yaml", free_bar(analysis, steps)));
+    return last(run).state.u[0].x();
+}
+
+/// Errors at time 4, with a bar soft enough for its steps: only the first modes matter, damped by stiffness.
+TEST(FreeBar, ConvergesInTimeAtTheOrderOfTheIntegrator) {
+    struct Case {
+        const char* integrator;
+        double order;
+    };
+    const std::string damping = ", stiffness_damping: 0.2 s, mass_damping: 0.1 Hz}";
+    const double exact = tip("{integrator: {newmark: {}}" + damping, 12800);
+    for (const Case& c : {Case{"{newmark: {}}", 2}, Case{"{generalised_alpha: {rho_inf: 0.5}}", 2},
+                          Case{"{hht: {alpha: -0.2}}", 2}, Case{"{backward_euler: {}}", 1}}) {
+        const std::string analysis = std::string("{integrator: ") + c.integrator + damping;
+        const double coarse = std::abs(tip(analysis, 200) - exact), fine = std::abs(tip(analysis, 400) - exact);
+        const double slack = 0.15; // of a slope measured between two steps
+        EXPECT_NEAR(std::log2(coarse / fine), c.order, slack) << c.integrator;
+    }
+}
+
+TEST(FreeBar, SwingsWithThePeriodOfItsLength) {
+    support::SceneRun run;
+    support::run_scene(run, scene_file("bar.yaml", free_bar("{integrator: {newmark: {}}}", 400)));
+    const double first_mode = 0.1 * 8 / (pi * pi);
+    EXPECT_NEAR(run.steps[0].state.u[0].x(), 0.1, 1e-9);
+    double largest = 0, at = 0;
+    for (std::size_t k = 300; k < run.steps.size(); ++k)
+        if (run.steps[k].state.u[0].x() > largest) {
+            largest = run.steps[k].state.u[0].x();
+            at = run.steps[k].time - 1;
+        }
+    EXPECT_NEAR(at, 4, 0.05); // one element: where the mesh can draw the top of the triangle wave
+    EXPECT_GT(largest, first_mode);
+}
+
+TEST(FlyingBody, KeepsItsMomentaAndFallsAsGravitySays) {
+    const std::string text = R"(
+bodies:
+  brick:
+    mesh: {block: {size: [1 m, 2 m, 3 m], divisions: [1, 2, 2]}}
+    material: {linear_elastic: {E: 1 GPa, nu: 0.3, density: 1000 kg/m^3}}
+    initial_velocity: [3 m/s, 0 m/s, 4 m/s]
+gravity: [0 m/s^2, 0 m/s^2, -10 m/s^2]
+stages:
+  flight: {analysis: dynamic, duration: 1 s, steps: 10}
+)";
+    support::SceneRun run;
+    support::run_scene(run, scene_file("brick.yaml", text));
+    const double mass = 6000, round_off = 1e-9;
+    for (const support::RunStep& step : run.steps) {
+        const double t = step.time;
+        EXPECT_NEAR(step.ledger.linear.x(), 3 * mass, round_off * mass);
+        EXPECT_NEAR(step.ledger.linear.z(), (4 - 10 * t) * mass, round_off * mass * 10);
+        for (const Vec3& u : step.state.u) EXPECT_LT((u - Vec3(3 * t, 0, 4 * t - 5 * t * t)).norm(), round_off);
+        EXPECT_NEAR(step.ledger.balance, 0, round_off * mass);
+    }
+}
+
+/// configs/validation/bouncing_rod.yaml: two bounces. Exact: contact in [1, 2] and [4, 5], reaction 1/2.
+TEST(BouncingRod, TouchesForTheExactTimeWithTheExactForce) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("validation/bouncing_rod.yaml"),
+                       {{"stages.bounce.duration", "6"}, {"stages.bounce.steps", "1200"}});
+    const double E0 = 0.5 * 0.25 * 0.01, area = 0.01;
+    double impulse = 0, first = 0, end = 0, before = 1;
+    for (std::size_t k = 1; k < run.steps.size(); ++k) {
+        const support::RunStep& step = run.steps[k];
+        const double t = step.time - 1, force = step.pairs[0].on_slave.x() / area;
+        if (t < 3) {
+            impulse += force * (step.time - before);
+            if (force > 0.25 && first == 0) first = t;
+            if (force > 0.25) end = t;
+        }
+        before = step.time;
+        EXPECT_LT(energy(step), E0 * (1 + 1e-6)) << "energy out of nowhere at " << t;
+        EXPECT_NEAR(step.ledger.balance, 0, 1e-6 * E0);
+    }
+    const double front = 0.025; // how wide mesh and integrator draw the front of a wave: two and a half elements
+    EXPECT_NEAR(first, 1, front);
+    EXPECT_NEAR(end, 2, front);
+    EXPECT_NEAR(impulse, 0.5, 0.5 * 0.02);
+    EXPECT_GT(energy(last(run)), 0.985 * E0); // measured: 0.9895
+}
+
+} // namespace
+} // namespace osculate

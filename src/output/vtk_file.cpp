@@ -28,6 +28,7 @@ int vtk_cell(mesh::CellType type) {
     case mesh::CellType::tet4: return VTK_TETRA;
     case mesh::CellType::wedge6: return VTK_WEDGE;
     case mesh::CellType::hex8: return VTK_HEXAHEDRON;
+    case mesh::CellType::tet10: return VTK_QUADRATIC_TETRA;
     }
     throw InternalError("cell type without a VTK counterpart");
 }
@@ -87,7 +88,7 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
                const std::vector<mesh::ElementBlock>& blocks, const std::vector<Array>& point_data, double time) {
     vtkNew<vtkCellArray> cells;
     vtkNew<vtkUnsignedCharArray> types;
-    std::array<vtkIdType, 8> nodes{};
+    std::array<vtkIdType, 10> nodes{}; // of the largest cell
     for (const mesh::ElementBlock& block : blocks) {
         const int count = nodes_per_cell(block.type);
         for (Index e = 0; e < block.size(); ++e) {

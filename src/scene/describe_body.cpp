@@ -11,7 +11,7 @@ namespace {
 constexpr Range divisions_range{.low = 1, .high = 10000};
 constexpr double most_elements = 2e7;
 
-const Words cell_words{"tet4", "wedge6", "hex8"};
+const Words cell_words{"tet4", "wedge6", "hex8", "tet10"};
 
 void describe(Visitor& v, BlockMesh& m) {
     v.vector({.name = "origin", .meaning = "Lower corner.", .unit = dimension::length, .range = range::position},

@@ -76,8 +76,7 @@ public:
             plan_.model.K = model::assemble_stiffness(plan_.model.bodies, plan_.model.nodes());
             add_mass();
         }
-        plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, scene_.solver.smallest_step,
-                         scene_.solver.predictor, threads_};
+        plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0, scene_.solver.predictor, threads_};
         add_items();
         return std::move(plan_);
     }
@@ -192,6 +191,15 @@ private:
                 stage.dynamics = time::Dynamics{integrator(*analysis), analysis->mass == scene::MassMatrix::lumped,
                                                 analysis->mass_damping, analysis->stiffness_damping};
             }
+            const bool dynamic = stage.dynamics.has_value();
+            constexpr double in_dynamics = 0.05; // of the facet size
+            stage.limits.allowed_interpenetration = spec.control.allowed_interpenetration.value_or(
+                dynamic ? in_dynamics : std::numeric_limits<double>::infinity());
+            if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
+            stage.limits.dt_max = spec.duration / spec.steps;
+            stage.limits.dt_min = scene_.solver.smallest_step * stage.limits.dt_max;
+            stage.limits.growth = spec.control.growth;
+            stage.limits.easy_iterations = scene_.solver.max_iterations;
             for (const auto& [set_name, components] : spec.displacement)
                 for (std::size_t k = 0; k < 3; ++k)
                     if (components[k]) driven[set_name][k] = components[k];

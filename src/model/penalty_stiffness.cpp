@@ -61,7 +61,15 @@ void PenaltyStiffness::build_pattern(const std::vector<Spring>& springs) {
             matrix_.row_start.push_back(static_cast<solve::SparseIndex>(matrix_.column.size()));
         }
     }
-    ++matrix_.pattern;
+    matrix_.pattern = ++patterns_;
+    pattern_springs_ = springs;
+}
+
+void PenaltyStiffness::restore_pattern() {
+    const auto same = [](const Spring& a, const Spring& b) { return a.slave == b.slave && a.masters == b.masters; };
+    if (block_row_start_.empty() || std::ranges::equal(pattern_springs_, kept_, same)) return;
+    build_pattern(std::vector<Spring>(kept_));
+    fill_base();
 }
 
 void PenaltyStiffness::add(Index row, Index column, const Mat3& global, std::vector<double>& into) const {

@@ -141,6 +141,27 @@ void describe(Visitor& v, DynamicAnalysis& s) {
 
 } // namespace
 
+namespace {
+void describe(Visitor& v, StepControl& s) {
+    v.optional_number({.name = "allowed_interpenetration",
+                       .meaning =
+                           "Of the facet size: a step that takes an open slave node deeper in its trial is cut. In "
+                           "statics no bound where it is not given.",
+                       .range = {.low = 0, .high = 1, .open_low = true},
+                       .default_text = "0.05 in dynamics"},
+                      s.allowed_interpenetration);
+    v.number({.name = "energy_tolerance",
+              .meaning =
+                  "Energy that contact may add in one dynamic step, of kinetic plus strain energy; more cuts the step.",
+              .range = range::positive},
+             s.energy_tolerance);
+    v.number({.name = "growth",
+              .meaning = "Of dt after an easy step, up to the stage's step.",
+              .range = {.low = 1, .high = 10}},
+             s.growth);
+}
+} // namespace
+
 void describe(Visitor& v, Stage& stage) {
     v.group({.name = "analysis", .meaning = "Statics, or dynamics with inertia.", .bare_word = true}, [&] {
         static const Words tags{"static", "dynamic"};
@@ -153,6 +174,8 @@ void describe(Visitor& v, Stage& stage) {
               .range = {.low = 1e-12, .high = 1e12}},
              stage.duration);
     v.integer({.name = "steps", .meaning = "Equal steps of the stage.", .range = {.low = 1, .high = 1e6}}, stage.steps);
+    v.group({.name = "control", .meaning = "When a step is cut, and how it grows again."},
+            [&] { describe(v, stage.control); });
     static const Words ramps{"linear", "step"};
     std::size_t ramp = stage.ramp ? 0 : 1;
     v.word({.name = "ramp", .meaning = "Values change linearly over the stage, or in full in its first step."}, ramps,

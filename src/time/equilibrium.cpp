@@ -34,6 +34,7 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     const ScopedTimer timer(timings_, Part::assembly);
     if (dynamics_ != nullptr) effective_ = model_.K;
     matrix_ = std::make_unique<model::SystemMatrix>(constraints_, stiffness(), std::move(couplings));
+    kept_couplings_ = matrix_->couplings();
     size_ = matrix_->size();
     if (!model.pairs.empty()) preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, stiffness());
     const auto n = static_cast<std::size_t>(model.nodes());
@@ -93,6 +94,21 @@ void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double
     best_ = std::numeric_limits<double>::max();
     idle_ = 0;
     last_configuration_ = 0;
+}
+
+void Equilibrium::commit() {
+    if (kept_patterns_ != patterns_built_) kept_couplings_ = matrix_->couplings();
+    kept_patterns_ = patterns_built_;
+    if (preconditioner_) preconditioner_->keep_pattern();
+}
+
+void Equilibrium::rollback() {
+    const ScopedTimer timer(timings_, Part::assembly);
+    if (kept_patterns_ != patterns_built_) {
+        matrix_ = std::make_unique<model::SystemMatrix>(constraints_, stiffness(), kept_couplings_);
+        kept_patterns_ = ++patterns_built_;
+    }
+    if (preconditioner_) preconditioner_->restore_pattern();
 }
 
 void Equilibrium::set_statuses(std::vector<std::vector<Status>> statuses, StatusRule rule, bool force_first) {

@@ -54,18 +54,30 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
     return result;
 }
 
-} // namespace
-
-LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Vector& unpredicted,
-                   const Statuses& start, bool force_first, const LadderOptions& options) {
+solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const LadderOptions& options) {
     solve::KinsolOptions kinsol;
     kinsol.tolerance = options.tolerance;
     kinsol.max_iterations = options.max_iterations;
     kinsol.residual_scale = 1 / options.reference_force;
-    kinsol.unknown_scale = Vector::Constant(z.size(), 1 / options.reference_force);
+    kinsol.unknown_scale = Vector::Constant(size, 1 / options.reference_force);
     kinsol.unknown_scale.head(equilibrium.constraints().equations()).setConstant(1 / options.characteristic_length);
     equilibrium.set_reference_force(options.reference_force);
+    return kinsol;
+}
 
+} // namespace
+
+LadderResult solve_trial(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Statuses& statuses,
+                         const LadderOptions& options) {
+    equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+    const auto solved =
+        solver.solve(equilibrium, z, kinsol_options(equilibrium, static_cast<Index>(z.size()), options));
+    return {solved.outcome, solved.iterations, solved.residual, "trial", solved.failing_equation};
+}
+
+LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Vector& unpredicted,
+                   const Statuses& start, bool force_first, const LadderOptions& options) {
+    const solve::KinsolOptions kinsol = kinsol_options(equilibrium, static_cast<Index>(z.size()), options);
     const bool predicted = z != unpredicted;
     LadderResult result;
     const auto newton = [&](const char* rung) {

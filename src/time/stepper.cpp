@@ -199,11 +199,7 @@ std::string Stepper::explain(const LadderResult& result, const Equilibrium& equi
         for (Index i = 0; i < model_.nodes(); ++i)
             for (int k = 0; k < 3; ++k)
                 if (equilibrium.constraints().equation(i, k) == result.failing_equation) node = i;
-    for (const model::Body& body : model_.bodies)
-        if (node >= body.first_node && node < body.first_node + body.nodes()) {
-            attempt.body = body.name;
-            attempt.node = node - body.first_node;
-        }
+    name_node(node, attempt);
     attempt.value = result.residual;
     std::ostringstream text;
     text << result.rung << ": " << solve::describe(result.outcome) << " after " << result.iterations
@@ -224,6 +220,49 @@ std::string Stepper::explain(const LadderResult& result, const Equilibrium& equi
     return text.str();
 }
 
+void Stepper::name_node(Index node, Attempt& attempt) const {
+    for (const model::Body& body : model_.bodies)
+        if (node >= body.first_node && node < body.first_node + body.nodes()) {
+            attempt.body = body.name;
+            attempt.node = node - body.first_node;
+        }
+}
+
+std::vector<std::vector<double>> Stepper::open_gaps() {
+    std::vector<Vec3> x = model_.X;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];
+    std::vector<std::vector<double>> gaps;
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        model::ContactTerm& pair = *model_.pairs[p];
+        pair.begin_step(x, state_.contact[p], timings_, options_.threads);
+        pair.evaluate(x, timings_, options_.threads);
+        auto& list = gaps.emplace_back(static_cast<std::size_t>(pair.size()), std::nan(""));
+        for (Index j = 0; j < pair.size(); ++j)
+            if (pair.point(j).found && !contact::is_closed(state_.contact[p].status[j])) list[j] = pair.point(j).gap;
+    }
+    return gaps;
+}
+
+std::vector<GapEvidence> Stepper::trial_gaps(const std::vector<std::vector<double>>& before) const {
+    std::vector<GapEvidence> gaps;
+    for (std::size_t p = 0; p < before.size(); ++p)
+        for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
+            const contact::ContactPoint& point = model_.pairs[p]->point(j);
+            const double g0 = before[p][j];
+            if (std::isnan(g0) || !(point.found || point.behind)) continue;
+            gaps.push_back(
+                {g0, point.gap, static_cast<Index>(p), j, model_.pairs[p]->surface().facet_size(point.facet)});
+        }
+    return gaps;
+}
+
+void Stepper::refresh_patches() {
+    if (model_.pairs.empty()) return;
+    std::vector<Vec3> x = model_.X;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];
+    for (auto& pair : model_.pairs) refreshed_patches_ += pair->refresh(x);
+}
+
 void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const Constraints constraints(model_.nodes(), stage.constraints);
     const Dynamics* dynamics = stage.dynamics ? &*stage.dynamics : nullptr;
@@ -240,77 +279,121 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     }
 
     const double t_start = state_.time, step = stage.duration / stage.steps;
-    for (int k = 0; k < stage.steps; ++k) {
+    const bool controlled = std::isfinite(stage.limits.allowed_interpenetration) && !model_.pairs.empty();
+    double dt = step; // not end - begin: round-off would make every step another one
+    int repeats = 0;
+    std::vector<std::vector<double>> gaps;
+    for (int k = 0; k < stage.steps;) {
         const double end = t_start + (k + 1) * step; // a time that is hit exactly
-        double dt = step;                            // not end - begin: round-off would make every step another one
-        while (state_.time < end) {
-            const double left = end - state_.time;
-            constexpr double sliver = 1e-9; // of the step: round-off of the times, not a step of its own
-            const bool to_end = dt >= left * (1 - sliver);
-            const double time = to_end ? end : state_.time + dt;
-            if (to_end && dt > left * (1 + sliver)) dt = left;
+        constexpr double sliver = 1e-9;              // of the step: round-off of the times, not a step of its own
+        const double left = end - state_.time;
+        const bool to_end = dt >= left * (1 - sliver);
+        const double time = to_end ? end : state_.time + dt, proposed = dt;
+        if (to_end && dt > left * (1 + sliver)) dt = left;
 
-            StepLoad load = load_at(stage, constraints, prescribed_start, (time - t_start) / stage.duration);
-            std::vector<Vec3> u = state_.u;
-            if (dynamics != nullptr) {
-                const StepLoad before =
-                    load_at(stage, constraints, prescribed_start, (state_.time - t_start) / stage.duration);
-                const double alpha = dynamics->integrator.alpha_f;
-                for (std::size_t i = 0; i < u.size(); ++i) {
-                    load.force[i] = (1 - alpha) * load.force[i] + alpha * before.force[i];
-                    u[i] = dynamics->integrator.predictor(state_.u[i], state_.v[i], state_.a[i], dt);
-                }
-            } else if (options_.predictor) {
-                predict(constraints, load.prescribed, u);
+        StepLoad load = load_at(stage, constraints, prescribed_start, (time - t_start) / stage.duration);
+        std::vector<Vec3> u = state_.u;
+        if (dynamics != nullptr) {
+            const StepLoad before =
+                load_at(stage, constraints, prescribed_start, (state_.time - t_start) / stage.duration);
+            const double alpha = dynamics->integrator.alpha_f;
+            for (std::size_t i = 0; i < u.size(); ++i) {
+                load.force[i] = (1 - alpha) * load.force[i] + alpha * before.force[i];
+                u[i] = dynamics->integrator.predictor(state_.u[i], state_.v[i], state_.a[i], dt);
             }
-            equilibrium.begin_attempt(state_, load, dt);
-            Vector z = equilibrium.unknowns(u, state_.contact);
-            const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
-            LadderOptions ladder{options_.tolerance, options_.max_iterations, characteristic_length_,
-                                 reference_force(stage, load, equilibrium, z, dt)};
-            Statuses statuses;
-            equilibrium.set_reference_force(ladder.reference_force);
-            const bool forced = starting_statuses(equilibrium, z, statuses) && dynamics == nullptr;
-            const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};
-            equilibrium.begin_attempt(state_, std::move(load), dt);
-            const long factorised = solver.factorisations();
-            const LadderResult result = climb(equilibrium, solver, z, unpredicted, statuses, forced, ladder);
-            factorisations_ += solver.factorisations() - factorised;
-
-            Attempt attempt;
-            attempt.attempt = ++attempts_;
-            attempt.time = time;
-            attempt.dt = dt;
-            attempt.iterations = result.iterations;
-            if (result.converged()) {
-                attempt.value = result.residual;
-                model::State next = equilibrium.state(z);
-                next.time = time;
-                if (dynamics != nullptr)
-                    ledger_ = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
-                state_ = std::move(next);
-                observer.attempted(attempt, equilibrium.records());
-                observer.accepted(
-                    {state_, equilibrium, dt, result.iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
-                if (!model_.pairs.empty()) {
-                    std::vector<Vec3> x = model_.X;
-                    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];
-                    for (auto& pair : model_.pairs) refreshed_patches_ += pair->refresh(x);
-                }
-                dt = std::min(2 * dt, step);
-                continue;
-            }
-            attempt.reason = Reason::solver;
-            attempt.lambda = 0.5;
-            attempt.cause = explain(result, equilibrium, attempt);
-            const bool last = 0.5 * dt < options_.smallest_step * step;
-            attempt.verdict = last ? Verdict::give_up : Verdict::retry;
-            observer.attempted(attempt, equilibrium.records());
-            if (last)
-                throw RunFailure("stage '" + stage.name + "', step of " + number(dt) + " s to time " + number(time) +
-                                 " s, the smallest allowed, failed. " + attempt.cause);
-            dt *= 0.5;
+        } else if (options_.predictor) {
+            predict(constraints, load.prescribed, u);
         }
+        if (controlled && repeats == 0) gaps = open_gaps();
+        equilibrium.begin_attempt(state_, load, dt);
+        Vector z = equilibrium.unknowns(u, state_.contact);
+        const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
+        LadderOptions ladder{options_.tolerance, options_.max_iterations, characteristic_length_,
+                             reference_force(stage, load, equilibrium, z, dt)};
+        Statuses statuses;
+        equilibrium.set_reference_force(ladder.reference_force);
+        bool forced = false;
+        if (dynamics == nullptr) // inertia holds what nothing touches
+            forced = starting_statuses(equilibrium, z, statuses);
+        else
+            for (const model::ContactHistory& history : state_.contact) statuses.push_back(history.status);
+        const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};
+        equilibrium.begin_attempt(state_, std::move(load), dt);
+        const long factorised = solver.factorisations();
+
+        // trial with the statuses known at the start; its solution is where the equilibrium with contact starts from
+        StepEvidence evidence;
+        Decision decision;
+        LadderResult result;
+        int iterations = 0;
+        if (controlled && !forced) {
+            Vector trial = z;
+            result = solve_trial(equilibrium, solver, trial, statuses, ladder);
+            iterations = result.iterations;
+            if (result.converged()) {
+                evidence.gaps = trial_gaps(gaps);
+                evidence.iterations = iterations;
+                decision = judge(evidence, stage.limits, dt, repeats);
+                z = std::move(trial);
+            }
+        }
+        model::State next;
+        Ledger ledger;
+        if (decision.verdict == Verdict::accept) {
+            result = climb(equilibrium, solver, z, unpredicted, statuses, forced, ladder);
+            iterations += result.iterations;
+            evidence = {};
+            evidence.solved = result.converged();
+            evidence.iterations = iterations;
+            evidence.residual = result.residual;
+            evidence.forced = options_.reject_every > 0 && (attempts_ + 1) % options_.reject_every == 0;
+            if (result.converged()) {
+                next = equilibrium.state(z);
+                next.time = time;
+                if (dynamics != nullptr) {
+                    ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
+                    for (std::size_t i = 0; i < next.a.size(); ++i)
+                        evidence.local_error = std::max(evidence.local_error,
+                                                        dynamics->integrator.local_error(next.a[i], state_.a[i], dt));
+                    const double energy = ledger_.kinetic + ledger_.strain;
+                    evidence.energy_jump = energy > 0 ? std::max(0.0, ledger.contact - ledger_.contact) / energy : 0;
+                }
+            }
+            decision = judge(evidence, stage.limits, dt, repeats);
+        }
+        factorisations_ += solver.factorisations() - factorised;
+
+        Attempt attempt;
+        attempt.attempt = ++attempts_;
+        attempt.time = time;
+        attempt.dt = dt;
+        attempt.iterations = iterations;
+        attempt.verdict = decision.verdict;
+        attempt.reason = decision.reason;
+        attempt.value = decision.value;
+        attempt.lambda = decision.lambda;
+        attempt.cause = decision.cause;
+        if (decision.reason == Reason::solver) attempt.cause = explain(result, equilibrium, attempt);
+        if (decision.pair >= 0) name_node(model_.pairs[decision.pair]->slaves().node[decision.slave], attempt);
+        if (decision.verdict == Verdict::accept) {
+            equilibrium.commit();
+            state_ = std::move(next);
+            if (dynamics != nullptr) ledger_ = ledger;
+            observer.attempted(attempt, equilibrium.records());
+            observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
+            refresh_patches();
+            repeats = 0;
+            k += to_end ? 1 : 0;
+            dt = std::max(decision.dt, proposed); // a step that was short of a target alone keeps its size for the next
+            continue;
+        }
+        equilibrium.rollback();
+        observer.attempted(attempt, equilibrium.records());
+        if (decision.verdict == Verdict::give_up)
+            throw RunFailure("stage '" + stage.name + "', step of " + number(dt) + " s to time " + number(time) +
+                             " s, the smallest allowed, failed. " + attempt.cause);
+        if (decision.reason != Reason::forced) ++repeats;
+        dt = decision.reason == Reason::forced ? proposed : decision.dt;
     }
 }
 

@@ -145,16 +145,17 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
     text = replaced(text, "slave: under", "slave: ground");
     EXPECT_THAT(
         messages(faults_of(text, {{"solver.tolerance", "1"}})),
-        ElementsAre("bad.yaml:7:48: bodies.cap.material.linear_elastic.nu: expected a number in (-1, 0.5), found "
-                    "'3'",
-                    "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
-                    "for both",
-                    "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, ramp, "
-                    "displacement, pressure, body_force, found unknown key 'stpes' (did you mean 'steps'?)",
-                    "bad.yaml:24:16: stages.load.pressure.tpo: expected the name of a set: bed, ground, under, "
-                    "top, found 'tpo' (did you mean 'top'?)",
-                    "bad.yaml:24:21: stages.load.pressure.tpo: expected a pressure (Pa), found '5 kN' (force)",
-                    "--set: solver.tolerance: expected a number in (0, 0.01], found '1'"));
+        ElementsAre(
+            "bad.yaml:7:48: bodies.cap.material.linear_elastic.nu: expected a number in (-1, 0.5), found "
+            "'3'",
+            "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
+            "for both",
+            "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, control, ramp, "
+            "displacement, pressure, body_force, found unknown key 'stpes' (did you mean 'steps'?)",
+            "bad.yaml:24:16: stages.load.pressure.tpo: expected the name of a set: bed, ground, under, "
+            "top, found 'tpo' (did you mean 'top'?)",
+            "bad.yaml:24:21: stages.load.pressure.tpo: expected a pressure (Pa), found '5 kN' (force)",
+            "--set: solver.tolerance: expected a number in (0, 0.01], found '1'"));
 }
 
 TEST(BadScene, FaultInAnOverride) {

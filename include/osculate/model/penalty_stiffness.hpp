@@ -25,6 +25,10 @@ public:
     void stiffness_changed();
     /// Rewrites the matrix for other springs; the pattern grows where it has to.
     void set_springs(const std::vector<Spring>& springs);
+    /// Keeps the pattern as it is, or goes back to the one last kept: the order of elimination, and with it the last digit
+    /// of a solution, follows from the pattern.
+    void keep_pattern() { kept_ = pattern_springs_; }
+    void restore_pattern();
     /// Over the free components, by equation number.
     [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
 
@@ -40,6 +44,8 @@ private:
     const BlockMatrix& K_;
     std::vector<Index> block_row_start_, block_column_, block_offset_; ///< offset of a block's columns within a row
     std::vector<double> base_;
+    std::vector<Spring> pattern_springs_, kept_; ///< the pattern was built for; where they connect counts
+    std::uint64_t patterns_ = 0;
     solve::SparseMatrix matrix_;
 };
 

@@ -205,11 +205,21 @@ struct DynamicAnalysis {
     bool operator==(const DynamicAnalysis&) const = default;
 };
 
+/// What an attempted step must keep to; one that does not is repeated with a smaller dt.
+struct StepControl {
+    std::optional<double>
+        allowed_interpenetration;   ///< of the facet size; not given: 0.05 in dynamics, no bound in statics
+    double energy_tolerance = 0.01; ///< energy that contact may add in one dynamic step, of kinetic plus strain energy
+    double growth = 2;              ///< of dt after an easy step, up to the stage's step
+    bool operator==(const StepControl&) const = default;
+};
+
 /// Every value is reached at the end of the stage; values not named keep theirs.
 struct Stage {
     std::variant<StaticAnalysis, DynamicAnalysis> analysis;
     double duration = 1; ///< s
     int steps = 1;
+    StepControl control;
     bool ramp = true; ///< linear from the last value; false: the full value from the first step on
     Named<std::array<std::optional<double>, 3>> displacement; ///< set -> components along the support's axes, m
     Named<double> pressure; ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body

@@ -30,6 +30,8 @@ public:
     ContactPreconditioner(const model::Constraints& constraints, const model::BlockMatrix& K);
     /// Takes over new values of K.
     void stiffness_changed() { stiffness_.stiffness_changed(); }
+    void keep_pattern() { stiffness_.keep_pattern(); }
+    void restore_pattern() { stiffness_.restore_pattern(); }
     /// Factorises for the contacts given, every coupling of the pairs among them.
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
     /// z = P^-1 r; `rows` says where the rows of the residual are.

@@ -50,6 +50,9 @@ public:
     /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
     /// their weighted mean over the step.
     void begin_attempt(const model::State& state, StepLoad load, double dt);
+    /// Ends an attempt: patterns that grew in it stay, or go back to what they were. Nothing else outlives an attempt.
+    void commit();
+    void rollback();
     /// Statuses for the next solve. With `natural` they hold for the first iterate only, where `force_first` asks for it.
     void set_statuses(std::vector<std::vector<contact::Status>> statuses, StatusRule rule, bool force_first);
     void set_reference_force(double force) { reference_force_ = force; }
@@ -107,6 +110,8 @@ private:
     std::vector<Index> first_coupling_; ///< (pairs + 1)
     std::unique_ptr<model::SystemMatrix> matrix_;
     std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none without contact
+    std::vector<model::Coupling> kept_couplings_;           ///< of matrix_ at the last commit
+    long kept_patterns_ = 0;                                ///< patterns_built_ then
     StepLoad load_;
     double reference_force_ = 1;
 

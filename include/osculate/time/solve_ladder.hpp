@@ -22,6 +22,12 @@ struct LadderResult {
     [[nodiscard]] bool converged() const { return outcome == solve::KinsolOutcome::converged; }
 };
 
+/// Solves with the statuses given, whatever the complementarity functions say: the trial of a step.
+/// @param z  start values, last iterate afterwards
+[[nodiscard]] LadderResult solve_trial(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                                       const std::vector<std::vector<contact::Status>>& statuses,
+                                       const LadderOptions& options);
+
 using Statuses = std::vector<std::vector<contact::Status>>;
 
 /// 1 semismooth Newton: statuses follow the iterate

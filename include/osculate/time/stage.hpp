@@ -3,6 +3,7 @@
 
 #include "osculate/model/constraints.hpp"
 #include "osculate/time/integrator.hpp"
+#include "osculate/time/step_control.hpp"
 
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@ struct Stage {
     double duration = 1; ///< s
     int steps = 1;
     std::optional<Dynamics> dynamics;               ///< absent: static
+    StepLimits limits;                              ///< g_p in facet sizes; dt_max is the stage's step
     bool ramp = true;                               ///< linear from the last value; false: full value at once
     std::vector<model::NodeConstraint> constraints; ///< every direction held during this stage
     std::vector<Vec3> force_start, force_end;       ///< (nodes) external forces at its two ends, N

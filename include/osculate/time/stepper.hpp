@@ -14,7 +14,7 @@ namespace osculate::time {
 struct StepperOptions {
     double tolerance = 1e-9;
     int max_iterations = 30;
-    double smallest_step = 1e-3; ///< of the stage's step
+    int reject_every = 0; ///< rejects every k-th attempt on purpose, to see that it leaves no trace; 0 none
     bool predictor = true;
     int threads = 1;
 };
@@ -52,6 +52,12 @@ public:
 
 private:
     void run_stage(const Stage& stage, StepObserver& observer);
+    /// Gap of every slave node that is open at the accepted state, NaN of the others, per pair.
+    [[nodiscard]] std::vector<std::vector<double>> open_gaps();
+    /// Gaps in the trial that `equilibrium` was evaluated at last.
+    [[nodiscard]] std::vector<GapEvidence> trial_gaps(const std::vector<std::vector<double>>& before) const;
+    void refresh_patches();
+    void name_node(Index node, Attempt& attempt) const;
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
                                    const std::vector<Vec3>& prescribed_start, double fraction) const;
     /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.

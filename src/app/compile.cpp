@@ -253,13 +253,28 @@ private:
             if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, force);
     }
 
+    /// Nodes without mass of their own: slave nodes, where the scene asks for it.
+    [[nodiscard]] std::vector<char> massless_nodes() const {
+        std::vector<char> massless;
+        for (const auto& [name, stage] : scene_.stages) {
+            const auto* dynamic = std::get_if<scene::DynamicAnalysis>(&stage.analysis);
+            if (dynamic == nullptr || dynamic->contact_mass == scene::ContactMass::kept) continue;
+            massless.assign(plan_.model.X.size(), 0);
+            for (const auto& pair : plan_.model.pairs)
+                for (const Index node : pair->slaves().node) massless[static_cast<std::size_t>(node)] = 1;
+            break;
+        }
+        return massless;
+    }
+
     /// Masses and velocities, where a stage is dynamic.
     void add_mass() {
         model::Model& m = plan_.model;
+        const std::vector<char> massless = massless_nodes();
         for (const time::Stage& stage : plan_.stages) {
             if (!stage.dynamics) continue;
             model::BlockMatrix& mass = stage.dynamics->lumped_mass ? m.lumped_mass : m.consistent_mass;
-            if (mass.empty()) mass = model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass);
+            if (mass.empty()) mass = model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass, massless);
             if (!m.initial_velocity.empty()) continue;
             for (std::size_t b = 0; b < m.bodies.size(); ++b) {
                 const model::Body& body = m.bodies[b];

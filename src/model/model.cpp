@@ -35,7 +35,23 @@ BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
 }
 } // namespace
 
-BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped) {
+namespace {
+/// Takes the mass off the nodes marked and scales what is left to the same total.
+void redistribute(const std::vector<Index>& element, const std::vector<char>& massless, Matrix& mass) {
+    const double total = mass.sum();
+    Matrix kept = mass;
+    for (Index i = 0; i < mass.rows(); ++i)
+        if (massless[element[static_cast<std::size_t>(i)]] != 0) {
+            kept.row(i).setZero();
+            kept.col(i).setZero();
+        }
+    const double rest = kept.sum();
+    if (rest > 0) mass = kept * (total / rest);
+}
+} // namespace
+
+BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
+                          const std::vector<char>& massless) {
     BlockMatrix M = pattern_of(bodies, nodes);
     for (const Body& body : bodies) {
         Matrix scalar, Me;
@@ -50,6 +66,7 @@ BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lum
                 } else {
                     kernel.mass(X, body.density, scalar);
                 }
+                if (!massless.empty()) redistribute(element, massless, scalar);
                 Me.setZero(3 * n, 3 * n);
                 for (Index i = 0; i < n; ++i)
                     for (Index k = 0; k < n; ++k) Me.block<3, 3>(3 * i, 3 * k).diagonal().setConstant(scalar(i, k));

@@ -127,6 +127,13 @@ void describe(Visitor& v, DynamicAnalysis& s) {
     });
     static const Words masses{"consistent", "lumped"};
     word(v, {.name = "mass", .meaning = "Mass matrix."}, masses, s.mass);
+    static const Words places{"kept", "redistributed"};
+    word(v,
+         {.name = "contact_mass",
+          .meaning =
+              "Mass of slave nodes: kept, or given to the nodes behind them, so that contact neither adds nor eats "
+              "energy and its forces do not ring. The same in all dynamic stages."},
+         places, s.contact_mass);
     v.number({.name = "mass_damping",
               .meaning = "Rayleigh damping proportional to mass.",
               .unit = dimension::rate,

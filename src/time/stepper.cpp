@@ -156,10 +156,21 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     model::PenaltyStiffness free_mass(constraints, M);
     free_mass.set_springs({});
     const auto solver = solve::make_cholesky();
-    if (solver->factorise(free_mass.matrix()) != solve::FactorStatus::ok)
+    // nodes without mass have no acceleration of their own
+    solve::SparseMatrix matrix = free_mass.matrix();
+    std::vector<char> empty(static_cast<std::size_t>(constraints.equations()), 0);
+    for (solve::SparseIndex i = 0; i < matrix.rows(); ++i)
+        for (solve::SparseIndex k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
+            if (matrix.column[k] == i && matrix.value[k] == 0) {
+                matrix.value[k] = 1;
+                empty[static_cast<std::size_t>(i)] = 1;
+            }
+    if (solver->factorise(matrix) != solve::FactorStatus::ok)
         throw RunFailure("stage '" + stage.name + "': the mass matrix is not positive definite");
     Vector right(constraints.equations()), a(constraints.equations());
     constraints.gather(f, right.data());
+    for (Index i = 0; i < right.size(); ++i)
+        if (empty[static_cast<std::size_t>(i)] != 0) right(i) = 0;
     solver->solve(right.data(), a.data());
     state_.a.assign(n, Vec3::Zero());
     constraints.scatter(a.data(), std::vector<Vec3>(n, Vec3::Zero()), state_.a);

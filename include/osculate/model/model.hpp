@@ -47,7 +47,10 @@ struct Model {
 /// Stiffness of all bodies.
 [[nodiscard]] BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
 /// Mass of all bodies, multiples of the unit matrix in the pattern of the stiffness; lumped: diagonal.
-[[nodiscard]] BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped);
+/// @param massless  (nodes) nodes whose mass goes to the other nodes of their elements, in proportion to theirs; an element
+///                  that has no other keeps its mass. Empty: none
+[[nodiscard]] BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
+                                        const std::vector<char>& massless);
 /// Centre of mass of a body of uniform density in its reference configuration, m.
 [[nodiscard]] Vec3 centre_of_mass(const Body& body);
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).

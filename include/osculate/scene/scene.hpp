@@ -194,6 +194,7 @@ struct BackwardEuler {
 };
 
 enum class MassMatrix { consistent, lumped };
+enum class ContactMass { kept, redistributed };
 
 struct StaticAnalysis {
     bool operator==(const StaticAnalysis&) const = default;
@@ -201,6 +202,7 @@ struct StaticAnalysis {
 struct DynamicAnalysis {
     std::variant<GeneralisedAlpha, Newmark, Hht, BackwardEuler> integrator;
     MassMatrix mass = MassMatrix::consistent;
+    ContactMass contact_mass = ContactMass::redistributed;
     double mass_damping = 0, stiffness_damping = 0; ///< Rayleigh's C = mass_damping M + stiffness_damping K, 1/s and s
     bool operator==(const DynamicAnalysis&) const = default;
 };

@@ -211,6 +211,38 @@ TEST(Mass, MovedOffContactNodesStaysInTheBody) {
     EXPECT_EQ(tip, 0);
 }
 
+/// configs/validation/two_bars.yaml, exact by the waves that run from the meeting and come back from the far ends.
+TEST(TwoBars, TouchForTheTimeOfTheirWavesAndExchangeVelocities) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("validation/two_bars.yaml"));
+    const double area = 0.01, stress = 0.05, p0 = 0.1 * area, E0 = 0.5 * 0.1 * 0.1 * area;
+    double first = 0, end = 0, impulse = 0, sum = 0, before = 0;
+    int plateau = 0;
+    for (const support::RunStep& step : run.steps) {
+        const double t = step.time, force = step.pairs[0].normal;
+        impulse += force * (t - before);
+        before = t;
+        if (force > 0 && first == 0) first = t;
+        if (force > 0) end = t;
+        if (t > 0.3 && t < 1.9) {
+            sum += force / area;
+            ++plateau;
+        }
+        EXPECT_NEAR(step.ledger.linear.x(), p0, 1e-11 * p0); // round-off of 600 steps
+        EXPECT_LT(energy(step), E0 * (1 + 1e-4));
+        EXPECT_GT(energy(step), E0 * (1 - 1e-4));
+    }
+    const double front = 0.02; // two elements
+    EXPECT_NEAR(first, 0.1, front);
+    EXPECT_NEAR(end - first, 2, front);
+    EXPECT_NEAR(sum / plateau, stress, 0.005 * stress); // measured: 4e-4
+    EXPECT_NEAR(impulse, p0, 0.01 * p0);
+    double left = 0;
+    const model::Body& body = run.plan.model.bodies[0];
+    for (Index i = 0; i < body.nodes(); ++i) left += last(run).state.v[body.first_node + i].x() / body.nodes();
+    EXPECT_NEAR(left, 0, 0.02 * 0.1) << "the left bar has given its velocity away"; // its ends still ring
+}
+
 /// Mean displacement of the block down the slope at every accepted time.
 std::vector<std::pair<double, double>> descent(double mu) {
     support::SceneRun run;

@@ -239,31 +239,55 @@ void Stepper::name_node(Index node, Attempt& attempt) const {
         }
 }
 
-std::vector<std::vector<double>> Stepper::open_gaps() {
+Stepper::SlaveStarts Stepper::slave_starts() {
     std::vector<Vec3> x = model_.X;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];
-    std::vector<std::vector<double>> gaps;
+    SlaveStarts starts;
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         model::ContactTerm& pair = *model_.pairs[p];
         pair.begin_step(x, state_.contact[p], timings_, options_.threads);
         pair.evaluate(x, timings_, options_.threads);
-        auto& list = gaps.emplace_back(static_cast<std::size_t>(pair.size()), std::nan(""));
+        auto& list = starts.emplace_back(static_cast<std::size_t>(pair.size()));
         for (Index j = 0; j < pair.size(); ++j)
-            if (pair.point(j).found && !contact::is_closed(state_.contact[p].status[j])) list[j] = pair.point(j).gap;
+            if (const contact::ContactPoint& point = pair.point(j); point.found)
+                list[j] = {true, point.gap, point.normal, point.facet};
     }
-    return gaps;
+    return starts;
 }
 
-std::vector<GapEvidence> Stepper::trial_gaps(const std::vector<std::vector<double>>& before) const {
-    std::vector<GapEvidence> gaps;
+std::vector<GapEvidence> Stepper::trial_gaps(const SlaveStarts& before, const std::vector<Vec3>& u) const {
+    std::vector<GapEvidence> gaps = passed_through(before, u);
     for (std::size_t p = 0; p < before.size(); ++p)
         for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
             const contact::ContactPoint& point = model_.pairs[p]->point(j);
-            const double g0 = before[p][j];
-            if (std::isnan(g0) || !(point.found || point.behind)) continue;
-            gaps.push_back(
-                {g0, point.gap, static_cast<Index>(p), j, model_.pairs[p]->surface().facet_size(point.facet)});
+            if (contact::is_closed(state_.contact[p].status[j]) || !before[p][j].found) continue;
+            if (point.found || point.behind)
+                gaps.push_back({before[p][j].gap, point.gap, static_cast<Index>(p), j,
+                                model_.pairs[p]->surface().facet_size(point.facet)});
         }
+    return gaps;
+}
+
+std::vector<GapEvidence> Stepper::passed_through(const SlaveStarts& before, const std::vector<Vec3>& u) const {
+    constexpr double same_side = 0.5; // cosine of the turn of the normal within a step
+    std::vector<GapEvidence> gaps;
+    for (std::size_t p = 0; p < before.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        for (Index j = 0; j < pair.size(); ++j) {
+            const SlaveStart& start = before[p][j];
+            const contact::ContactPoint& point = pair.point(j);
+            if (!start.found) continue;
+            if (point.found && point.normal.dot(start.normal) > same_side) continue;
+            const auto corners = pair.surface().facet_vertices(start.facet);
+            Vec3 motion = u[pair.slaves().node[j]] - state_.u[pair.slaves().node[j]];
+            for (const Index v : corners) {
+                const Index node = pair.master_nodes()[v];
+                motion -= (u[node] - state_.u[node]) / static_cast<double>(corners.size());
+            }
+            gaps.push_back({start.gap, start.gap + start.normal.dot(motion), static_cast<Index>(p), j,
+                            pair.surface().facet_size(start.facet)});
+        }
+    }
     return gaps;
 }
 
@@ -293,7 +317,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const bool controlled = std::isfinite(stage.limits.allowed_interpenetration) && !model_.pairs.empty();
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
-    std::vector<std::vector<double>> gaps;
+    SlaveStarts starts;
     for (int k = 0; k < stage.steps;) {
         const double end = t_start + (k + 1) * step; // a time that is hit exactly
         constexpr double sliver = 1e-9;              // of the step: round-off of the times, not a step of its own
@@ -315,7 +339,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         } else if (options_.predictor) {
             predict(constraints, load.prescribed, u);
         }
-        if (controlled && repeats == 0) gaps = open_gaps();
+        if (controlled && repeats == 0) starts = slave_starts();
         equilibrium.begin_attempt(state_, load, dt);
         Vector z = equilibrium.unknowns(u, state_.contact);
         const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
@@ -342,7 +366,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             result = solve_trial(equilibrium, solver, trial, statuses, ladder);
             iterations = result.iterations;
             if (result.converged()) {
-                evidence.gaps = trial_gaps(gaps);
+                evidence.gaps = trial_gaps(starts, equilibrium.state(trial).u);
                 evidence.iterations = iterations;
                 decision = judge(evidence, stage.limits, dt, repeats);
                 z = std::move(trial);
@@ -361,6 +385,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             if (result.converged()) {
                 next = equilibrium.state(z);
                 next.time = time;
+                if (controlled) evidence.gaps = passed_through(starts, next.u);
                 if (dynamics != nullptr) {
                     ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
                     for (std::size_t i = 0; i < next.a.size(); ++i)

@@ -243,6 +243,16 @@ TEST(TwoBars, TouchForTheTimeOfTheirWavesAndExchangeVelocities) {
     EXPECT_NEAR(left, 0, 0.02 * 0.1) << "the left bar has given its velocity away"; // its ends still ring
 }
 
+TEST(TwoBars, DoNotFlyThroughEachOtherInOneStep) {
+    support::SceneRun run; // one step of 3 s: the left bar would come out behind the right one
+    support::run_scene(run, support::shipped("validation/two_bars.yaml"),
+                       {{"stages.impact.steps", "1"}, {"bodies.left.initial_velocity", "[0.5, 0, 0]"}});
+    EXPECT_GT(run.attempts, static_cast<int>(run.steps.size())) << "nothing was cut";
+    double largest = 0;
+    for (const support::RunStep& step : run.steps) largest = std::max(largest, step.pairs[0].normal);
+    EXPECT_GT(largest, 0) << "they have not met";
+}
+
 /// Mean displacement of the block down the slope at every accepted time.
 std::vector<std::pair<double, double>> descent(double mu) {
     support::SceneRun run;

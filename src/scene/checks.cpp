@@ -73,6 +73,19 @@ public:
         if (surface.R == 0 && surface.q < 1) fault(q, "more than 1 with R = 0", number_text(surface.q));
     }
 
+    /// Masses are made once for all dynamic stages.
+    void check_contact_mass(const Named<Stage>& stages) {
+        const DynamicAnalysis* first = nullptr;
+        for (const auto& [name, stage] : stages) {
+            const auto* dynamic = std::get_if<DynamicAnalysis>(&stage.analysis);
+            if (dynamic == nullptr) continue;
+            if (first == nullptr) first = dynamic;
+            if (dynamic->contact_mass != first->contact_mass)
+                fault({"stages", name, "analysis", "dynamic", "contact_mass"}, "the same in all dynamic stages",
+                      "another than in the first");
+        }
+    }
+
     void check_density(const std::string& name, const Body& body, const std::string& reason) {
         std::visit(
             [&](const auto& m) {
@@ -131,6 +144,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
                 rules.check_density(name, body, "dynamic stage '" + stage_name + "'");
             break;
         }
+    rules.check_contact_mass(scene.stages);
     for (const auto& [name, pair] : scene.contact) rules.check_pair(name, pair);
     for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);
 }

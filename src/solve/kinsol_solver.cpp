@@ -160,19 +160,25 @@ struct KinsolSolver::Impl {
         const double norm = std::sqrt(N_VDotProd(b, b)) * residual_scale;
         const double forcing = std::clamp(forcing_slope * norm, least_forcing, most_forcing);
         const double allowed = std::max(forcing * norm, tolerance_share * tolerance) / residual_scale;
+        SparseIndex suspect = -1;
         for (bool fresh = false; !fresh;) {
             fresh = !preconditioner_good;
             if (fresh) {
                 const ScopedTimer timer(timings, Part::factor);
                 ++factorisations;
-                if (problem->preconditioner()->factorise() != FactorStatus::ok) break;
+                if (problem->preconditioner()->factorise() != FactorStatus::ok) {
+                    suspect = problem->preconditioner()->failing_equation();
+                    break;
+                }
             }
             const ScopedTimer timer(timings, Part::solve);
             const Krylov::Result result = krylov->solve(*tangent, *problem->preconditioner(), b, x, allowed);
             preconditioner_good = result.converged && result.iterations <= worth_keeping;
             if (result.converged) return true;
         }
-        return factorise(*tangent) && solve_directly(b, x);
+        if (factorise(*tangent)) return solve_directly(b, x);
+        if (failing_equation < 0) failing_equation = suspect; // LU does not say where it failed
+        return false;
     }
 
     /// KINSOL keeps counters and scalings between calls; a fresh memory block per solve keeps calls independent.

@@ -308,7 +308,9 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         prescribed_start[node] = constraints.to_local(node, state_.u[node]);
 
     if (dynamics != nullptr && state_.v.empty()) {
-        state_.v = model_.initial_velocity;
+        // a later one, after statics, starts at rest
+        state_.v = moved_ ? std::vector<Vec3>(model_.X.size(), Vec3::Zero()) : model_.initial_velocity;
+        moved_ = true;
         find_initial_acceleration(stage, constraints, load_at(stage, constraints, prescribed_start, 0).force);
         ledger_ = opened(model_, *dynamics, state_);
     }
@@ -388,9 +390,10 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 if (controlled) evidence.gaps = passed_through(starts, next.u);
                 if (dynamics != nullptr) {
                     ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
-                    for (std::size_t i = 0; i < next.a.size(); ++i)
-                        evidence.local_error = std::max(evidence.local_error,
-                                                        dynamics->integrator.local_error(next.a[i], state_.a[i], dt));
+                    if (std::isfinite(stage.limits.error_tolerance))
+                        for (std::size_t i = 0; i < next.a.size(); ++i)
+                            evidence.local_error = std::max(
+                                evidence.local_error, dynamics->integrator.local_error(next.a[i], state_.a[i], dt));
                     const double energy = ledger_.kinetic + ledger_.strain;
                     evidence.energy_jump = energy > 0 ? std::max(0.0, ledger.contact - ledger_.contact) / energy : 0;
                 }

@@ -75,6 +75,22 @@ TEST_F(TwoBodies, HaveTheEnergyOfBodiesAndSprings) {
     check(stiffness, springs);
 }
 
+TEST_F(TwoBodies, GoBackToThePatternTheyKept) {
+    PenaltyStiffness stiffness(constraints, K);
+    const std::vector<Spring> near{{2, {4, 5}, {0.5 * Mat3::Identity(), 0.5 * Mat3::Identity()}, positive()}};
+    const std::vector<Spring> far{{0, {5, 7}, {0.5 * Mat3::Identity(), 0.5 * Mat3::Identity()}, positive()}};
+    stiffness.set_springs(near);
+    stiffness.keep_pattern();
+    const auto column = stiffness.matrix().column;
+    const auto value = stiffness.matrix().value;
+    stiffness.set_springs(far);
+    EXPECT_NE(stiffness.matrix().column, column);
+    stiffness.restore_pattern();
+    stiffness.set_springs(near);
+    EXPECT_EQ(stiffness.matrix().column, column);
+    EXPECT_EQ(stiffness.matrix().value, value);
+}
+
 TEST_F(TwoBodies, ForgetEarlierSpringsAndGrowTheirPatternOnlyWhereNeeded) {
     PenaltyStiffness stiffness(constraints, K);
     std::vector<Spring> springs{{2, {4, 5}, {0.5 * Mat3::Identity(), 0.5 * Mat3::Identity()}, positive()}};

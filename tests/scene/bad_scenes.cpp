@@ -130,6 +130,16 @@ TEST(BadScene, NothingInIt) {
                             "nothing"));
 }
 
+TEST(BadScene, ParametersOfAnotherBasis) {
+    expect_override_fault(
+        {"contact.joint.surface", "{blend: {basis: r5, q: 1.5}}"},
+        "--set: contact.joint.master.surface.blend.q: expected basis multiquadric with q, found another "
+        "basis");
+    expect_override_fault({"contact.joint.surface", "{rpim: {basis: r5, m: 3}}"},
+                          "--set: contact.joint.master.surface.rpim.m: expected 6 with basis r5, found 3");
+    EXPECT_THAT(messages(faults_of(small_scene, {{"contact.joint.surface", "{rpim: {basis: r3, m: 3}}"}})), IsEmpty());
+}
+
 TEST(BadScene, DynamicsWithoutMass) {
     const std::vector<std::string> faults =
         messages(faults_of(replaced(small_scene, "steps: 2", "steps: 2\n    analysis: dynamic")));

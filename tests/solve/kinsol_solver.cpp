@@ -330,12 +330,17 @@ TEST_F(PreconditionedNewton, DoesNotRememberEarlierSolves) {
     EXPECT_EQ(solve(used, 1), solve(fresh, 1)); // to the bit
 }
 
-TEST_F(PreconditionedNewton, SaysWhenTheTangentItselfIsSingular) {
+TEST_F(PreconditionedNewton, SaysWhereTheTangentItselfIsSingular) {
     Preconditioned p(linear(n, load), laplacian(n));
-    std::fill(p.J.value.begin() + p.J.row_start[5], p.J.value.begin() + p.J.row_start[6], 0.0);
+    for (SparseMatrix* A : {&p.J, &p.P})
+        for (SparseIndex i = 0; i < A->rows(); ++i)
+            for (SparseIndex k = A->row_start[i]; k < A->row_start[i + 1]; ++k)
+                if (i == 5 || A->column[k] == 5) A->value[k] = 0;
     Vector u = Vector::Zero(p.size());
     KinsolSolver solver(p.size(), timings);
-    EXPECT_EQ(solver.solve(p, u, options).outcome, KinsolOutcome::singular);
+    const KinsolResult result = solver.solve(p, u, options);
+    EXPECT_EQ(result.outcome, KinsolOutcome::singular);
+    EXPECT_EQ(result.failing_equation, 5); // from the Cholesky factorisation of P: LU does not tell
     EXPECT_TRUE(u.allFinite());
 }
 

@@ -89,6 +89,7 @@ private:
     Timings& timings_;
     model::State state_;
     Ledger ledger_;
+    bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
     long factorisations_ = 0, refreshed_patches_ = 0;
     double characteristic_length_ = 1;

@@ -63,6 +63,12 @@ public:
         return {};
     }
 
+    Deformation material_tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>&,
+                                 Eigen::Ref<Matrix> Ke) const override {
+        stiffness(X, Ke);
+        return {};
+    }
+
     Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
                              Eigen::Ref<Matrix> stress) const override {
         require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,

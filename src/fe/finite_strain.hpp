@@ -96,6 +96,25 @@ public:
         return k.deformation;
     }
 
+    Deformation material_tangent(const ConstPositions& X, const ConstPositions& u,
+                                 Eigen::Ref<Matrix> Ke) const override {
+        require(X.cols() == n && u.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n,
+                "material_tangent: sizes do not match the element");
+        Ke.setZero();
+        const Kinematics k(this->table_, X, u);
+        if (!k.deformation.admissible()) return k.deformation;
+        Stiffness K = Stiffness::Zero();
+        const Row mean = flat(k.mean_gradients());
+        for (std::size_t q = 0; q < E::points; ++q) {
+            const auto B = varied_strain(k, q, mean);
+            const Eigen::Matrix<double, 6, 3 * n> DB = material_.tangent(k.strain(q)) * B * k.points.volumes[q];
+            K.noalias() += B.transpose() * DB;
+        }
+        if (!K.allFinite()) return overflow;
+        Ke = (K + K.transpose()) / 2;
+        return k.deformation;
+    }
+
     Deformation nodal_stress(const ConstPositions& X, const ConstPositions& u,
                              Eigen::Ref<Matrix> stress) const override {
         require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,
@@ -195,6 +214,20 @@ private:
         return B;
     }
 
+    static Row flat(const Gradients<n>& g) { return g.transpose().reshaped().transpose(); }
+
+    /// Variation of k.strain(q): dE, or dEbar = s^2 (dE + h C / 3), see add_mean_dilatation_tangent().
+    static Eigen::Matrix<double, 6, 3 * n> varied_strain(const Kinematics& k, std::size_t q, const Row& mean) {
+        const Mat3 F = k.F(q);
+        Eigen::Matrix<double, 6, 3 * n> B = strain_variation(F, k.points.gradients[q]);
+        if constexpr (mean_dilatation) {
+            const Row h = mean - flat(k.spatial_gradients(q));
+            B += material::strain_vector(F.transpose() * F) / 3 * h;
+            B *= k.scale_squared(q);
+        }
+        return B;
+    }
+
     /// S : d(dE), the part of the tangent that the stress has: dN_a/dX S dN_b/dX on the diagonal of block (a, b).
     static void add_initial_stress(const Gradients<n>& g, const Mat3& S, Stiffness& K) {
         const Eigen::Matrix<double, n, n> initial = g * S * g.transpose();
@@ -207,17 +240,16 @@ private:
     ///   S : ddEbar = s^2 S : ddE + 2/3 (h r + r h) + 2/3 p h h + p ddphi,  r = s^2 S : dE,
     ///   dd ln J = -g_b g_a on block (a, b),  dd ln Jbar = sum_q w_q (g g + dd ln J)_q - gbar gbar.
     void add_mean_dilatation_tangent(const Kinematics& k, Stiffness& K) const {
-        const auto row = [](const Gradients<n>& g) { return Row(g.transpose().reshaped().transpose()); };
-        const Row mean = row(k.mean_gradients());
+        const Row mean = flat(k.mean_gradients());
         std::array<double, E::points> pdV;
         double pressure = 0;
         for (std::size_t q = 0; q < E::points; ++q) {
             const double dV = k.points.volumes[q], s2 = k.scale_squared(q);
             const Mat3 F = k.F(q), C = F.transpose() * F, strain = k.strain(q), S = material_.pk2(strain);
             const auto B = strain_variation(F, k.points.gradients[q]);
-            const Row h = mean - row(k.spatial_gradients(q));
+            const Row h = mean - flat(k.spatial_gradients(q));
             const Row r = s2 * material::stress_vector(S).transpose() * B;
-            const Eigen::Matrix<double, 6, 3 * n> Bbar = s2 * (B + material::strain_vector(C) / 3 * h);
+            const auto Bbar = varied_strain(k, q, mean);
             const Eigen::Matrix<double, 6, 3 * n> DB = material_.tangent(strain) * Bbar * dV;
             const double p = s2 * S.cwiseProduct(C).sum() / 3;
             K.noalias() += Bbar.transpose() * DB;
@@ -230,9 +262,9 @@ private:
         }
         for (std::size_t q = 0; q < E::points; ++q) {
             const Gradients<n> g = k.spatial_gradients(q);
-            const Row flat = row(g);
+            const Row row = flat(g);
             const double share = pressure * k.weight(q);
-            K.noalias() += (share * flat.transpose()) * flat;
+            K.noalias() += (share * row.transpose()) * row;
             for (int b = 0; b < n; ++b)
                 for (int a = 0; a < n; ++a)
                     K.template block<3, 3>(3 * a, 3 * b).noalias() +=

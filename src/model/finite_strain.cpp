@@ -78,23 +78,38 @@ WorstElement FiniteStrain::add_internal_force(const std::vector<Vec3>& X, const 
     return worst;
 }
 
-void FiniteStrain::add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
-                               int threads) const {
+template <class Kernel>
+void FiniteStrain::add(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
+                       int threads, Kernel&& kernel) const {
     for (const Block& block : blocks_) {
         const Index n = block.kernel->nodes();
         std::vector<Matrix> tangent(batch, Matrix(3 * n, 3 * n));
         for_each(
             block, X, u, threads,
             [&](Index k, const Eigen::Matrix3Xd& Xe, const Eigen::Matrix3Xd& ue) {
-                (void)block.kernel->tangent(Xe, ue, tangent[k]);
+                kernel(*block.kernel, Xe, ue, tangent[k]);
             },
             [&](Index k, Index e) {
                 const Index* slot = &block.slot[static_cast<std::size_t>(e * n * n)];
                 for (Index i = 0; i < n; ++i)
                     for (Index j = 0; j < n; ++j)
-                        K.block(slot[i * n + j]) += factor * tangent[k].block<3, 3>(3 * i, 3 * j);
+                        K.block(slot[i * n + j]) += factor * tangent[k].template block<3, 3>(3 * i, 3 * j);
             });
     }
+}
+
+void FiniteStrain::add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
+                               int threads) const {
+    add(X, u, factor, K, threads, [](const fe::ElementKernel& kernel, const auto& Xe, const auto& ue, Matrix& Ke) {
+        (void)kernel.tangent(Xe, ue, Ke);
+    });
+}
+
+void FiniteStrain::add_material_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor,
+                                        BlockMatrix& K, int threads) const {
+    add(X, u, factor, K, threads, [](const fe::ElementKernel& kernel, const auto& Xe, const auto& ue, Matrix& Ke) {
+        (void)kernel.material_tangent(Xe, ue, Ke);
+    });
 }
 
 double FiniteStrain::energy(const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads) const {

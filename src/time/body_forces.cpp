@@ -27,7 +27,12 @@ bool BodyForces::begin(const model::State& state, double dt) {
     u_start_ = state.u;
     v_start_ = state.v;
     a_start_ = state.a;
-    if (damps_strain()) set_tangent_of_damping(state.u);
+    if (damps_strain()) { // where the bodies are expected at the time that equilibrium is of
+        const double ahead = (1 - w.alpha_f) * dt;
+        Field u = state.u;
+        for (std::size_t i = 0; i < u.size(); ++i) u[i] += ahead * state.v[i] + ahead * ahead / 2 * state.a[i];
+        set_tangent_of_damping(u);
+    }
     const bool changed = dt != dt_ || damps_strain();
     if (changed) {
         dt_ = dt;
@@ -63,7 +68,7 @@ bool BodyForces::begin(const model::State& state, double dt) {
 
 void BodyForces::set_tangent_of_damping(const Field& u) {
     damping_.set_combination(0, model_.K, 0, {});
-    model_.finite_strain->add_tangent(model_.X, u, 1, damping_, threads_);
+    model_.finite_strain->add_material_tangent(model_.X, u, 1, damping_, threads_);
 }
 
 model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {

@@ -352,8 +352,16 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         equilibrium.begin_attempt(state_, load, dt);
         Vector z = equilibrium.unknowns(u, state_.contact);
         const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
-        LadderOptions ladder{options_.tolerance, options_.max_iterations, characteristic_length_,
-                             reference_force(stage, load, equilibrium, z, dt)};
+        LadderOptions ladder{options_.tolerance,
+                             options_.max_iterations,
+                             characteristic_length_,
+                             reference_force(stage, load, equilibrium, z, dt),
+                             {},
+                             {}};
+        if (model_.finite_strain) {
+            ladder.predicted = u;
+            ladder.unpredicted = state_.u;
+        }
         Statuses statuses;
         equilibrium.set_reference_force(ladder.reference_force);
         bool forced = false;
@@ -379,6 +387,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 evidence.iterations = iterations;
                 decision = judge(evidence, stage.limits, dt, repeats);
                 z = std::move(trial);
+                ladder.predicted.clear();
             }
         }
         model::State next;

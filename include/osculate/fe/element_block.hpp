@@ -56,6 +56,12 @@ public:
                                               const Eigen::Ref<const Eigen::Matrix3Xd>& u,
                                               Eigen::Ref<Matrix> Ke) const = 0;
 
+    /// Part of the tangent that the material has, without that of the stress: (3n x 3n), N/m, positive semidefinite where
+    /// the material is stable, and blind to rotations of the deformed element.
+    [[nodiscard]] virtual Deformation material_tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
+                                                       const Eigen::Ref<const Eigen::Matrix3Xd>& u,
+                                                       Eigen::Ref<Matrix> Ke) const = 0;
+
     /// Cauchy stress (6 x n), Pa, Voigt xx yy zz xy yz zx, carried from the quadrature points to the nodes.
     virtual Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
                                      const Eigen::Ref<const Eigen::Matrix3Xd>& u, Eigen::Ref<Matrix> stress) const = 0;

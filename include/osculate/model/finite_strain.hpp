@@ -32,6 +32,9 @@ public:
     /// K += factor df_int/du. Elements that are not admissible are left out.
     void add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
                      int threads) const;
+    /// The same with the material's part of df_int/du alone.
+    void add_material_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
+                              int threads) const;
     /// Strain energy, J.
     [[nodiscard]] double energy(const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads) const;
 
@@ -47,6 +50,10 @@ private:
     template <class Compute, class Use>
     void for_each(const Block& block, const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads,
                   Compute&& compute, Use&& use) const;
+
+    template <class Kernel>
+    void add(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K, int threads,
+             Kernel&& kernel) const;
 
     std::vector<Block> blocks_;
 };

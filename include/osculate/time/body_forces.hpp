@@ -14,7 +14,8 @@ struct BodyWork {
 /// In statics f(u) = f_int(u). In dynamics the mean over the step that the integrator asks for,
 ///     f(u) = (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + f_int(u)) + alpha_f (C v_n + f_int(u_n)),
 /// v and a affine in u by its kinematics, C = mass_damping M + stiffness_damping K. For bodies at finite strain K of the
-/// damping is the tangent at the start of the step, so that a rigid rotation is damped by nothing.
+/// damping is the material's part of their tangent where they are expected at t + (1-alpha_f) dt, so that a rigid rotation
+/// is damped by next to nothing.
 class BodyForces {
 public:
     /// @param dynamics  null in statics; must outlive this object, as must the model
@@ -54,7 +55,7 @@ private:
     double dt_ = 0;
     model::BlockMatrix tangent_;        ///< dynamics or finite strain
     model::BlockMatrix constant_;       ///< finite strain: the part of the tangent that does not depend on u
-    model::BlockMatrix damping_;        ///< finite strain with stiffness damping: df_int/du at the start of the step
+    model::BlockMatrix damping_;        ///< finite strain with stiffness damping: its K
     Field u_start_, v_start_, a_start_; ///< dynamics only
     Field force_start_;                 ///< f at u_start without f_int of finite strain at the end, N; dynamics only
     Field internal_start_;              ///< f_int of finite strain at u_start, N

@@ -24,7 +24,7 @@ Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constra
             const double cosine = other.direction.dot(c.direction);
             if (std::abs(std::abs(cosine) - 1) < same_direction) {
                 const double target = cosine > 0 ? c.target : -c.target;
-                if (std::abs(target - other.target) > same_value * (1 + std::abs(target)))
+                if (c.course != other.course || std::abs(target - other.target) > same_value * (1 + std::abs(target)))
                     throw std::invalid_argument("node " + std::to_string(c.node) +
                                                 " is given two different displacements along one direction");
                 other.symmetry = other.symmetry || c.symmetry;

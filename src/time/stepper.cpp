@@ -44,18 +44,28 @@ void Stepper::run(StepObserver& observer) {
 }
 
 StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, const std::vector<Vec3>& prescribed_start,
-                          double fraction) const {
-    const double ramp = stage.ramp ? fraction : 1;
+                          double elapsed) const {
+    const double ramp = stage.ramp ? elapsed / stage.duration : 1;
     StepLoad load;
     load.force.resize(model_.X.size());
     for (std::size_t i = 0; i < load.force.size(); ++i)
         load.force[i] = stage.force_start[i] + ramp * (stage.force_end[i] - stage.force_start[i]);
+    std::vector<double> value;
+    for (const Course& course : stage.courses) {
+        value.push_back(course.at(elapsed));
+        if (!std::isfinite(value.back()))
+            throw RunFailure("stage '" + stage.name + "': " + course.name + " is " + number(value.back()) + " at " +
+                             number(elapsed) + " s after the stage's start");
+    }
+    for (const CourseForce& part : stage.course_forces)
+        for (std::size_t i = 0; i < load.force.size(); ++i) load.force[i] += value[part.course] * part.pattern[i];
     load.prescribed = prescribed_start;
     for (Index node = 0; node < model_.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
             if (const auto* c = constraints.constraint(node, k); c != nullptr && c->driven) {
                 const double start = prescribed_start[node](k);
-                load.prescribed[node](k) = start + ramp * (c->target - start);
+                load.prescribed[node](k) =
+                    c->course >= 0 ? c->target * value[c->course] : start + ramp * (c->target - start);
             }
     return load;
 }
@@ -327,19 +337,25 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
     SlaveStarts starts;
+    std::vector<double> corners;
+    for (const Course& course : stage.courses)
+        corners.insert(corners.end(), course.corners.begin(), course.corners.end());
+    corners = corners_between(std::move(corners), t_start, stage.duration, stage.steps);
+    auto corner = corners.begin();
     for (int k = 0; k < stage.steps;) {
-        const double end = t_start + (k + 1) * step; // a time that is hit exactly
-        constexpr double sliver = 1e-9;              // of the step: round-off of the times, not a step of its own
+        const double step_end = t_start + (k + 1) * step;
+        const bool to_corner = corner != corners.end() && *corner < step_end;
+        const double end = to_corner ? *corner : step_end; // a time that is hit exactly
+        constexpr double sliver = 1e-9;                    // of the step: round-off of the times, not a step of its own
         const double left = end - state_.time;
         const bool to_end = dt >= left * (1 - sliver);
         const double time = to_end ? end : state_.time + dt, proposed = dt;
         if (to_end && dt > left * (1 + sliver)) dt = left;
 
-        StepLoad load = load_at(stage, constraints, prescribed_start, (time - t_start) / stage.duration);
+        StepLoad load = load_at(stage, constraints, prescribed_start, time - t_start);
         std::vector<Vec3> u = state_.u;
         if (dynamics != nullptr) {
-            const StepLoad before =
-                load_at(stage, constraints, prescribed_start, (state_.time - t_start) / stage.duration);
+            const StepLoad before = load_at(stage, constraints, prescribed_start, state_.time - t_start);
             const double alpha = dynamics->integrator.alpha_f;
             for (std::size_t i = 0; i < u.size(); ++i) {
                 load.force[i] = (1 - alpha) * load.force[i] + alpha * before.force[i];
@@ -438,7 +454,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
             refresh_patches();
             repeats = 0;
-            k += to_end ? 1 : 0;
+            if (to_end && to_corner) ++corner;
+            if (to_end && !to_corner) ++k;
             dt = std::max(decision.dt, proposed); // a step that was short of a target alone keeps its size for the next
             continue;
         }

@@ -33,10 +33,10 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     }
     const ScopedTimer timer(timings_, Part::assembly);
     matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), std::move(couplings));
-    if (model_.finite_strain && model_.pairs.empty()) matrix_->expect_buckling();
+    if (model_.finite_strain) matrix_->expect_buckling();
     kept_couplings_ = matrix_->couplings();
     size_ = matrix_->size();
-    if (!model.pairs.empty())
+    if (!model.pairs.empty() || !bodies_.symmetric())
         preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, bodies_.tangent());
     const auto n = static_cast<std::size_t>(model.nodes());
     u_.assign(n, Vec3::Zero());

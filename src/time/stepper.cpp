@@ -144,7 +144,7 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     const Dynamics& dynamics = *stage.dynamics;
     const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
     const auto n = static_cast<std::size_t>(model_.nodes());
-    const std::vector<Vec3> own = BodyForces(model_, &dynamics, options_.threads).of(state_);
+    const std::vector<Vec3> own = body_forces(model_, dynamics, state_, options_.threads);
     std::vector<Vec3> f = force, x = model_.X;
     for (std::size_t i = 0; i < n; ++i) {
         f[i] -= own[i];

@@ -112,7 +112,7 @@ private:
     Index size_ = 0;
     std::vector<Index> first_coupling_; ///< (pairs + 1)
     std::unique_ptr<model::SystemMatrix> matrix_;
-    std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none without contact
+    std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none where the tangent is symmetric
     std::vector<model::Coupling> kept_couplings_;           ///< of matrix_ at the last commit
     long kept_patterns_ = 0;                                ///< patterns_built_ then
     StepLoad load_;

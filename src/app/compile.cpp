@@ -75,6 +75,7 @@ public:
             const ScopedTimer timer(timings_, Part::assembly);
             plan_.model.K = model::assemble_stiffness(plan_.model.bodies, plan_.model.nodes());
             add_mass();
+            add_gravity();
         }
         plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0, scene_.solver.predictor, threads_};
         add_items();
@@ -206,7 +207,6 @@ private:
             for (const auto& [set_name, value] : spec.pressure) pressure[set_name] = value;
             for (const auto& [body, value] : spec.body_force) body_force[body] = value;
             add_constraints(driven, stage.constraints);
-            if (plan_.stages.empty()) add_gravity(force); // in full from the start
             stage.force_start = force;
             force.assign(force.size(), Vec3::Zero());
             for (const auto& [set_name, value] : pressure) {
@@ -221,7 +221,6 @@ private:
             }
             for (const auto& [body, value] : body_force)
                 model::add_body_force(plan_.model.bodies[body_index(body)], value, force);
-            add_gravity(force);
             stage.force_end = force;
             try {
                 (void)model::Constraints(plan_.model.nodes(), stage.constraints);
@@ -245,12 +244,6 @@ private:
                               [](const scene::BackwardEuler&) { return time::backward_euler(); },
                           },
                           analysis.integrator);
-    }
-
-    void add_gravity(std::vector<Vec3>& force) const {
-        if (scene_.gravity.isZero(0)) return;
-        for (const model::Body& body : plan_.model.bodies)
-            if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, force);
     }
 
     /// Nodes without mass of their own: slave nodes, where the scene asks for it.
@@ -283,6 +276,23 @@ private:
                 for (const Vec3& X : body.mesh.nodes)
                     m.initial_velocity.push_back(spec.initial_velocity + spec.initial_spin.cross(X - centre));
             }
+        }
+    }
+
+    /// In full from the start. In dynamics it acts on mass where the mass is, so that bodies fall without strain.
+    void add_gravity() {
+        if (scene_.gravity.isZero(0)) return;
+        const model::Model& m = plan_.model;
+        for (time::Stage& stage : plan_.stages) {
+            std::vector<Vec3> weight(m.X.size(), Vec3::Zero());
+            if (stage.dynamics)
+                m.mass(stage.dynamics->lumped_mass)
+                    .multiply_add(std::vector<Vec3>(m.X.size(), scene_.gravity), weight, threads_);
+            else
+                for (const model::Body& body : m.bodies)
+                    if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, weight);
+            for (auto* force : {&stage.force_start, &stage.force_end})
+                for (std::size_t i = 0; i < weight.size(); ++i) (*force)[i] += weight[i];
         }
     }
 

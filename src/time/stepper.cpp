@@ -158,11 +158,12 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     const auto solver = solve::make_cholesky();
     // nodes without mass have no acceleration of their own
     solve::SparseMatrix matrix = free_mass.matrix();
+    const double heaviest = *std::max_element(matrix.value.begin(), matrix.value.end());
     std::vector<char> empty(static_cast<std::size_t>(constraints.equations()), 0);
     for (solve::SparseIndex i = 0; i < matrix.rows(); ++i)
         for (solve::SparseIndex k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
             if (matrix.column[k] == i && matrix.value[k] == 0) {
-                matrix.value[k] = 1;
+                matrix.value[k] = heaviest;
                 empty[static_cast<std::size_t>(i)] = 1;
             }
     if (solver->factorise(matrix) != solve::FactorStatus::ok)

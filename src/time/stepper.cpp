@@ -196,6 +196,14 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
             M.multiply_add(*motion, internal, options_.threads);
             carried = std::max(carried, factor * norm(internal));
         }
+        // inertia of the last digit of the displacements: no tolerance can ask for less
+        std::fill(internal.begin(), internal.end(), Vec3::Zero());
+        M.multiply_add(state_.u, internal, options_.threads);
+        double largest = 0;
+        for (const Vec3& f : internal) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+        const double digit = std::numeric_limits<double>::epsilon() / options_.tolerance;
+        const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
+        carried = std::max(carried, digit * by_u * largest);
     }
     if (carried > 0) return carried;
     const model::State predicted = equilibrium.state(z);

@@ -196,11 +196,16 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
             M.multiply_add(*motion, internal, options_.threads);
             carried = std::max(carried, factor * norm(internal));
         }
-        // inertia of the last digit of the displacements: no tolerance can ask for less
-        std::fill(internal.begin(), internal.end(), Vec3::Zero());
-        M.multiply_add(state_.u, internal, options_.threads);
+        // inertia of the last digit of positions, which gaps are made of: no tolerance can ask for less
         double largest = 0;
-        for (const Vec3& f : internal) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+        for (const bool displacements : {true, false}) {
+            std::vector<Vec3> x = state_.u;
+            for (std::size_t i = 0; i < x.size() && !displacements; ++i) x[i] += model_.X[i];
+            std::fill(internal.begin(), internal.end(), Vec3::Zero());
+            M.multiply_add(x, internal, options_.threads);
+            for (const Vec3& f : internal) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+            if (model_.pairs.empty()) break;
+        }
         const double digit = std::numeric_limits<double>::epsilon() / options_.tolerance;
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
         carried = std::max(carried, digit * by_u * largest);

@@ -325,6 +325,12 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         // a later one, after statics, starts at rest
         state_.v = moved_ ? std::vector<Vec3>(model_.X.size(), Vec3::Zero()) : model_.initial_velocity;
         moved_ = true;
+        for (Index node = 0; node < model_.nodes(); ++node) { // what holds a body does not move with it
+            Vec3 v = constraints.to_local(node, state_.v[node]);
+            for (int k = 0; k < 3; ++k)
+                if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
+            state_.v[node] = constraints.to_global(node, v);
+        }
         find_initial_acceleration(stage, constraints, load_at(stage, constraints, prescribed_start, 0).force);
         ledger_ = opened(model_, *dynamics, state_);
     }

@@ -141,6 +141,30 @@ TEST(Mass, MovedOffContactNodesStaysInTheBody) {
     EXPECT_EQ(tip, 0);
 }
 
+/// The initial velocity of a body is not that of what holds it: it would come and go there, step by step, for ever.
+TEST(Stages, LeaveHeldNodesAtRestWhereABodyIsThrown) {
+    const std::string text = R"(
+bodies:
+  bar:
+    mesh: {block: {size: [2 m, 1 m, 1 m], divisions: [2, 1, 1]}}
+    material: {linear_elastic: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}
+    initial_velocity: [0.1 m/s, 0 m/s, 0.1 m/s]
+sets: {end: {body: bar, surface: x_min}}
+supports: {end: {fix: [x, y, z]}}
+stages:
+  swing: {analysis: {dynamic: {integrator: {newmark: {}}}}, duration: 0.1 s, steps: 50}
+)";
+    support::SceneRun run;
+    support::run_scene(run, scene_file("bar_thrown.yaml", text));
+    for (const support::RunStep& step : run.steps) {
+        for (Index i = 0; i < 12; ++i)
+            if (run.plan.model.X[static_cast<std::size_t>(i)].x() == 0) {
+                EXPECT_TRUE(step.state.v[static_cast<std::size_t>(i)].isZero(0));
+            }
+        EXPECT_NEAR(energy(step), energy(run.steps[0]), 1e-11 * energy(run.steps[0]));
+    }
+}
+
 TEST(Stages, GiveTheInitialVelocityOnlyOnce) {
     const std::string text = R"(
 bodies:

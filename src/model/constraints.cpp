@@ -8,7 +8,7 @@ namespace osculate::model {
 
 namespace {
 constexpr double same_direction = 1e-9; ///< sine or cosine below which unit vectors count as parallel or orthogonal
-constexpr double same_value = 1e-12; ///< relative
+constexpr double same_value = 1e-12;    ///< relative
 } // namespace
 
 Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constraints)

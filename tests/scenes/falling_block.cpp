@@ -31,8 +31,7 @@ protected:
         Points points;
         for (vtkIdType i = 0; i < grid.GetNumberOfPoints(); ++i) {
             points.X.emplace_back(Eigen::Map<const Vec3>(grid.GetPoint(i)));
-            points.u.emplace_back(
-                Eigen::Map<const Vec3>(grid.GetPointData()->GetArray("displacement")->GetTuple3(i)));
+            points.u.emplace_back(Eigen::Map<const Vec3>(grid.GetPointData()->GetArray("displacement")->GetTuple3(i)));
         }
         return points;
     }

@@ -21,8 +21,7 @@ struct Fall final : time::StepObserver {
 
     /// @param allowed  g_p in facet sizes
     explicit Fall(double allowed, const std::vector<scene::Override>& changes = {}) {
-        std::vector<scene::Override> all{
-            {"stages.fall.control.allowed_interpenetration", std::to_string(allowed)}};
+        std::vector<scene::Override> all{{"stages.fall.control.allowed_interpenetration", std::to_string(allowed)}};
         all.insert(all.end(), changes.begin(), changes.end());
         const scene::Scene scene = scene::read_scene(support::shipped("validation/falling_block.yaml"), all);
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);
@@ -70,9 +69,9 @@ double height_above(const model::Model& model, const std::vector<Vec3>& u, const
 }
 
 struct Depths {
-    double in_trial = 0;   ///< deepest that a point open at the start of its step was in the step's trial, m
-    double accepted = 0;   ///< deepest of all slave points at the ends of steps, m
-    int mixed = 0;         ///< steps that began with some points open and some closed
+    double in_trial = 0; ///< deepest that a point open at the start of its step was in the step's trial, m
+    double accepted = 0; ///< deepest of all slave points at the ends of steps, m
+    int mixed = 0;       ///< steps that began with some points open and some closed
 };
 
 /// Repeats the trial of every accepted step from the state before it, and looks where the points are.

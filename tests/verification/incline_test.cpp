@@ -32,8 +32,8 @@ std::vector<Sample> descent(double mu, double scale) {
     changes.push_back({"stages.slide.duration", time});
     changes.push_back({"stages.raise.duration", number(0.5 * std::sqrt(scale))});
     for (const char* stage : {"raise", "slide"})
-        changes.push_back({std::string("stages.") + stage + ".analysis.dynamic.stiffness_damping",
-                           number(1e-3 * std::sqrt(scale))});
+        changes.push_back(
+            {std::string("stages.") + stage + ".analysis.dynamic.stiffness_damping", number(1e-3 * std::sqrt(scale))});
     support::SceneRun run;
     support::run_scene(run, support::shipped("validation/incline.yaml"), changes);
     const model::Body& block = run.plan.model.bodies[1];

@@ -81,9 +81,10 @@ Changes meet(const std::string& surface, const std::string& friction, int steps)
     changes.linear /= changes.impulse;
     changes.moment /= moment;
     for (double* part : {&changes.angular, &changes.internal, &changes.rest}) *part /= arm * changes.impulse;
-    std::printf("%s, friction %s, %d steps: linear %.1e, angular %.1e, by internal forces %.1e, rest %.1e, moment %.1e\n",
-                surface.c_str(), friction.c_str(), steps, changes.linear, changes.angular, changes.internal,
-                changes.rest, changes.moment);
+    std::printf(
+        "%s, friction %s, %d steps: linear %.1e, angular %.1e, by internal forces %.1e, rest %.1e, moment %.1e\n",
+        surface.c_str(), friction.c_str(), steps, changes.linear, changes.angular, changes.internal, changes.rest,
+        changes.moment);
     return changes;
 }
 

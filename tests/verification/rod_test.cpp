@@ -95,8 +95,8 @@ TEST(BouncingRod, ConvergesToTheExactSolutionOverFourPeriods) {
         const double h = 1. / elements;
         ASSERT_EQ(e.touch.size(), 4u) << "a touch a period, no chatter";
         ASSERT_EQ(e.release.size(), 4u);
-        EXPECT_LT(e.contact_time, 2 * h);       // measured: 0.7 to 1.8
-        EXPECT_NEAR(e.at_once, h, 0.25 * h);    // the strain energy of the element at the tip, and the first steps' drift
+        EXPECT_LT(e.contact_time, 2 * h);    // measured: 0.7 to 1.8
+        EXPECT_NEAR(e.at_once, h, 0.25 * h); // the strain energy of the element at the tip, and the first steps' drift
         if (elements >= 100) {
             EXPECT_LT(e.drift, 1e-3); // measured: 7e-4, 6e-4, 2e-4
         }

@@ -97,7 +97,8 @@ TEST(Transaction, RejectedAttemptsOfAThrowWithFrictionLeaveNoTrace) {
         EXPECT_GT(rejected.count(time::Reason::forced), 5);
         expect_same_bits(straight, rejected);
     }
-    for (const int threads : {2, 3}) expect_same_bits(straight, run("validation/falling_block.yaml", thrown, 0, threads));
+    for (const int threads : {2, 3})
+        expect_same_bits(straight, run("validation/falling_block.yaml", thrown, 0, threads));
 }
 
 TEST(Transaction, RejectedAttemptsOfAnImpactLeaveNoTrace) {

@@ -47,7 +47,7 @@ Impact meet(int elements, const std::string& integrator) {
             plateau += dt;
             impact.worst = std::max(impact.worst, std::abs(s / stress - 1));
         }
-        EXPECT_NEAR(step.ledger.linear.x(), p0, 1e-11 * p0); // round-off of some hundred steps
+        EXPECT_NEAR(step.ledger.linear.x(), p0, 1e-10 * p0); // round-off, eps u/dt a step
         const double energy = step.ledger.kinetic + step.ledger.strain;
         impact.energy_change = std::max(impact.energy_change, std::abs(energy / E0 - 1));
         EXPECT_LT(energy, E0 * (1 + 1e-3));
@@ -72,7 +72,7 @@ TEST(TwoBars, TouchForTheTimeOfTheirWavesAndExchangeVelocities) {
         const double h = 1. / elements;
         EXPECT_NEAR(impact.touch, meeting, 2 * h);
         EXPECT_NEAR(impact.release - impact.touch, parting - meeting, h); // measured: h/4 to h/2, a step is 0.7 h
-        EXPECT_NEAR(impact.impulse, p0, 0.5 * h * p0);
+        EXPECT_NEAR(impact.impulse, p0, 0.15 * std::pow(h, 2. / 3) * p0); // what the last front's tail lacks
         EXPECT_NEAR(impact.left, 0, h * 0.1) << "the left bar has given its velocity away";
         if (coarser > 0) {
             const double slack = 0.1; // of a slope measured between two meshes

@@ -80,6 +80,7 @@ public:
                 }))
                 plan_.model.finite_strain = std::make_unique<model::FiniteStrain>(plan_.model.bodies, plan_.model.K);
             add_mass();
+            add_gravity();
         }
         plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0, scene_.solver.predictor, threads_};
         add_items();
@@ -261,7 +262,6 @@ private:
         for (const auto& [body, b] : driving.body_force)
             model::add_body_force(plan_.model.bodies[body_index(body)], {ramped(b[0]), ramped(b[1]), ramped(b[2])},
                                   force);
-        add_gravity(force); // in full from the start
         return force;
     }
 
@@ -287,12 +287,6 @@ private:
                               [](const scene::BackwardEuler&) { return time::backward_euler(); },
                           },
                           analysis.integrator);
-    }
-
-    void add_gravity(std::vector<Vec3>& force) const {
-        if (scene_.gravity.isZero(0)) return;
-        for (const model::Body& body : plan_.model.bodies)
-            if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, force);
     }
 
     /// Nodes without mass of their own: slave nodes, where the scene asks for it.
@@ -325,6 +319,23 @@ private:
                 for (const Vec3& X : body.mesh.nodes)
                     m.initial_velocity.push_back(spec.initial_velocity + spec.initial_spin.cross(X - centre));
             }
+        }
+    }
+
+    /// In full from the start. In dynamics it acts on mass where the mass is, so that bodies fall without strain.
+    void add_gravity() {
+        if (scene_.gravity.isZero(0)) return;
+        const model::Model& m = plan_.model;
+        for (time::Stage& stage : plan_.stages) {
+            std::vector<Vec3> weight(m.X.size(), Vec3::Zero());
+            if (stage.dynamics)
+                m.mass(stage.dynamics->lumped_mass)
+                    .multiply_add(std::vector<Vec3>(m.X.size(), scene_.gravity), weight, threads_);
+            else
+                for (const model::Body& body : m.bodies)
+                    if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, weight);
+            for (auto* force : {&stage.force_start, &stage.force_end})
+                for (std::size_t i = 0; i < weight.size(); ++i) (*force)[i] += weight[i];
         }
     }
 

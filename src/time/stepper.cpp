@@ -166,11 +166,12 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     const auto solver = solve::make_cholesky();
     // nodes without mass have no acceleration of their own
     solve::SparseMatrix matrix = free_mass.matrix();
+    const double heaviest = *std::max_element(matrix.value.begin(), matrix.value.end());
     std::vector<char> empty(static_cast<std::size_t>(constraints.equations()), 0);
     for (solve::SparseIndex i = 0; i < matrix.rows(); ++i)
         for (solve::SparseIndex k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
             if (matrix.column[k] == i && matrix.value[k] == 0) {
-                matrix.value[k] = 1;
+                matrix.value[k] = heaviest;
                 empty[static_cast<std::size_t>(i)] = 1;
             }
     if (solver->factorise(matrix) != solve::FactorStatus::ok)
@@ -202,6 +203,19 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
             M.multiply_add(*motion, internal, options_.threads);
             carried = std::max(carried, factor * norm(internal));
         }
+        // inertia of the last digit of positions, which gaps are made of: no tolerance can ask for less
+        double largest = 0;
+        for (const bool displacements : {true, false}) {
+            std::vector<Vec3> x = state_.u;
+            for (std::size_t i = 0; i < x.size() && !displacements; ++i) x[i] += model_.X[i];
+            std::fill(internal.begin(), internal.end(), Vec3::Zero());
+            M.multiply_add(x, internal, options_.threads);
+            for (const Vec3& f : internal) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+            if (model_.pairs.empty()) break;
+        }
+        const double digit = std::numeric_limits<double>::epsilon() / options_.tolerance;
+        const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
+        carried = std::max(carried, digit * by_u * largest);
     }
     if (carried > 0) return carried;
     // forces that the motion of the step would call up from rest; a small part of it, as elements may not bear the whole
@@ -328,6 +342,12 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         // a later one, after statics, starts at rest
         state_.v = moved_ ? std::vector<Vec3>(model_.X.size(), Vec3::Zero()) : model_.initial_velocity;
         moved_ = true;
+        for (Index node = 0; node < model_.nodes(); ++node) { // what holds a body does not move with it
+            Vec3 v = constraints.to_local(node, state_.v[node]);
+            for (int k = 0; k < 3; ++k)
+                if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
+            state_.v[node] = constraints.to_global(node, v);
+        }
         find_initial_acceleration(stage, constraints, load_at(stage, constraints, prescribed_start, 0).force);
         ledger_ = opened(model_, *dynamics, state_);
     }

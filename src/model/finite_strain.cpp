@@ -24,11 +24,18 @@ FiniteStrain::FiniteStrain(const std::vector<Body>& bodies, const BlockMatrix& p
             block.size = elements.size();
             for (const Index local : elements.connectivity) block.node.push_back(bodies[b].first_node + local);
             const Index n = block.kernel->nodes();
-            for (Index e = 0; e < block.size; ++e)
+            Matrix Ke(3 * n, 3 * n);
+            for (Index e = 0; e < block.size; ++e) {
+                Eigen::Matrix3Xd X(3, n);
+                for (Index i = 0; i < n; ++i)
+                    X.col(i) = bodies[b].mesh.nodes[static_cast<std::size_t>(elements.connectivity[e * n + i])];
+                block.kernel->stiffness(X, Ke);
+                largest_stiffness_ = std::max(largest_stiffness_, Ke.diagonal().maxCoeff());
                 for (Index i = 0; i < n; ++i)
                     for (Index j = 0; j < n; ++j)
                         block.slot.push_back(pattern.slot(block.node[static_cast<std::size_t>(e * n + i)],
                                                           block.node[static_cast<std::size_t>(e * n + j)]));
+            }
         }
     }
 }

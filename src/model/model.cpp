@@ -98,6 +98,13 @@ std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u,
     return f;
 }
 
+double largest_stiffness(const Model& model) {
+    double largest = model.finite_strain ? model.finite_strain->largest_stiffness() : 0;
+    for (Index i = 0; i < model.K.rows(); ++i)
+        largest = std::max(largest, model.K.block(model.K.slot(i, i)).diagonal().maxCoeff());
+    return largest;
+}
+
 double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads) {
     std::vector<Vec3> f(u.size(), Vec3::Zero());
     model.K.multiply_add(u, f, threads);

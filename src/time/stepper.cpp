@@ -186,7 +186,7 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
 }
 
 double Stepper::reference_force(const Stage& stage, const StepLoad& load, const Equilibrium& equilibrium,
-                                const Vector& z, double dt) const {
+                                double dt) const {
     const auto norm = [](const std::vector<Vec3>& f) {
         double sum = 0;
         for (const Vec3& v : f) sum += v.squaredNorm();
@@ -217,13 +217,26 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
         carried = std::max(carried, digit * by_u * largest);
     }
-    if (carried > 0) return carried;
-    // forces that the motion of the step would call up from rest; a small part of it, as elements may not bear the whole
+    // what internal forces of a rigid motion are made of: round-off of stiffness times displacement, summed over neighbours
+    constexpr double sum = 10;
+    double farthest = 0;
+    for (const Vec3& u : state_.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
+    const double round_off =
+        sum * std::numeric_limits<double>::epsilon() / options_.tolerance * model::largest_stiffness(model_) * farthest;
+    if (carried > round_off) return carried;
+    // driven nodes that move ahead of their bodies; by a small part of it, as elements may not bear the whole
     constexpr double part = 1e-3;
-    std::vector<Vec3> u = equilibrium.state(z).u;
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] = state_.u[i] + part * (u[i] - state_.u[i]);
+    std::vector<Vec3> u = state_.u;
+    for (Index i = 0; i < model_.nodes(); ++i) {
+        const Vec3 now = equilibrium.constraints().to_local(i, u[i]);
+        Vec3 moved = now;
+        for (int k = 0; k < 3; ++k)
+            if (equilibrium.constraints().constraint(i, k) != nullptr)
+                moved(k) += part * (load.prescribed[i](k) - now(k));
+        u[i] = equilibrium.constraints().to_global(i, moved);
+    }
     const double driven = norm(model::internal_force(model_, u, options_.threads)) / part;
-    return driven > 0 ? driven : 1;
+    return std::max(driven, round_off) > 0 ? std::max(driven, round_off) : 1;
 }
 
 std::string Stepper::explain(const LadderResult& result, const Equilibrium& equilibrium, Attempt& attempt) const {
@@ -391,7 +404,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         LadderOptions ladder{options_.tolerance,
                              options_.max_iterations,
                              characteristic_length_,
-                             reference_force(stage, load, equilibrium, z, dt),
+                             reference_force(stage, load, equilibrium, dt),
                              {},
                              {}};
         if (model_.finite_strain) {

@@ -47,6 +47,10 @@ protected:
         if (element.type == mesh::CellType::tet10) u.rightCols<6>() /= 2; // it is half as large between nodes
         return u;
     }
+    /// The deformed element, turned by an angle.
+    [[nodiscard]] Eigen::Matrix3Xd turned(const Eigen::Matrix3Xd& u, double angle) const {
+        return Eigen::AngleAxisd(angle, Vec3(0.3, -1, 0.8).normalized()).toRotationMatrix() * (X + u) - X;
+    }
     [[nodiscard]] double energy(const Eigen::Matrix3Xd& u) const {
         double W = 0;
         EXPECT_TRUE(kernel->energy(X, u, W).admissible());
@@ -106,6 +110,59 @@ TEST_P(FiniteStrain, ForcesHaveNoResultantAndNoMomentAboutTheDeformedElement) {
     for (int a = 0; a < n; ++a) moment += Vec3(X.col(a) + u.col(a)).cross(Vec3(f.col(a)));
     EXPECT_LT(f.rowwise().sum().norm(), round_off);
     EXPECT_LT(moment.norm(), round_off);
+}
+
+TEST_P(FiniteStrain, StepForceDoesTheWorkOfTheEnergyDifference) {
+    if (element.formulation == HexFormulation::b_bar) GTEST_SKIP() << "F-bar varies in the mean of the step only";
+    const Eigen::Matrix3Xd u0 = displacements(), u1 = turned(2 * displacements(-0.07), 1.1);
+    Eigen::Matrix3Xd f(3, n);
+    ASSERT_TRUE(kernel->step_force(X, u0, u1, {0.5, 0}, f).admissible());
+    EXPECT_NEAR(f.cwiseProduct(u1 - u0).sum(), energy(u1) - energy(u0), round_off);
+    EXPECT_GT(std::abs(energy(u1) - energy(u0)), 1e-3) << "too little to tell anything";
+
+    const double work = f.cwiseProduct(u1 - u0).sum();
+    ASSERT_TRUE(kernel->step_force(X, u0, u1, {0.5, 0.1}, f).admissible());
+    EXPECT_GT(f.cwiseProduct(u1 - u0).sum(), work) << "viscosity dissipates";
+}
+
+TEST_P(FiniteStrain, StepForceHasNoMomentAboutTheMeanConfiguration) {
+    const Eigen::Matrix3Xd u0 = displacements(), u1 = turned(2 * displacements(-0.07), 1.1);
+    const double w = 0.6;
+    Eigen::Matrix3Xd f(3, n);
+    ASSERT_TRUE(kernel->step_force(X, u0, u1, {w, 0.1}, f).admissible());
+    const Eigen::Matrix3Xd x = X + w * u1 + (1 - w) * u0;
+    Vec3 moment = Vec3::Zero();
+    for (int a = 0; a < n; ++a) moment += Vec3(x.col(a)).cross(Vec3(f.col(a)));
+    EXPECT_LT(f.rowwise().sum().norm(), round_off);
+    EXPECT_LT(moment.norm(), round_off);
+}
+
+TEST_P(FiniteStrain, StepForceIsTheInternalForceWhereNothingMoves) {
+    Eigen::Matrix3Xd f(3, n);
+    ASSERT_TRUE(kernel->step_force(X, displacements(), displacements(), {0.7, 0.1}, f).admissible());
+    EXPECT_LT((f - force(displacements())).norm(), round_off);
+}
+
+TEST_P(FiniteStrain, ATurnCallsUpNoStepForce) {
+    Eigen::Matrix3Xd f(3, n);
+    for (const double angle : {1e-3, 0.5, 2.0}) {
+        const Eigen::Matrix3Xd rest = Eigen::Matrix3Xd::Zero(3, n);
+        ASSERT_TRUE(kernel->step_force(X, rest, turned(rest, angle), {0.6, 0.1}, f).admissible());
+        EXPECT_LT(f.norm(), round_off);
+    }
+}
+
+TEST_P(FiniteStrain, StepTangentIsTheDerivativeOfTheStepForce) {
+    const Eigen::Matrix3Xd u0 = displacements(), u1 = turned(displacements(-0.07), 0.3);
+    const StepMean mean{0.6, 0.1};
+    const auto at = [&](const Vector& u) {
+        Eigen::Matrix3Xd f(3, n);
+        EXPECT_TRUE(kernel->step_force(X, u0, u.reshaped(3, n), mean, f).admissible());
+        return Vector(f.reshaped());
+    };
+    Matrix K(3 * n, 3 * n);
+    ASSERT_TRUE(kernel->step_tangent(X, u0, u1, mean, K).admissible());
+    EXPECT_LT((osculate::testing::central_differences(at, u1.reshaped(), step) - K).norm(), difference * K.norm());
 }
 
 TEST_P(FiniteStrain, IsTheLinearKernelAtSmallStrain) {

@@ -37,6 +37,8 @@ public:
                                 const fe::StepMean& mean, std::vector<Vec3>& f, int threads) const;
     void add_step_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u0, const std::vector<Vec3>& u1,
                           const fe::StepMean& mean, BlockMatrix& K, int threads) const;
+    /// Largest diagonal entry of an undeformed element's stiffness, N/m.
+    [[nodiscard]] double largest_stiffness() const { return largest_stiffness_; }
     /// Strain energy, J.
     [[nodiscard]] double energy(const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads) const;
 
@@ -58,6 +60,7 @@ private:
     template <class Kernel> void add_tangents(BlockMatrix& K, int threads, Kernel&& kernel) const;
 
     std::vector<Block> blocks_;
+    double largest_stiffness_ = 0;
 };
 
 } // namespace osculate::model

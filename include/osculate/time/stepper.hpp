@@ -76,7 +76,7 @@ private:
     /// Statuses to start from; true where a pair is brought into contact by hand because nothing of it is closed yet.
     [[nodiscard]] bool starting_statuses(Equilibrium& equilibrium, const Vector& z, Statuses& statuses) const;
     [[nodiscard]] double reference_force(const Stage& stage, const StepLoad& load, const Equilibrium& equilibrium,
-                                         const Vector& z, double dt) const;
+                                         double dt) const;
     /// M a = f - K u - C v + contact forces of the state, a = 0 along held directions.
     void find_initial_acceleration(const Stage& stage, const model::Constraints& constraints,
                                    const std::vector<Vec3>& force);

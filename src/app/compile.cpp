@@ -228,10 +228,19 @@ private:
                 stage.force_start = plan_.stages.back().force_end;
             stage.force_end = ramped_forces(now);
             if (varying) add_course_forces(now, courses, stage.course_forces);
-            for (const auto& [set_name, value] : now.pressure)
-                if (set(set_name).facets.empty())
-                    faults_.push_back(fault("stages." + name + ".pressure." + set_name, "a set with facets",
-                                            "a set of nodes that cover no facet"));
+            for (const auto& [set_name, value] : now.follower_pressure) {
+                const auto was = before.follower_pressure.find(set_name);
+                const bool known = was != before.follower_pressure.end();
+                stage.follower_pressures.push_back(
+                    {set(set_name).facets, known ? ramped(was->second) : 0, ramped(value),
+                     value.is_value() ? -1 : courses.index("follower_pressure." + set_name, value)});
+            }
+            for (const auto& [key, loaded] :
+                 {std::pair{"pressure", &now.pressure}, std::pair{"follower_pressure", &now.follower_pressure}})
+                for (const auto& [set_name, value] : *loaded)
+                    if (set(set_name).facets.empty())
+                        faults_.push_back(fault("stages." + name + "." + key + "." + set_name, "a set with facets",
+                                                "a set of nodes that cover no facet"));
             now.settle(spec.duration);
             settled = varying;
             try {
@@ -438,6 +447,9 @@ void Compiler::add_items() {
         dynamic > 0 ? std::to_string(dynamic) + " dynamic stage(s)" : "every stage is static");
     const auto courses = std::accumulate(plan_.stages.begin(), plan_.stages.end(), std::size_t{0},
                                          [](std::size_t sum, const time::Stage& s) { return sum + s.courses.size(); });
+    const bool follows = std::any_of(plan_.stages.begin(), plan_.stages.end(),
+                                     [](const time::Stage& s) { return !s.follower_pressures.empty(); });
+    say("follower pressure", follows, follows ? "forces and tangent anew at every iterate" : "no pressure follows");
     say("courses over time", courses > 0,
         courses > 0 ? std::to_string(courses) + " load(s) and motion(s) by tables or expressions"
                     : "every load and motion ramps or jumps to its value");

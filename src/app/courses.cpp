@@ -17,6 +17,7 @@ void Driving::update(const scene::Stage& stage) {
         for (std::size_t k = 0; k < 3; ++k)
             if (components[k]) displacement[set][k] = components[k];
     for (const auto& [set, value] : stage.pressure) pressure[set] = value;
+    for (const auto& [set, value] : stage.follower_pressure) follower_pressure[set] = value;
     for (const auto& [body, value] : stage.body_force) body_force[body] = value;
 }
 
@@ -25,6 +26,7 @@ void Driving::settle(double duration) {
         for (auto& component : components)
             if (component) settle_one(*component, duration);
     for (auto& [set, value] : pressure) settle_one(value, duration);
+    for (auto& [set, value] : follower_pressure) settle_one(value, duration);
     for (auto& [body, components] : body_force)
         for (auto& component : components) settle_one(component, duration);
 }

@@ -15,7 +15,7 @@ namespace osculate::app {
 /// What is driven during a stage, and what it keeps from those before.
 struct Driving {
     std::map<std::string, std::array<std::optional<scene::Course>, 3>> displacement; ///< by set
-    std::map<std::string, scene::Course> pressure;                                   ///< by set
+    std::map<std::string, scene::Course> pressure, follower_pressure;                ///< by set
     std::map<std::string, std::array<scene::Course, 3>> body_force;                  ///< by body
 
     /// Takes over what a stage names.

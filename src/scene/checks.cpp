@@ -117,8 +117,9 @@ public:
                     check_course({"stages", name, "displacement", set, axis_words[a]}, *components[a], stage,
                                  range::position);
         }
-        for (const auto& [set, pressure] : stage.pressure)
-            check_course({"stages", name, "pressure", set}, pressure, stage, {});
+        for (const auto& [key, named] :
+             {std::pair{"pressure", &stage.pressure}, std::pair{"follower_pressure", &stage.follower_pressure}})
+            for (const auto& [set, pressure] : *named) check_course({"stages", name, key, set}, pressure, stage, {});
         for (const auto& [body, force] : stage.body_force)
             for (std::size_t a = 0; a < 3; ++a)
                 check_course({"stages", name, "body_force", body}, force[a], stage, {}, a);

@@ -218,6 +218,18 @@ void describe(Visitor& v, Stage& stage) {
                        value);
           });
     named(v,
+          {.name = "follower_pressure",
+           .meaning = "Pressure on sets that turns and stretches with them, reached at the end of the stage.",
+           .names = Names::set,
+           .item = "set"},
+          stage.follower_pressure, [&](const std::string& set, Course& value) {
+              v.course({.name = set,
+                        .meaning = "On the current area, against the current normal.",
+                        .unit = dimension::pressure,
+                        .required = true},
+                       value);
+          });
+    named(v,
           {.name = "body_force",
            .meaning = "Force per volume on bodies, reached at the end of the stage.",
            .names = Names::body,

@@ -1,5 +1,7 @@
 #include "osculate/time/body_forces.hpp"
 
+#include "osculate/fe/facet_quadrature.hpp"
+
 namespace osculate::time {
 
 namespace {
@@ -25,13 +27,33 @@ void add_damping(const model::Model& model, const Dynamics& dynamics, const Fiel
 }
 } // namespace
 
-BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, int threads)
-    : model_(model), dynamics_(dynamics), threads_(threads) {
-    if (dynamics_ != nullptr || nonlinear()) tangent_ = model_.K;
-    if (nonlinear()) constant_ = model_.K;
+void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model, const Field& u,
+                         Field& f) {
+    Field x(u.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = model.X[i] + u[i];
+    for (const FollowerLoad& load : pressures)
+        for (const mesh::Facet& facet : *load.facets) {
+            const auto forces = fe::pressure_forces(facet, x, load.start);
+            for (int c = 0; c < facet.count; ++c)
+                f[static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(c)])] +=
+                    forces[static_cast<std::size_t>(c)];
+        }
 }
 
-bool BodyForces::begin(const model::State& state, double dt) {
+BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads)
+    : model_(model), dynamics_(dynamics), follower_pressure_(follower_pressure), threads_(threads) {
+    if (dynamics_ != nullptr || varies()) tangent_ = model_.K;
+    if (varies()) constant_ = model_.K;
+}
+
+void BodyForces::add_pressures(double factor, bool end, const Field& u, Field& f) const {
+    std::vector<FollowerLoad> scaled = pressures_;
+    for (FollowerLoad& load : scaled) load.start = factor * (end ? load.end : load.start);
+    add_follower_forces(scaled, model_, u, f);
+}
+
+bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt) {
+    pressures_ = std::move(pressures);
     if (dynamics_ == nullptr) return false;
     const Integrator& w = dynamics_->integrator;
     u_start_ = state.u;
@@ -44,7 +66,7 @@ bool BodyForces::begin(const model::State& state, double dt) {
         mean_ = {1 - w.alpha_f, dynamics_->stiffness_damping / dt};
         const double inertia = (1 - w.alpha_m) * kinematics_.by_u_acceleration, rest = 1 - w.alpha_f,
                      rate = rest * kinematics_.by_u_velocity;
-        (nonlinear() ? constant_ : tangent_)
+        (varies() ? constant_ : tangent_)
             .set_combination(rest + rate * dynamics_->stiffness_damping, model_.K,
                              inertia + rate * dynamics_->mass_damping, mass());
     }
@@ -60,6 +82,7 @@ bool BodyForces::begin(const model::State& state, double dt) {
     mass().multiply_add(by_M, force_start_, threads_);
     model_.K.multiply_add(u_start_, force_start_, threads_);
     add_damping(model_, *dynamics_, mean_v, force_start_, threads_);
+    if (follower_pressure_) add_pressures(-w.alpha_f, false, u_start_, force_start_);
     return changed;
 }
 
@@ -69,21 +92,31 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
         f.assign(u.size(), Vec3::Zero());
         model_.K.multiply_add(u, f, threads_);
         if (nonlinear()) worst = model_.finite_strain->add_internal_force(model_.X, u, f, threads_);
+        if (follower_pressure_) add_pressures(-1, true, u, f);
         return worst;
     }
     f = force_start_;
-    (nonlinear() ? constant_ : tangent_).multiply_add(weighted(1, u, -1, u_start_), f, threads_);
+    if (follower_pressure_) add_pressures(dynamics_->integrator.alpha_f - 1, true, u, f);
+    (varies() ? constant_ : tangent_).multiply_add(weighted(1, u, -1, u_start_), f, threads_);
     if (nonlinear()) worst = model_.finite_strain->add_step_force(model_.X, u_start_, u, mean_, f, threads_);
     return worst;
 }
 
 bool BodyForces::linearise(const Field& u) {
-    if (!nonlinear()) return false;
+    if (!varies()) return false;
     tangent_ = constant_;
-    if (dynamics_ == nullptr)
+    if (nonlinear() && dynamics_ == nullptr)
         model_.finite_strain->add_tangent(model_.X, u, tangent_, threads_);
-    else
+    else if (nonlinear())
         model_.finite_strain->add_step_tangent(model_.X, u_start_, u, mean_, tangent_, threads_);
+    if (!follower_pressure_) return true;
+    const double factor = dynamics_ != nullptr ? dynamics_->integrator.alpha_f - 1 : -1;
+    Field x(u.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = model_.X[i] + u[i];
+    for (const FollowerLoad& load : pressures_)
+        for (const mesh::Facet& facet : *load.facets)
+            tangent_.add({facet.nodes.begin(), facet.nodes.begin() + facet.count},
+                         fe::pressure_tangent(facet, x, factor * load.end));
     return true;
 }
 
@@ -117,6 +150,13 @@ BodyWork BodyForces::work(const model::State& state) const {
     };
     if (nonlinear()) add_step({mean_.end_weight, 0});
     work.internal = dot(Du, f);
+
+    if (follower_pressure_) {
+        f.assign(f.size(), Vec3::Zero());
+        add_pressures(1 - w.alpha_f, true, state.u, f);
+        add_pressures(w.alpha_f, false, u_start_, f);
+        work.follower = dot(Du, f);
+    }
 
     f.assign(f.size(), Vec3::Zero());
     add_damping(model_, *dynamics_, weighted(1 - w.alpha_f, state.v, w.alpha_f, v_start_), f, threads_);

@@ -12,9 +12,9 @@ using contact::Status;
 using model::Constraints;
 
 Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, const Dynamics* dynamics,
-                         Timings& timings, int threads)
+                         Timings& timings, int threads, bool follower_pressure)
     : model_(model), constraints_(constraints), timings_(timings), threads_(threads),
-      bodies_(model, dynamics, threads), first_coupling_{0} {
+      bodies_(model, dynamics, follower_pressure, threads), first_coupling_{0} {
     std::vector<model::Coupling> couplings;
     for (auto& pair : model.pairs) {
         std::vector<char> held;
@@ -47,7 +47,7 @@ void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double
     load_ = std::move(load);
     {
         const ScopedTimer timer(timings_, Part::assembly);
-        if (bodies_.begin(state, dt)) {
+        if (bodies_.begin(state, load_.pressures, dt)) {
             matrix_->stiffness_changed();
             if (preconditioner_) preconditioner_->stiffness_changed();
             for (auto& pair : model_.pairs) {

@@ -55,6 +55,7 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics&
     for (Index i = 0; i < model.nodes(); ++i)
         external += Du[i].dot(equilibrium.constraints().reaction(i, equilibrium.unbalanced()[i]));
     const BodyWork work = equilibrium.bodies().work(to);
+    external += work.follower;
     double contact = 0, friction = 0;
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model.pairs[p];

@@ -59,6 +59,11 @@ StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, co
     }
     for (const CourseForce& part : stage.course_forces)
         for (std::size_t i = 0; i < load.force.size(); ++i) load.force[i] += value[part.course] * part.pattern[i];
+    for (const FollowerPressure& pressure : stage.follower_pressures) {
+        const double now =
+            pressure.course >= 0 ? value[pressure.course] : pressure.start + ramp * (pressure.end - pressure.start);
+        load.pressures.push_back({&pressure.facets, now, now});
+    }
     load.prescribed = prescribed_start;
     for (Index node = 0; node < model_.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
@@ -193,7 +198,11 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         return std::sqrt(sum);
     };
     std::vector<Vec3> internal = model::internal_force(model_, state_.u, options_.threads);
-    double carried = std::max(norm(load.force), norm(internal));
+    std::vector<Vec3> external = load.force;
+    std::vector<FollowerLoad> pressures = load.pressures;
+    for (FollowerLoad& pressure : pressures) pressure.start = pressure.end;
+    add_follower_forces(pressures, model_, state_.u, external);
+    double carried = std::max(norm(external), norm(internal));
     if (stage.dynamics) {
         // a thousandth of the force that would stop every motion within the step
         constexpr double share = 1e-3;
@@ -345,7 +354,8 @@ void Stepper::refresh_patches() {
 void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const Constraints constraints(model_.nodes(), stage.constraints);
     const Dynamics* dynamics = stage.dynamics ? &*stage.dynamics : nullptr;
-    Equilibrium equilibrium(model_, constraints, dynamics, timings_, options_.threads);
+    Equilibrium equilibrium(model_, constraints, dynamics, timings_, options_.threads,
+                            !stage.follower_pressures.empty());
     solve::KinsolSolver solver(equilibrium.size(), timings_);
     std::vector<Vec3> prescribed_start(model_.X.size());
     for (Index node = 0; node < model_.nodes(); ++node)
@@ -361,7 +371,9 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
             state_.v[node] = constraints.to_global(node, v);
         }
-        find_initial_acceleration(stage, constraints, load_at(stage, constraints, prescribed_start, 0).force);
+        StepLoad load = load_at(stage, constraints, prescribed_start, 0);
+        add_follower_forces(load.pressures, model_, state_.u, load.force);
+        find_initial_acceleration(stage, constraints, load.force);
         ledger_ = opened(model_, *dynamics, state_);
     }
 
@@ -394,6 +406,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 load.force[i] = (1 - alpha) * load.force[i] + alpha * before.force[i];
                 u[i] = dynamics->integrator.predictor(state_.u[i], state_.v[i], state_.a[i], dt);
             }
+            for (std::size_t p = 0; p < load.pressures.size(); ++p) load.pressures[p].start = before.pressures[p].end;
         } else if (options_.predictor) {
             predict(constraints, load.prescribed, u);
         }

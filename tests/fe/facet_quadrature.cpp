@@ -1,6 +1,7 @@
 #include "osculate/fe/facet_quadrature.hpp"
 
 #include "element_cases.hpp"
+#include "support/differences.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -79,6 +80,28 @@ TEST(PressureForces, OnAFlatFacetFollowTheTributaryAreas) {
     const auto forces = pressure_forces(quadrilateral, flat, pressure);
     const Vec3 normal = area_vector(quadrilateral, flat).normalized();
     for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((forces[i] + pressure * areas[i] * normal).norm(), round_off);
+}
+
+TEST(PressureTangent, IsTheDerivativeOfTheForces) {
+    for (const int count : {3, 4}) {
+        mesh::Facet facet;
+        facet.count = count;
+        facet.nodes = {0, 1, 2, count == 4 ? 3 : -1};
+        const Vector at{{0.1, 0, 0, 1, 0.2, -0.1, 1.1, 0.9, 0.3, -0.1, 1, 0.1}}; // warped
+        const auto forces = [&](const Vector& x) {
+            std::vector<Vec3> positions;
+            for (int i = 0; i < count; ++i) positions.emplace_back(x.segment<3>(3 * i));
+            const auto f = pressure_forces(facet, positions, pressure);
+            Vector stacked(3 * count);
+            for (int i = 0; i < count; ++i) stacked.segment<3>(3 * i) = f[static_cast<std::size_t>(i)];
+            return stacked;
+        };
+        std::vector<Vec3> positions;
+        for (int i = 0; i < count; ++i) positions.emplace_back(at.segment<3>(3 * i));
+        const Matrix slope = osculate::testing::central_differences(forces, at.head(3 * count), 1e-5);
+        // quadratic in the positions: central differences are exact but for round-off over the step
+        EXPECT_LT((slope - pressure_tangent(facet, positions, pressure)).norm(), 1e-9 * pressure);
+    }
 }
 
 class ClosedSurface : public ::testing::TestWithParam<ElementCase> {};

@@ -1,5 +1,6 @@
 /// Bodies at finite strain against what is known of large rotations and strains.
 
+#include "osculate/fe/facet_quadrature.hpp"
 #include "support/scene_runner.hpp"
 
 #include <cmath>
@@ -75,6 +76,53 @@ TEST_P(Stretched, BlockHasTheExactForceAndWidth) {
 
 INSTANTIATE_TEST_SUITE_P(All, Stretched, testing::Values("hex8", "wedge6", "tet4", "tet10"),
                          [](const auto& tested) { return std::string(tested.param); });
+
+TEST(FollowerPressure, IsTheCauchyStressOfTheBlock) {
+    // p on the current area: sigma = P / b^2 = -p, by bisection for the stretch
+    const double p = 3e5;
+    double low = 0.3, high = 1, width = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double a = (low + high) / 2, P = neo_hookean_tension(1e6, 0.3, a, width);
+        (P / (width * width) < -p ? low : high) = a;
+    }
+    for (const char* element : {"hex8", "tet4"}) {
+        support::SceneRun run;
+        support::run_scene(run, scene_file("squeezed", stretched_block),
+                           {{"bodies.block.mesh.block.element", element},
+                            {"stages.stretch.displacement", "{}"},
+                            {"stages.stretch.follower_pressure", "{right: 300 kPa}"}});
+        const auto& model = run.plan.model;
+        for (std::size_t i = 0; i < model.X.size(); ++i)
+            EXPECT_NEAR(run.steps.back().state.u[i].x(), (low - 1) * model.X[i].x(), 1e-8);
+        for (const auto& step : run.steps) EXPECT_LE(step.iterations, 7) << "Newton with the exact tangent";
+    }
+}
+
+TEST(FollowerPressure, WorksOverTheStepWithTheMeanOfItsForcesAtBothEnds) {
+    support::SceneRun run;
+    support::run_scene(run, scene_file("pumped", stretched_block),
+                       {{"bodies.block.material.neo_hookean.density", "1000 kg/m^3"},
+                        {"stages.stretch", "{analysis: {dynamic: {integrator: {generalised_alpha: {rho_inf: 1}}}}, "
+                                           "duration: 50 ms, steps: 100, ramp: step, "
+                                           "follower_pressure: {right: 100 kPa}}"}});
+    double swept = 0; // m^3
+    std::vector<Vec3> before(run.plan.model.X.size(), Vec3::Zero());
+    for (const auto& step : run.steps) {
+        for (const auto& facet : run.plan.stages[0].follower_pressures[0].facets)
+            for (const std::vector<Vec3>* u : {&std::as_const(before), &step.state.u}) {
+                std::vector<Vec3> x = run.plan.model.X;
+                for (std::size_t i = 0; i < x.size(); ++i) x[i] += (*u)[i];
+                const auto f = fe::pressure_forces(facet, x, 1);
+                for (int c = 0; c < facet.count; ++c)
+                    swept += 0.5 * f[c].dot(step.state.u[facet.nodes[c]] - before[facet.nodes[c]]);
+            }
+        before = step.state.u;
+    }
+    const auto& ledger = run.steps.back().ledger;
+    EXPECT_GT(ledger.external, 0.01 * 1e5);
+    EXPECT_NEAR(ledger.external, 1e5 * swept, 1e-9 * ledger.external);
+    EXPECT_LT(std::abs(ledger.balance), 1e-6 * ledger.external);
+}
 
 TEST(CrushedBlock, NamesTheElementThatTurnsInsideOut) {
     support::SceneRun run;

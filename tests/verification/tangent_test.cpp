@@ -20,6 +20,7 @@ struct Case {
     const char* support; ///< of the driven face
     const char* material = "linear_elastic";
     bool dynamic = false;
+    const char* follower = "{}";
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -49,6 +50,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         {"supports.rear", c.support},
         {"bodies.tube.material", "{" + std::string(c.material) + ": {E: 30 MPa, nu: 0.2, density: 2000 kg/m^3}}"},
         {"bodies.contactor.material", "{" + std::string(c.material) + ": {E: 10 MPa, nu: 0.2, density: 2000 kg/m^3}}"},
+        {"stages.slide.follower_pressure", c.follower},
         {"stages.slide.analysis", c.dynamic ? damped : "static"},
     };
     const scene::Scene scene = scene::read_scene(support::shipped("paper/half_tube.yaml"), overrides);
@@ -56,7 +58,8 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const model::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
     const auto& dynamics = plan.stages[1].dynamics;
-    time::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr, timings, 1);
+    time::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr, timings, 1,
+                                  !plan.stages[1].follower_pressures.empty());
 
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -78,7 +81,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         state.contact[0].lambda[j] = force * (Vec3(0, 0, 1) + 0.5 * shake());
         statuses[0].push_back(static_cast<Status>(j % 4));
     }
-    time::StepLoad load{std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
+    time::StepLoad load{std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero()), {}};
     if (c.dynamic) {
         for (std::size_t i = 0; i < u.size(); ++i) {
             state.v.push_back(shake());
@@ -86,6 +89,8 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         }
     }
     constexpr double dt = 0.01; // s: inertia and stiffness weigh about the same
+    for (const auto& pressure : plan.stages[1].follower_pressures)
+        load.pressures.push_back({&pressure.facets, pressure.end / 2, pressure.end});
     equilibrium.begin_attempt(state, load, dt);
     equilibrium.set_statuses(statuses, time::StatusRule::frozen, false);
     Vector z = equilibrium.unknowns(u, state.contact);
@@ -117,24 +122,27 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, Tangent,
-    testing::Values(Case{"hex8_facets", "hex8", "full", "facets", "{fix: [x]}"},
-                    Case{"hex8_b_bar_rpim", "hex8", "b_bar", "{rpim: {ring: 2}}", "{fix: [x]}"},
-                    Case{"hex8_incompatible_rpim_tangential", "hex8", "incompatible_modes",
-                         "{rpim: {ring: 1, coordinates: tangential}}", "{fix: [x]}"},
-                    Case{"wedge6_facets", "wedge6", "full", "facets", "{fix: [x]}"},
-                    Case{"wedge6_rpim", "wedge6", "full", "{rpim: {ring: 1}}", "{fix: [x]}"},
-                    Case{"tet4_facets", "tet4", "full", "facets", "{fix: [x]}"},
-                    Case{"tet4_rpim", "tet4", "full", "{rpim: {ring: 2, m: 3}}", "{fix: [x]}"},
-                    Case{"hex8_blend", "hex8", "full", "blend", "{fix: [x]}"},
-                    Case{"tet4_blend_1_ring", "tet4", "full", "{blend: {ring: 1}}", "{fix: [x]}"},
-                    Case{"turned_support", "hex8", "full", "{rpim: {ring: 1}}",
-                         "{axes: [[0.6, 0.8, 0], [-0.8, 0.6, 0]]}"},
-                    Case{"symmetry", "hex8", "full", "{rpim: {ring: 1}}", "{symmetry: [0.6, 0, 0.8]}"},
-                    Case{"neo_hookean", "hex8", "full", "blend", "{fix: [x]}", "neo_hookean"},
-                    Case{"neo_hookean_f_bar", "hex8", "b_bar", "facets", "{fix: [x]}", "neo_hookean"},
-                    Case{"kirchhoff_tet4", "tet4", "full", "facets", "{fix: [x]}", "saint_venant_kirchhoff"},
-                    Case{"dynamic", "hex8", "full", "blend", "{fix: [x]}", "linear_elastic", true},
-                    Case{"dynamic_neo_hookean", "hex8", "full", "blend", "{fix: [x]}", "neo_hookean", true}),
+    testing::Values(
+        Case{"hex8_facets", "hex8", "full", "facets", "{fix: [x]}"},
+        Case{"hex8_b_bar_rpim", "hex8", "b_bar", "{rpim: {ring: 2}}", "{fix: [x]}"},
+        Case{"hex8_incompatible_rpim_tangential", "hex8", "incompatible_modes",
+             "{rpim: {ring: 1, coordinates: tangential}}", "{fix: [x]}"},
+        Case{"wedge6_facets", "wedge6", "full", "facets", "{fix: [x]}"},
+        Case{"wedge6_rpim", "wedge6", "full", "{rpim: {ring: 1}}", "{fix: [x]}"},
+        Case{"tet4_facets", "tet4", "full", "facets", "{fix: [x]}"},
+        Case{"tet4_rpim", "tet4", "full", "{rpim: {ring: 2, m: 3}}", "{fix: [x]}"},
+        Case{"hex8_blend", "hex8", "full", "blend", "{fix: [x]}"},
+        Case{"tet4_blend_1_ring", "tet4", "full", "{blend: {ring: 1}}", "{fix: [x]}"},
+        Case{"turned_support", "hex8", "full", "{rpim: {ring: 1}}", "{axes: [[0.6, 0.8, 0], [-0.8, 0.6, 0]]}"},
+        Case{"symmetry", "hex8", "full", "{rpim: {ring: 1}}", "{symmetry: [0.6, 0, 0.8]}"},
+        Case{"neo_hookean", "hex8", "full", "blend", "{fix: [x]}", "neo_hookean"},
+        Case{"neo_hookean_f_bar", "hex8", "b_bar", "facets", "{fix: [x]}", "neo_hookean"},
+        Case{"kirchhoff_tet4", "tet4", "full", "facets", "{fix: [x]}", "saint_venant_kirchhoff"},
+        Case{"dynamic", "hex8", "full", "blend", "{fix: [x]}", "linear_elastic", true},
+        Case{"follower_pressure", "hex8", "full", "facets", "{fix: [x]}", "linear_elastic", false, "{top: 3 MPa}"},
+        Case{"dynamic_follower_pressure", "wedge6", "full", "facets", "{fix: [x]}", "neo_hookean", true,
+             "{top: 3 MPa}"},
+        Case{"dynamic_neo_hookean", "hex8", "full", "blend", "{fix: [x]}", "neo_hookean", true}),
     [](const auto& tested) { return tested.param.name; });
 
 } // namespace

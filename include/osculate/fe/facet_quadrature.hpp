@@ -18,4 +18,7 @@ namespace osculate::fe {
 [[nodiscard]] std::array<Vec3, 4> pressure_forces(const mesh::Facet& facet, const std::vector<Vec3>& positions,
                                                   double pressure);
 
+/// Derivative of pressure_forces (3n x 3n, n = facet.count) by the positions, N/m; not symmetric.
+[[nodiscard]] Matrix pressure_tangent(const mesh::Facet& facet, const std::vector<Vec3>& positions, double pressure);
+
 } // namespace osculate::fe

@@ -1,5 +1,5 @@
 #pragma once
-/// Inertia, damping and internal forces of all bodies over one step, all forces but loads and contact.
+/// Inertia, damping, internal forces and follower pressures of all bodies over one step: all but dead loads and contact.
 
 #include "osculate/fe/element_block.hpp"
 #include "osculate/model/model.hpp"
@@ -10,10 +10,17 @@ namespace osculate::time {
 /// Work of the body forces over the displacements of a step, J.
 struct BodyWork {
     double inertia = 0, internal = 0, damping = 0;
+    double follower = 0; ///< of the follower pressures on the bodies
 };
 
-/// In statics f(u) = f_int(u). In dynamics the mean over the step that the integrator asks for,
-///     f(u) = (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + K u) + alpha_f (C v_n + K u_n),
+/// A pressure that follows its facets over a step.
+struct FollowerLoad {
+    const std::vector<mesh::Facet>* facets = nullptr; ///< global nodes
+    double start = 0, end = 0;                        ///< Pa
+};
+
+/// In statics f(u) = f_int(u) - f_p(u), f_p those of follower pressures. In dynamics the mean over the step that the integrator asks for,
+///     f(u) = (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + K u - f_p) + alpha_f (C v_n + K u_n - f_p,n),
 /// v and a affine in u by its kinematics, C = mass_damping M + stiffness_damping K. Bodies at finite strain have in place
 /// of K u and stiffness damping the forces of fe::ElementKernel::step_force, with end_weight = 1-alpha_f: with alpha_f =
 /// alpha_m = 1/2 they conserve energy and momenta for every dt, where the mean of the forces at the two ends, under large
@@ -21,17 +28,18 @@ struct BodyWork {
 class BodyForces {
 public:
     /// @param dynamics  null in statics; must outlive this object, as must the model
-    BodyForces(const model::Model& model, const Dynamics* dynamics, int threads);
+    /// @param follower_pressure  whether steps may have any
+    BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads);
 
     /// Opens a step. True where it changed the tangent.
-    bool begin(const model::State& state, double dt);
+    bool begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt);
     /// f (nodes) N at u (nodes) m; not to be used where an element is not admissible.
     model::WorstElement evaluate(const std::vector<Vec3>& u, std::vector<Vec3>& f) const;
     /// Takes the tangent to u. False where it does not depend on u, and nothing is done.
     bool linearise(const std::vector<Vec3>& u);
     /// df/du, at the last linearise(): the effective stiffness.
-    [[nodiscard]] const model::BlockMatrix& tangent() const { return dynamics_ || nonlinear() ? tangent_ : model_.K; }
-    [[nodiscard]] bool symmetric() const { return dynamics_ == nullptr || !nonlinear(); }
+    [[nodiscard]] const model::BlockMatrix& tangent() const { return dynamics_ || varies() ? tangent_ : model_.K; }
+    [[nodiscard]] bool symmetric() const { return !follower_pressure_ && (dynamics_ == nullptr || !nonlinear()); }
 
     /// Velocities and accelerations at the end of the step from the displacements there; empty in statics.
     void complete(model::State& state) const;
@@ -43,19 +51,29 @@ public:
 private:
     using Field = std::vector<Vec3>;
     [[nodiscard]] bool nonlinear() const { return model_.finite_strain != nullptr; }
+    /// Whether the tangent depends on u.
+    [[nodiscard]] bool varies() const { return nonlinear() || follower_pressure_; }
+    /// f += factor times the pressures' forces, each pressure that of the step's start or end.
+    void add_pressures(double factor, bool end, const Field& u, Field& f) const;
     [[nodiscard]] const model::BlockMatrix& mass() const { return model_.mass(dynamics_->lumped_mass); }
 
     const model::Model& model_;
     const Dynamics* dynamics_;
+    bool follower_pressure_;
     int threads_;
+    std::vector<FollowerLoad> pressures_;
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;
     fe::StepMean mean_;                 ///< of finite strain, for the current dt
-    model::BlockMatrix tangent_;        ///< dynamics or finite strain
-    model::BlockMatrix constant_;       ///< finite strain: the part of the tangent that does not depend on u
+    model::BlockMatrix tangent_;        ///< dynamics, or where it varies
+    model::BlockMatrix constant_;       ///< where it varies: the part of the tangent that does not depend on u
     Field u_start_, v_start_, a_start_; ///< dynamics only
     Field force_start_;                 ///< f at u_start but for finite strain, N; dynamics only
 };
+
+/// Adds the forces of follower pressures at u, (nodes) N, with their pressures at the start of the step.
+void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model,
+                         const std::vector<Vec3>& u, std::vector<Vec3>& f);
 
 /// f_int(u) + C v of a state in dynamics, finite strain without stiffness damping, (nodes) N.
 [[nodiscard]] std::vector<Vec3> body_forces(const model::Model& model, const Dynamics& dynamics,

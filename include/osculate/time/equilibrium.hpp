@@ -17,8 +17,9 @@ namespace osculate::time {
 
 /// Loads and motions at the end of the step.
 struct StepLoad {
-    std::vector<Vec3> force;      ///< (nodes) external forces, N
-    std::vector<Vec3> prescribed; ///< (nodes) displacement of the held components, local axes, m
+    std::vector<Vec3> force;               ///< (nodes) external forces, N
+    std::vector<Vec3> prescribed;          ///< (nodes) displacement of the held components, local axes, m
+    std::vector<FollowerLoad> pressures{}; ///< of this step
 };
 
 /// One line of iterations.csv.
@@ -43,7 +44,7 @@ class Equilibrium final : public solve::NonlinearProblem, private solve::Precond
 public:
     /// @param dynamics  null in statics; must outlive this object
     Equilibrium(model::Model& model, const model::Constraints& constraints, const Dynamics* dynamics, Timings& timings,
-                int threads);
+                int threads, bool follower_pressure = false);
 
     /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
     /// their weighted mean over the step.

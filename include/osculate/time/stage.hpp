@@ -1,6 +1,7 @@
 #pragma once
 /// One stage as the stepper sees it.
 
+#include "osculate/mesh/mesh.hpp"
 #include "osculate/model/constraints.hpp"
 #include "osculate/time/integrator.hpp"
 #include "osculate/time/step_control.hpp"
@@ -32,6 +33,13 @@ struct CourseForce {
     std::vector<Vec3> pattern; ///< (nodes) forces where the course is 1, N
 };
 
+/// A pressure on the current area, along the current normal.
+struct FollowerPressure {
+    std::vector<mesh::Facet> facets; ///< global nodes
+    double start = 0, end = 0;       ///< Pa, ramped as the stage says
+    Index course = -1;               ///< of the stage, that it follows instead
+};
+
 struct Stage {
     std::string name;
     double duration = 1; ///< s
@@ -43,6 +51,7 @@ struct Stage {
     std::vector<Vec3> force_start, force_end;       ///< (nodes) external forces at its two ends, N
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< on top of these
+    std::vector<FollowerPressure> follower_pressures;
 };
 
 } // namespace osculate::time

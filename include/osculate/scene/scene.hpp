@@ -4,6 +4,7 @@
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/mesh.hpp"
+#include "osculate/mesh/portion.hpp"
 
 #include <array>
 #include <map>
@@ -48,6 +49,27 @@ struct ContactorMesh {
     bool operator==(const ContactorMesh&) const = default;
 };
 
+using mesh::Portion;
+
+/// Solid ball about the origin.
+struct BallMesh {
+    double radius = 1;                     ///< m
+    std::array<int, 3> divisions{8, 4, 8}; ///< around a quarter of the equator, radial, inner cube along z
+    Portion portion = Portion::full;
+    double grading = 1;
+    double pole_refinement = 1; ///< how much smaller the elements at the lowest point are
+    bool operator==(const BallMesh&) const = default;
+};
+
+/// Solid cylinder about the z axis, from z = 0 up.
+struct CylinderMesh {
+    double radius = 1, length = 1;         ///< m
+    std::array<int, 3> divisions{8, 4, 8}; ///< around a quarter, radial, along z
+    Portion portion = Portion::full;
+    double grading = 1; ///< of the layers along z
+    bool operator==(const CylinderMesh&) const = default;
+};
+
 struct FileMesh {
     std::string path; ///< VTU file; the reader makes it absolute
     bool operator==(const FileMesh&) const = default;
@@ -63,7 +85,7 @@ struct Placement {
 };
 
 struct MeshSpec {
-    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, FileMesh> source;
+    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, FileMesh> source;
     Placement placement;
     bool operator==(const MeshSpec&) const = default;
 };

@@ -80,6 +80,10 @@ public:
         {
             const ScopedTimer timer(timings_, Part::assembly);
             plan_.model.K = model::assemble_stiffness(plan_.model.bodies, plan_.model.nodes());
+            if (std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const auto& body) {
+                    return !std::holds_alternative<scene::LinearElastic>(body.second.material);
+                }))
+                plan_.model.finite_strain = std::make_unique<model::FiniteStrain>(plan_.model.bodies, plan_.model.K);
             add_mass();
         }
         plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0, scene_.solver.predictor, threads_};
@@ -99,17 +103,30 @@ private:
                 faults_.push_back(fault("bodies." + name + ".mesh", "a sound mesh", what));
             model::Body body;
             body.name = name;
-            body.density = std::visit([](const auto& material) { return material.density; }, spec.material);
+            body.density = scene::elastic(spec.material).density;
             body.mesh = std::move(meshes[b]);
             body.first_node = plan_.model.nodes();
-            const auto& elastic = std::get<scene::LinearElastic>(spec.material);
             for (const mesh::ElementBlock& block : body.mesh.blocks)
-                body.kernels.push_back(fe::make_kernel(block.type, formulation(spec.hex_formulation),
-                                                       material::LinearElastic{elastic.E, elastic.nu}));
+                body.kernels.push_back(kernel(block.type, formulation(spec.hex_formulation), spec.material));
             plan_.model.X.insert(plan_.model.X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
             exterior_.push_back(mesh::exterior_facets(body.mesh));
             plan_.model.bodies.push_back(std::move(body));
         }
+    }
+
+    static std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, fe::HexFormulation formulation,
+                                                     const scene::Material& spec) {
+        const material::LinearElastic elastic{scene::elastic(spec).E, scene::elastic(spec).nu};
+        return std::visit(Overloaded{
+                              [&](const scene::LinearElastic&) { return fe::make_kernel(type, formulation, elastic); },
+                              [&](const scene::SaintVenantKirchhoff&) {
+                                  return fe::make_kernel(type, formulation, material::SaintVenantKirchhoff(elastic));
+                              },
+                              [&](const scene::NeoHookean&) {
+                                  return fe::make_kernel(type, formulation, material::NeoHookean(elastic));
+                              },
+                          },
+                          spec);
     }
 
     static fe::HexFormulation formulation(scene::HexFormulation f) {
@@ -375,7 +392,9 @@ void Compiler::add_items() {
         friction = friction || pair.friction > 0;
         smooth = smooth || !std::holds_alternative<scene::FacetsSurface>(pair.master.surface);
     }
-    say("stiffness", true, "assembled once: small strain and linear elasticity keep it constant");
+    const bool finite = plan_.model.finite_strain != nullptr;
+    say("stiffness", true, finite ? "of the bodies at small strain, assembled once" : "assembled once: constant");
+    say("finite strain", finite, finite ? "forces and tangent anew at every iterate" : "every body is linear");
     const auto dynamic = std::count_if(plan_.stages.begin(), plan_.stages.end(),
                                        [](const time::Stage& s) { return s.dynamics.has_value(); });
     say("inertia, damping", dynamic > 0,

@@ -90,7 +90,7 @@ std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene,
         }
     }
     // c = E_slave * tributary area / h: the stiffness of the slave's own first layer, so free of units
-    const double E = std::get<scene::LinearElastic>(scene.bodies[slave.body].second.material).E;
+    const double E = scene::elastic(scene.bodies[slave.body].second.material).E;
     for (const auto& [node, values] : area_and_size) {
         slaves.node.push_back(node);
         slaves.area.push_back(values.first);

@@ -82,12 +82,28 @@ BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
         Matrix Ke;
         for_each_element(
             body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
+                if (!kernel.linear()) return;
                 Ke.resize(3 * kernel.nodes(), 3 * kernel.nodes());
                 kernel.stiffness(X, Ke);
                 K.add(element, Ke);
             });
     }
     return K;
+}
+
+std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u, int threads) {
+    std::vector<Vec3> f(u.size(), Vec3::Zero());
+    model.K.multiply_add(u, f, threads);
+    if (model.finite_strain) (void)model.finite_strain->add_internal_force(model.X, u, f, threads);
+    return f;
+}
+
+double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads) {
+    std::vector<Vec3> f(u.size(), Vec3::Zero());
+    model.K.multiply_add(u, f, threads);
+    double sum = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) sum += u[i].dot(f[i]);
+    return sum / 2 + (model.finite_strain ? model.finite_strain->energy(model.X, u, threads) : 0);
 }
 
 Vec3 centre_of_mass(const Body& body) {

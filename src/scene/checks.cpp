@@ -94,12 +94,15 @@ public:
     }
 
     void check_density(const std::string& name, const Body& body, const std::string& reason) {
-        std::visit(
-            [&](const auto& m) {
-                if (m.density == 0)
-                    fault({"bodies", name, "material"}, "a density, which " + reason + " needs", "none");
-            },
-            body.material);
+        if (elastic(body.material).density == 0)
+            fault({"bodies", name, "material"}, "a density, which " + reason + " needs", "none");
+    }
+
+    void check_formulation(const std::string& name, const Body& body) {
+        if (body.hex_formulation == HexFormulation::incompatible_modes &&
+            !std::holds_alternative<LinearElastic>(body.material))
+            fault({"bodies", name, "hex_formulation"}, "full or b_bar with a material at finite strain",
+                  "incompatible_modes");
     }
 
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {
@@ -144,6 +147,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     Rules rules(tree, faults);
     for (const auto& [name, body] : scene.bodies)
         std::visit([&, &n = name](const auto& source) { rules.check_mesh(n, source); }, body.mesh.source);
+    for (const auto& [name, body] : scene.bodies) rules.check_formulation(name, body);
     for (const auto& [name, set] : scene.sets) rules.check_set(name, set);
     for (const auto& [stage_name, stage] : scene.stages)
         if (std::holds_alternative<DynamicAnalysis>(stage.analysis)) {

@@ -127,7 +127,7 @@ void describe(Visitor& v, FileMesh& m) {
            m.path);
 }
 
-void describe(Visitor& v, LinearElastic& m) {
+void describe(Visitor& v, ElasticConstants& m) {
     v.number({.name = "E",
               .meaning = "Young's modulus.",
               .unit = dimension::pressure,
@@ -179,9 +179,12 @@ void describe(Visitor& v, Body& body) {
     v.group({.name = "mesh", .meaning = "A generator or a file, and its placement.", .required = true},
             [&] { describe(v, body.mesh); });
     v.group({.name = "material", .meaning = "Constitutive law.", .required = true}, [&] {
-        static const Words tags{"linear_elastic"};
-        one_of(v, tags, {"Isotropic linear elasticity at small strain."}, true, body.material,
-               [&v](auto& alternative) { describe(v, alternative); });
+        static const Words tags{"linear_elastic", "saint_venant_kirchhoff", "neo_hookean"};
+        one_of(v, tags,
+               {"Isotropic linear elasticity at small strain: no large rotations.",
+                "Hooke's law at finite strain: large rotations, small strains.",
+                "Compressible neo-Hookean elasticity: large rotations, large strains."},
+               true, body.material, [&v](auto& alternative) { describe(v, alternative); });
     });
     static const Words formulations{"full", "b_bar", "incompatible_modes"};
     word(v, {.name = "hex_formulation", .meaning = "Formulation of the body's hexahedra."}, formulations,

@@ -123,8 +123,14 @@ struct KinsolSolver::Impl {
             direct = is_cholesky ? make_cholesky() : make_lu();
         }
         factored_pattern = 0;
-        const FactorStatus status = direct->factorise(A);
+        FactorStatus status = direct->factorise(A);
         ++factorisations;
+        if (status == FactorStatus::indefinite && A.may_turn_indefinite) {
+            is_cholesky = false;
+            direct = make_lu();
+            status = direct->factorise(A);
+            ++factorisations;
+        }
         if (status != FactorStatus::ok) {
             singular = true;
             failing_equation = direct->failing_equation();

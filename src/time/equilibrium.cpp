@@ -13,8 +13,8 @@ using model::Constraints;
 
 Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, const Dynamics* dynamics,
                          Timings& timings, int threads)
-    : model_(model), constraints_(constraints), timings_(timings), threads_(threads), first_coupling_{0},
-      dynamics_(dynamics) {
+    : model_(model), constraints_(constraints), timings_(timings), threads_(threads),
+      bodies_(model, dynamics, threads), first_coupling_{0} {
     std::vector<model::Coupling> couplings;
     for (auto& pair : model.pairs) {
         std::vector<char> held;
@@ -32,59 +32,30 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
         statuses_.emplace_back(pair->slaves().node.size(), Status::open);
     }
     const ScopedTimer timer(timings_, Part::assembly);
-    if (dynamics_ != nullptr) effective_ = model_.K;
-    matrix_ = std::make_unique<model::SystemMatrix>(constraints_, stiffness(), std::move(couplings));
+    matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), std::move(couplings));
+    if (model_.finite_strain && model_.pairs.empty()) matrix_->expect_buckling();
     kept_couplings_ = matrix_->couplings();
     size_ = matrix_->size();
-    if (!model.pairs.empty()) preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, stiffness());
+    if (!model.pairs.empty())
+        preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, bodies_.tangent());
     const auto n = static_cast<std::size_t>(model.nodes());
     u_.assign(n, Vec3::Zero());
     x_ = internal_ = unbalanced_ = u_;
 }
 
-void Equilibrium::set_step(double dt) {
-    if (dt == dt_) return;
-    dt_ = dt;
-    kinematics_ = kinematics(dynamics_->integrator, dt);
-    const double inertia = (1 - dynamics_->integrator.alpha_m) * kinematics_.by_u_acceleration,
-                 rest = 1 - dynamics_->integrator.alpha_f, rate = rest * kinematics_.by_u_velocity;
-    effective_.set_combination(rest + rate * dynamics_->stiffness_damping, model_.K,
-                               inertia + rate * dynamics_->mass_damping, mass());
-    matrix_->stiffness_changed();
-    if (preconditioner_) preconditioner_->stiffness_changed();
-    for (auto& pair : model_.pairs) {
-        std::vector<double> per_node;
-        for (const Index node : pair->slaves().node) {
-            double sum = 0;
-            for (Index k = mass().row_begin(node); k < mass().row_end(node); ++k) sum += mass().block(k)(0, 0);
-            per_node.push_back(inertia * sum);
-        }
-        pair->set_inertia(std::move(per_node));
-    }
-}
-
 void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double dt) {
     load_ = std::move(load);
-    if (dynamics_ != nullptr) {
+    {
         const ScopedTimer timer(timings_, Part::assembly);
-        set_step(dt);
-        u_start_ = state.u;
-        v_start_ = state.v;
-        a_start_ = state.a;
-        // all forces but the external ones, at u = u_start and the end of the step
-        const Integrator& w = dynamics_->integrator;
-        const std::size_t n = u_start_.size();
-        std::vector<Vec3> by_M(n), by_K(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            const Vec3 v = kinematics_.velocity(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
-            const Vec3 a = kinematics_.acceleration(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
-            const Vec3 mean_v = (1 - w.alpha_f) * v + w.alpha_f * v_start_[i];
-            by_M[i] = (1 - w.alpha_m) * a + w.alpha_m * a_start_[i] + dynamics_->mass_damping * mean_v;
-            by_K[i] = u_start_[i] + dynamics_->stiffness_damping * mean_v;
+        if (bodies_.begin(state, dt)) {
+            matrix_->stiffness_changed();
+            if (preconditioner_) preconditioner_->stiffness_changed();
+            for (auto& pair : model_.pairs) {
+                std::vector<double> inertia;
+                for (const Index node : pair->slaves().node) inertia.push_back(bodies_.inertia(node));
+                pair->set_inertia(std::move(inertia));
+            }
         }
-        force_start_.assign(n, Vec3::Zero());
-        mass().multiply_add(by_M, force_start_, threads_);
-        model_.K.multiply_add(by_K, force_start_, threads_);
     }
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = model_.X[i] + state.u[i];
     for (std::size_t p = 0; p < model_.pairs.size(); ++p)
@@ -105,7 +76,7 @@ void Equilibrium::commit() {
 void Equilibrium::rollback() {
     const ScopedTimer timer(timings_, Part::assembly);
     if (kept_patterns_ != patterns_built_) {
-        matrix_ = std::make_unique<model::SystemMatrix>(constraints_, stiffness(), kept_couplings_);
+        matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), kept_couplings_);
         kept_patterns_ = ++patterns_built_;
     }
     if (preconditioner_) preconditioner_->restore_pattern();
@@ -145,11 +116,7 @@ model::State Equilibrium::state(const Vector& z) const {
     model::State state;
     state.u.assign(u_.size(), Vec3::Zero());
     constraints_.scatter(z.data(), load_.prescribed, state.u);
-    if (dynamics_ != nullptr)
-        for (std::size_t i = 0; i < state.u.size(); ++i) {
-            state.v.push_back(kinematics_.velocity(state.u[i], u_start_[i], v_start_[i], a_start_[i]));
-            state.a.push_back(kinematics_.acceleration(state.u[i], u_start_[i], v_start_[i], a_start_[i]));
-        }
+    bodies_.complete(state);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
         model::ContactHistory history{std::vector<Vec3>(statuses_[p].size()), statuses_[p], pair.facets()};
@@ -187,6 +154,11 @@ Mat3 Equilibrium::symmetry_directions(Index node) const {
 
 solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* F) {
     unpack(z);
+    {
+        const ScopedTimer timer(timings_, Part::assembly);
+        worst_element_ = bodies_.evaluate(u_, internal_);
+    }
+    if (!worst_element_.admissible()) return Verdict::shorten;
     for (auto& pair : model_.pairs) pair->evaluate(x_, timings_, threads_);
 
     int status_changes = 0;
@@ -209,15 +181,6 @@ solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* 
 
 void Equilibrium::fill(double* F) {
     const ScopedTimer timer(timings_, Part::assembly);
-    if (dynamics_ == nullptr) {
-        std::fill(internal_.begin(), internal_.end(), Vec3::Zero());
-        model_.K.multiply_add(u_, internal_, threads_);
-    } else {
-        internal_ = force_start_;
-        std::vector<Vec3> moved(u_.size());
-        for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = u_[i] - u_start_[i];
-        effective_.multiply_add(moved, internal_, threads_);
-    }
     for (std::size_t i = 0; i < internal_.size(); ++i) unbalanced_[i] = internal_[i] - load_.force[i];
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
@@ -313,7 +276,7 @@ void Equilibrium::cover_patches() {
             std::sort(masters.begin(), masters.end());
             masters.erase(std::unique(masters.begin(), masters.end()), masters.end()); // mirror images repeat nodes
         }
-    matrix_ = std::make_unique<model::SystemMatrix>(constraints_, stiffness(), std::move(couplings));
+    matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), std::move(couplings));
     ++patterns_built_;
 }
 
@@ -338,6 +301,8 @@ void Equilibrium::linearise(std::size_t p, Index j, ContactTangent& tangent) con
 }
 
 solve::FactorStatus Equilibrium::factorise() {
+    if (stale_preconditioner_) preconditioner_->stiffness_changed();
+    stale_preconditioner_ = false;
     std::vector<SoftContact> contacts;
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
@@ -364,9 +329,13 @@ void Equilibrium::precondition(const double* r, double* z) {
 }
 
 const solve::SparseMatrix& Equilibrium::jacobian() {
-    if (model_.pairs.empty()) return matrix_->matrix(); // constant: factorised once
     {
         const ScopedTimer timer(timings_, Part::assembly);
+        if (bodies_.linearise(u_)) {
+            matrix_->stiffness_changed();
+            stale_preconditioner_ = true;
+        }
+        if (model_.pairs.empty()) return matrix_->matrix(); // constant without finite strain: factorised once
         cover_patches();
         matrix_->reset();
     }

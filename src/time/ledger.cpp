@@ -28,7 +28,7 @@ Field times(const model::BlockMatrix& A, const Field& x) {
 void take_stock(Ledger& ledger, const model::Model& model, const Dynamics& dynamics, const model::State& state) {
     const Field p = times(model.mass(dynamics.lumped_mass), state.v);
     ledger.kinetic = 0.5 * dot(state.v, p);
-    ledger.strain = 0.5 * dot(state.u, times(model.K, state.u));
+    ledger.strain = model::strain_energy(model, state.u, 1);
     ledger.linear.setZero();
     ledger.angular.setZero();
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -49,18 +49,12 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics&
                 const Equilibrium& equilibrium, const model::State& from, const model::State& to, const Field& force) {
     Ledger next = ledger;
     take_stock(next, model, dynamics, to);
-    const Integrator& w = dynamics.integrator;
-    const model::BlockMatrix& M = model.mass(dynamics.lumped_mass);
     const Field Du = weighted(1, to.u, -1, from.u);
-    const Field v = weighted(1 - w.alpha_f, to.v, w.alpha_f, from.v);
 
     double external = dot(Du, force);
     for (Index i = 0; i < model.nodes(); ++i)
         external += Du[i].dot(equilibrium.constraints().reaction(i, equilibrium.unbalanced()[i]));
-    const double damping =
-        dynamics.mass_damping * dot(Du, times(M, v)) + dynamics.stiffness_damping * dot(Du, times(model.K, v));
-    const double inertia = dot(Du, times(M, weighted(1 - w.alpha_m, to.a, w.alpha_m, from.a)));
-    const double stiffness = dot(Du, times(model.K, weighted(1 - w.alpha_f, to.u, w.alpha_f, from.u)));
+    const BodyWork work = equilibrium.bodies().work(to);
     double contact = 0, friction = 0;
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model.pairs[p];
@@ -77,13 +71,13 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics&
         }
     }
     const double change = next.kinetic - ledger.kinetic + next.strain - ledger.strain;
-    const double algorithmic = inertia + stiffness - change;
+    const double algorithmic = work.inertia + work.internal - change;
     next.external += external;
     next.friction += friction;
-    next.damping += damping;
+    next.damping += work.damping;
     next.algorithmic += algorithmic;
     next.contact += contact + friction;
-    next.balance += change - (external + contact - damping - algorithmic);
+    next.balance += change - (external + contact - work.damping - algorithmic);
     return next;
 }
 

@@ -119,7 +119,7 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
 
     Vector F(z.size());
     equilibrium.set_statuses(statuses, StatusRule::frozen, false);
-    (void)equilibrium.residual(z.data(), F.data());
+    if (equilibrium.residual(z.data(), F.data()) == solve::NonlinearProblem::Verdict::shorten) return false;
     bool forced = false;
     for (std::size_t p = 0; p < statuses.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
@@ -144,14 +144,12 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     const Dynamics& dynamics = *stage.dynamics;
     const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
     const auto n = static_cast<std::size_t>(model_.nodes());
-    std::vector<Vec3> f = force, by_K(n), by_M(n), x = model_.X;
+    const std::vector<Vec3> own = BodyForces(model_, &dynamics, options_.threads).of(state_);
+    std::vector<Vec3> f = force, x = model_.X;
     for (std::size_t i = 0; i < n; ++i) {
-        by_K[i] = -(state_.u[i] + dynamics.stiffness_damping * state_.v[i]);
-        by_M[i] = -dynamics.mass_damping * state_.v[i];
+        f[i] -= own[i];
         x[i] += state_.u[i];
     }
-    model_.K.multiply_add(by_K, f, options_.threads);
-    M.multiply_add(by_M, f, options_.threads);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         model::ContactTerm& pair = *model_.pairs[p];
         pair.begin_step(x, state_.contact[p], timings_, options_.threads);
@@ -193,8 +191,7 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         for (const Vec3& v : f) sum += v.squaredNorm();
         return std::sqrt(sum);
     };
-    std::vector<Vec3> internal(model_.X.size(), Vec3::Zero());
-    model_.K.multiply_add(state_.u, internal, options_.threads);
+    std::vector<Vec3> internal = model::internal_force(model_, state_.u, options_.threads);
     double carried = std::max(norm(load.force), norm(internal));
     if (stage.dynamics) {
         // a thousandth of the force that would stop every motion within the step
@@ -207,10 +204,11 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         }
     }
     if (carried > 0) return carried;
-    const model::State predicted = equilibrium.state(z);
-    std::fill(internal.begin(), internal.end(), Vec3::Zero());
-    model_.K.multiply_add(predicted.u, internal, options_.threads);
-    const double driven = norm(internal);
+    // forces that the motion of the step would call up from rest; a small part of it, as elements may not bear the whole
+    constexpr double part = 1e-3;
+    std::vector<Vec3> u = equilibrium.state(z).u;
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = state_.u[i] + part * (u[i] - state_.u[i]);
+    const double driven = norm(model::internal_force(model_, u, options_.threads)) / part;
     return driven > 0 ? driven : 1;
 }
 
@@ -220,9 +218,18 @@ std::string Stepper::explain(const LadderResult& result, const Equilibrium& equi
         for (Index i = 0; i < model_.nodes(); ++i)
             for (int k = 0; k < 3; ++k)
                 if (equilibrium.constraints().equation(i, k) == result.failing_equation) node = i;
+    std::ostringstream text;
+    if (const model::WorstElement& worst = equilibrium.worst_element(); !worst.admissible()) {
+        const model::Body& body = model_.bodies[static_cast<std::size_t>(worst.body)];
+        attempt.body = body.name;
+        attempt.value = worst.J;
+        text << result.rung << ": element " << worst.element << " of body '" << body.name
+             << "' is turned inside out, det F = " << worst.J
+             << "; smaller steps, a finer mesh or a material that resists compression (neo_hookean) may help";
+        return text.str();
+    }
     name_node(node, attempt);
     attempt.value = result.residual;
-    std::ostringstream text;
     text << result.rung << ": " << solve::describe(result.outcome) << " after " << result.iterations
          << " iterations, relative residual " << result.residual;
     if (!attempt.body.empty()) text << ", worst at node " << attempt.node << " of body '" << attempt.body << "'";

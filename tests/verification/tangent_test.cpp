@@ -18,11 +18,15 @@ struct Case {
     const char* formulation;
     const char* surface;
     const char* support; ///< of the driven face
+    const char* material = "linear_elastic";
+    bool dynamic = false;
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
     return out << c.name;
 }
+
+const char* const damped = "{dynamic: {integrator: {generalised_alpha: {rho_inf: 0.5}}, stiffness_damping: 1 ms}}";
 
 class Tangent : public testing::TestWithParam<Case> {};
 
@@ -43,12 +47,16 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         {"contact.sliding.surface", c.surface},
         {"contact.sliding.friction", "0.3"},
         {"supports.rear", c.support},
+        {"bodies.tube.material", "{" + std::string(c.material) + ": {E: 30 MPa, nu: 0.2, density: 2000 kg/m^3}}"},
+        {"bodies.contactor.material", "{" + std::string(c.material) + ": {E: 10 MPa, nu: 0.2, density: 2000 kg/m^3}}"},
+        {"stages.slide.analysis", c.dynamic ? damped : "static"},
     };
     const scene::Scene scene = scene::read_scene(support::shipped("paper/half_tube.yaml"), overrides);
     Timings timings;
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const model::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
-    time::Equilibrium equilibrium(plan.model, constraints, nullptr, timings, 1);
+    const auto& dynamics = plan.stages[1].dynamics;
+    time::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr, timings, 1);
 
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -71,7 +79,14 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         statuses[0].push_back(static_cast<Status>(j % 4));
     }
     time::StepLoad load{std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
-    equilibrium.begin_attempt(state, load, 1);
+    if (c.dynamic) {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            state.v.push_back(shake());
+            state.a.push_back(shake());
+        }
+    }
+    constexpr double dt = 0.01; // s: inertia and stiffness weigh about the same
+    equilibrium.begin_attempt(state, load, dt);
     equilibrium.set_statuses(statuses, time::StatusRule::frozen, false);
     Vector z = equilibrium.unknowns(u, state.contact);
 
@@ -100,22 +115,27 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     EXPECT_LT(worst, tolerance);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Tangent,
-                         testing::Values(Case{"hex8_facets", "hex8", "full", "facets", "{fix: [x]}"},
-                                         Case{"hex8_b_bar_rpim", "hex8", "b_bar", "{rpim: {ring: 2}}", "{fix: [x]}"},
-                                         Case{"hex8_incompatible_rpim_tangential", "hex8", "incompatible_modes",
-                                              "{rpim: {ring: 1, coordinates: tangential}}", "{fix: [x]}"},
-                                         Case{"wedge6_facets", "wedge6", "full", "facets", "{fix: [x]}"},
-                                         Case{"wedge6_rpim", "wedge6", "full", "{rpim: {ring: 1}}", "{fix: [x]}"},
-                                         Case{"tet4_facets", "tet4", "full", "facets", "{fix: [x]}"},
-                                         Case{"tet4_rpim", "tet4", "full", "{rpim: {ring: 2, m: 3}}", "{fix: [x]}"},
-                                         Case{"hex8_blend", "hex8", "full", "blend", "{fix: [x]}"},
-                                         Case{"tet4_blend_1_ring", "tet4", "full", "{blend: {ring: 1}}", "{fix: [x]}"},
-                                         Case{"turned_support", "hex8", "full", "{rpim: {ring: 1}}",
-                                              "{axes: [[0.6, 0.8, 0], [-0.8, 0.6, 0]]}"},
-                                         Case{"symmetry", "hex8", "full", "{rpim: {ring: 1}}",
-                                              "{symmetry: [0.6, 0, 0.8]}"}),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    All, Tangent,
+    testing::Values(Case{"hex8_facets", "hex8", "full", "facets", "{fix: [x]}"},
+                    Case{"hex8_b_bar_rpim", "hex8", "b_bar", "{rpim: {ring: 2}}", "{fix: [x]}"},
+                    Case{"hex8_incompatible_rpim_tangential", "hex8", "incompatible_modes",
+                         "{rpim: {ring: 1, coordinates: tangential}}", "{fix: [x]}"},
+                    Case{"wedge6_facets", "wedge6", "full", "facets", "{fix: [x]}"},
+                    Case{"wedge6_rpim", "wedge6", "full", "{rpim: {ring: 1}}", "{fix: [x]}"},
+                    Case{"tet4_facets", "tet4", "full", "facets", "{fix: [x]}"},
+                    Case{"tet4_rpim", "tet4", "full", "{rpim: {ring: 2, m: 3}}", "{fix: [x]}"},
+                    Case{"hex8_blend", "hex8", "full", "blend", "{fix: [x]}"},
+                    Case{"tet4_blend_1_ring", "tet4", "full", "{blend: {ring: 1}}", "{fix: [x]}"},
+                    Case{"turned_support", "hex8", "full", "{rpim: {ring: 1}}",
+                         "{axes: [[0.6, 0.8, 0], [-0.8, 0.6, 0]]}"},
+                    Case{"symmetry", "hex8", "full", "{rpim: {ring: 1}}", "{symmetry: [0.6, 0, 0.8]}"},
+                    Case{"neo_hookean", "hex8", "full", "blend", "{fix: [x]}", "neo_hookean"},
+                    Case{"neo_hookean_f_bar", "hex8", "b_bar", "facets", "{fix: [x]}", "neo_hookean"},
+                    Case{"kirchhoff_tet4", "tet4", "full", "facets", "{fix: [x]}", "saint_venant_kirchhoff"},
+                    Case{"dynamic", "hex8", "full", "blend", "{fix: [x]}", "linear_elastic", true},
+                    Case{"dynamic_neo_hookean", "hex8", "full", "blend", "{fix: [x]}", "neo_hookean", true}),
+    [](const auto& tested) { return tested.param.name; });
 
 } // namespace
 } // namespace osculate

@@ -20,6 +20,9 @@ public:
     [[nodiscard]] Index row_end(Index row) const { return row_start_[row + 1]; }
     [[nodiscard]] Index column(Index slot) const { return column_[slot]; }
     [[nodiscard]] const Mat3& block(Index slot) const { return block_[slot]; }
+    [[nodiscard]] Mat3& block(Index slot) { return block_[slot]; }
+    /// Where the block of a pair of nodes is. @pre the pattern has it
+    [[nodiscard]] Index slot(Index row, Index column) const;
     /// Adds an element matrix (3n x 3n) at its nodes.
     void add(const std::vector<Index>& nodes, const Matrix& element);
     /// *this = a A + b B, B of the same pattern or empty.
@@ -29,8 +32,6 @@ public:
     void multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const;
 
 private:
-    [[nodiscard]] Index slot(Index row, Index column) const;
-
     std::vector<Index> row_start_{0};
     std::vector<Index> column_;
     std::vector<Mat3> block_;

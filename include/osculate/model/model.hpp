@@ -5,6 +5,7 @@
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/model/block_matrix.hpp"
 #include "osculate/model/contact_term.hpp"
+#include "osculate/model/finite_strain.hpp"
 
 #include <memory>
 #include <string>
@@ -35,8 +36,9 @@ struct Model {
     std::vector<Vec3> X; ///< reference positions of all nodes, m
     std::vector<Set> sets;
     std::vector<std::unique_ptr<ContactTerm>> pairs;
-    BlockMatrix K;                            ///< stiffness of all bodies, constant: small strain, linear elasticity
-    BlockMatrix consistent_mass, lumped_mass; ///< of all bodies, kg, pattern of K; empty where no stage asks for it
+    BlockMatrix K;                               ///< constant stiffness of the linear bodies, in the pattern of all
+    std::unique_ptr<FiniteStrain> finite_strain; ///< the other bodies; null where there are none
+    BlockMatrix consistent_mass, lumped_mass;    ///< of all bodies, kg, pattern of K; empty where no stage asks for it
 
     std::vector<Vec3> initial_velocity; ///< (nodes) m/s; empty where no stage is dynamic
 
@@ -44,7 +46,11 @@ struct Model {
     [[nodiscard]] const BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
-/// Stiffness of all bodies.
+/// f_int(u) of all bodies, (nodes) N.
+[[nodiscard]] std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u, int threads);
+/// Strain energy of all bodies, J.
+[[nodiscard]] double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads);
+/// Stiffness of the bodies that are linear, in the pattern of all.
 [[nodiscard]] BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
 /// Mass of all bodies, multiples of the unit matrix in the pattern of the stiffness; lumped: diagonal.
 /// @param massless  (nodes) nodes whose mass goes to the other nodes of their elements, in proportion to theirs; an element

@@ -39,6 +39,8 @@ public:
     /// First unknown of the contact force of coupling j.
     [[nodiscard]] Index multiplier(Index j) const { return displacement_equations_ + 3 * j; }
 
+    /// Says that K may lose its positive definiteness.
+    void expect_buckling() { matrix_.may_turn_indefinite = true; }
     /// Takes over new values of K.
     void stiffness_changed();
     /// Sets the values to the stiffness and the unit columns of the contact forces.

@@ -92,18 +92,32 @@ struct MeshSpec {
 
 // ---- bodies --------------------------------------------------------------------------------------------------------
 
-struct LinearElastic {
+struct ElasticConstants {
     double E = 0;       ///< Young's modulus, Pa
     double nu = 0;      ///< Poisson's ratio
     double density = 0; ///< kg/m^3; 0: none, which statics does not need
+    bool operator==(const ElasticConstants&) const = default;
+};
+struct LinearElastic : ElasticConstants { ///< small strain
     bool operator==(const LinearElastic&) const = default;
 };
+struct SaintVenantKirchhoff : ElasticConstants { ///< finite strain
+    bool operator==(const SaintVenantKirchhoff&) const = default;
+};
+struct NeoHookean : ElasticConstants { ///< finite strain
+    bool operator==(const NeoHookean&) const = default;
+};
+using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean>;
+
+[[nodiscard]] inline const ElasticConstants& elastic(const Material& material) {
+    return std::visit([](const auto& m) -> const ElasticConstants& { return m; }, material);
+}
 
 enum class HexFormulation { full, b_bar, incompatible_modes };
 
 struct Body {
     MeshSpec mesh;
-    std::variant<LinearElastic> material;
+    Material material;
     HexFormulation hex_formulation = HexFormulation::full;
     Vec3 initial_velocity = Vec3::Zero(), initial_spin = Vec3::Zero(); ///< m/s; rad/s about the centre of mass
     bool operator==(const Body&) const = default;

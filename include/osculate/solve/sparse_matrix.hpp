@@ -17,6 +17,7 @@ struct SparseMatrix {
     std::vector<SparseIndex> column;       ///< (nonzeros)
     std::vector<double> value;             ///< (nonzeros)
     bool symmetric_positive_definite = false;
+    bool may_turn_indefinite = false; ///< the former holds as long as nothing buckles
     std::uint64_t pattern = 0;
     std::uint64_t revision = 0;
 

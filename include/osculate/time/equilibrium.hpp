@@ -1,10 +1,11 @@
 #pragma once
-/// Static equilibrium with contact at the end of one step, as the nonlinear problem KINSOL sees.
+/// Equilibrium with contact at the end of one step, as the nonlinear problem KINSOL sees.
 
 #include "osculate/model/constraints.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
+#include "osculate/time/body_forces.hpp"
 #include "osculate/time/contact_preconditioner.hpp"
 #include "osculate/time/stage.hpp"
 
@@ -33,13 +34,10 @@ enum class StatusRule {
     frozen   ///< as given; the problem is smooth
 };
 
-/// In dynamics inertia and damping join in, all but contact forces weighted between the ends of the step:
-///     (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + K u - f) + alpha_f (C v_n + K u_n - f_n) - f_contact = 0
-/// with v and a affine in u by the integrator's kinematics, so that the tangent is the constant effective stiffness
-///     (1-alpha_m) da/du M + (1-alpha_f) (dv/du C + K)
 /// F(z) with z = (free displacements, contact forces): equilibrium of every free component and the contact law of every
 /// slave node, in the rows SystemMatrix assigns. Contact points are located anew at every z.
-///     equilibrium   f_int(u) - f_ext - f_contact = 0,   f_contact = lambda on the slave, on its masters as ContactPoint says
+///     equilibrium   f(u) - f_ext - f_contact = 0,   f of BodyForces, contact forces as at the end of the step:
+///                   f_contact = lambda on the slave, on its masters as ContactPoint says
 ///     contact law   see contact::Coulomb
 class Equilibrium final : public solve::NonlinearProblem, private solve::Preconditioner {
 public:
@@ -79,6 +77,9 @@ public:
     [[nodiscard]] const std::vector<Vec3>& internal_force() const { return internal_; }
     /// Node whose row holds the largest residual.
     [[nodiscard]] Index worst_node() const { return worst_node_; }
+    /// Element with the least volume left, at the last residual; where it has none there was no residual.
+    [[nodiscard]] const model::WorstElement& worst_element() const { return worst_element_; }
+    [[nodiscard]] const BodyForces& bodies() const { return bodies_; }
     [[nodiscard]] long patterns_built() const { return patterns_built_; }
     [[nodiscard]] const model::Constraints& constraints() const { return constraints_; }
 
@@ -91,9 +92,6 @@ private:
         Matrix A, G, dd;
         contact::ContactVariation variation;
     };
-    void set_step(double dt);
-    [[nodiscard]] const model::BlockMatrix& mass() const { return model_.mass(dynamics_->lumped_mass); }
-    [[nodiscard]] const model::BlockMatrix& stiffness() const { return dynamics_ == nullptr ? model_.K : effective_; }
     void linearise(std::size_t p, Index j, ContactTangent& tangent) const;
     void unpack(const double* z);
     void fill(double* F);
@@ -106,6 +104,7 @@ private:
     const model::Constraints& constraints_;
     Timings& timings_;
     int threads_;
+    BodyForces bodies_;
     Index size_ = 0;
     std::vector<Index> first_coupling_; ///< (pairs + 1)
     std::unique_ptr<model::SystemMatrix> matrix_;
@@ -114,13 +113,6 @@ private:
     long kept_patterns_ = 0;                                ///< patterns_built_ then
     StepLoad load_;
     double reference_force_ = 1;
-
-    const Dynamics* dynamics_;
-    Kinematics kinematics_; ///< of the current dt
-    double dt_ = 0;
-    model::BlockMatrix effective_;                  ///< dynamics only
-    std::vector<Vec3> u_start_, v_start_, a_start_; ///< dynamics only
-    std::vector<Vec3> force_start_; ///< inertia, damping and internal forces at u_start, N; dynamics only
 
     std::vector<Vec3> u_, x_, internal_, unbalanced_;
     std::vector<std::vector<Vec3>> lambda_;
@@ -134,6 +126,8 @@ private:
     double best_ = 0; ///< least residual since set_statuses()
     int idle_ = 0;    ///< iterates since
     Index worst_node_ = -1;
+    model::WorstElement worst_element_; ///< at the last residual
+    bool stale_preconditioner_ = false; ///< the tangent of the bodies has moved on
     long patterns_built_ = 0;
 };
 

@@ -1,0 +1,114 @@
+#include "osculate/model/finite_strain.hpp"
+
+#include "osculate/core/parallel.hpp"
+#include "osculate/model/model.hpp"
+
+#include <span>
+
+namespace osculate::model {
+
+namespace {
+constexpr Index batch = 256; ///< elements computed before they are added up: 1 MB of hexahedral tangents
+}
+
+FiniteStrain::FiniteStrain(const std::vector<Body>& bodies, const BlockMatrix& pattern) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        Index first = 0;
+        for (std::size_t k = 0; k < bodies[b].mesh.blocks.size(); ++k) {
+            const mesh::ElementBlock& elements = bodies[b].mesh.blocks[k];
+            const Index begin = first;
+            first += elements.size();
+            if (bodies[b].kernels[k]->linear()) continue;
+            Block& block = blocks_.emplace_back();
+            block.kernel = bodies[b].kernels[k].get();
+            block.body = static_cast<Index>(b);
+            block.first_element = begin;
+            block.size = elements.size();
+            for (const Index local : elements.connectivity) block.node.push_back(bodies[b].first_node + local);
+            const Index n = block.kernel->nodes();
+            for (Index e = 0; e < block.size; ++e)
+                for (Index i = 0; i < n; ++i)
+                    for (Index j = 0; j < n; ++j)
+                        block.slot.push_back(pattern.slot(block.node[static_cast<std::size_t>(e * n + i)],
+                                                          block.node[static_cast<std::size_t>(e * n + j)]));
+        }
+    }
+}
+
+template <class Compute, class Use>
+void FiniteStrain::for_each(const Block& block, const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads,
+                            Compute&& compute, Use&& use) const {
+    const Index n = block.kernel->nodes();
+    for (Index first = 0; first < block.size; first += batch) {
+        const Index count = std::min(batch, block.size - first);
+        parallel_for(threads, count, [&](Index begin, Index end) {
+            Eigen::Matrix3Xd Xe(3, n), ue(3, n);
+            for (Index k = begin; k < end; ++k) {
+                const Index* node = &block.node[static_cast<std::size_t>((first + k) * n)];
+                for (Index i = 0; i < n; ++i) {
+                    Xe.col(i) = X[static_cast<std::size_t>(node[i])];
+                    ue.col(i) = u[static_cast<std::size_t>(node[i])];
+                }
+                compute(k, Xe, ue);
+            }
+        });
+        for (Index k = 0; k < count; ++k) use(k, first + k);
+    }
+}
+
+WorstElement FiniteStrain::add_internal_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u,
+                                              std::vector<Vec3>& f, int threads) const {
+    WorstElement worst;
+    for (const Block& block : blocks_) {
+        const Index n = block.kernel->nodes();
+        std::vector<Eigen::Matrix3Xd> forces(batch, Eigen::Matrix3Xd(3, n));
+        std::vector<fe::Deformation> deformation(batch);
+        for_each(
+            block, X, u, threads,
+            [&](Index k, const Eigen::Matrix3Xd& Xe, const Eigen::Matrix3Xd& ue) {
+                deformation[k] = block.kernel->internal_force(Xe, ue, forces[k]);
+            },
+            [&](Index k, Index e) {
+                for (Index i = 0; i < n; ++i)
+                    f[static_cast<std::size_t>(block.node[static_cast<std::size_t>(e * n + i)])] += forces[k].col(i);
+                if (deformation[k].smallest_J < worst.J)
+                    worst = {deformation[k].smallest_J, block.body, block.first_element + e};
+            });
+    }
+    return worst;
+}
+
+void FiniteStrain::add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
+                               int threads) const {
+    for (const Block& block : blocks_) {
+        const Index n = block.kernel->nodes();
+        std::vector<Matrix> tangent(batch, Matrix(3 * n, 3 * n));
+        for_each(
+            block, X, u, threads,
+            [&](Index k, const Eigen::Matrix3Xd& Xe, const Eigen::Matrix3Xd& ue) {
+                (void)block.kernel->tangent(Xe, ue, tangent[k]);
+            },
+            [&](Index k, Index e) {
+                const Index* slot = &block.slot[static_cast<std::size_t>(e * n * n)];
+                for (Index i = 0; i < n; ++i)
+                    for (Index j = 0; j < n; ++j)
+                        K.block(slot[i * n + j]) += factor * tangent[k].block<3, 3>(3 * i, 3 * j);
+            });
+    }
+}
+
+double FiniteStrain::energy(const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads) const {
+    double sum = 0;
+    for (const Block& block : blocks_) {
+        std::vector<double> W(batch);
+        for_each(
+            block, X, u, threads,
+            [&](Index k, const Eigen::Matrix3Xd& Xe, const Eigen::Matrix3Xd& ue) {
+                (void)block.kernel->energy(Xe, ue, W[k]);
+            },
+            [&](Index k, Index) { sum += W[k]; });
+    }
+    return sum;
+}
+
+} // namespace osculate::model

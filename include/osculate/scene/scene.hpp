@@ -247,7 +247,7 @@ struct DynamicAnalysis {
 struct StepControl {
     std::optional<double>
         allowed_interpenetration;   ///< of the facet size; not given: 0.05 in dynamics, no bound in statics
-    double energy_tolerance = 0.01; ///< energy that contact may add in one dynamic step, of kinetic plus strain energy
+    double energy_tolerance = 0.01; ///< rise beyond external work in one dynamic step, of kinetic plus strain energy
     double growth = 2;              ///< of dt after an easy step, up to the stage's step
     bool operator==(const StepControl&) const = default;
 };

@@ -54,7 +54,7 @@ Hertz hertz(double radius, double E, double nu, double mass, double closing) {
 }
 
 struct Impact {
-    double duration = 0, force = 0, restitution = 0, mass = 0, energy = 0;
+    double duration = 0, above_half = 0, force = 0, restitution = 0, mass = 0, energy = 0;
 };
 
 /// configs/validation/hertz_impact.yaml: whole spheres out of its quarters.
@@ -72,36 +72,48 @@ Impact impact(const std::vector<scene::Override>& overrides, double closing) {
         result.force = std::max(result.force, 4 * step.pairs[0].normal);
     }
     EXPECT_LT(last, before) << "still in touch at the end";
+    double time = 0, force = 0; // of the step before
+    for (const support::RunStep& step : run.steps) {
+        const double next = 4 * step.pairs[0].normal, half = result.force / 2;
+        const double crossing = time + (half - force) / (next - force) * (step.time - time);
+        if (force < half && next >= half) result.above_half -= crossing;
+        if (force >= half && next < half) result.above_half += crossing;
+        time = step.time;
+        force = next;
+    }
     result.duration = last - first;
     const support::RunStep& end = run.steps.back();
     const double upper = momentum(run, 0, end).z() / mass(run, 0), lower = momentum(run, 1, end).z() / mass(run, 1);
     result.restitution = (upper - lower) / closing;
     result.mass = 2 * (mass(run, 0) + mass(run, 1)); // mean of the two
     result.energy = energy(end) / (0.5 * (mass(run, 0) + mass(run, 1)) * closing * closing / 4);
-    testing::Test::RecordProperty("duration", std::to_string(result.duration));
+    testing::Test::RecordProperty("duration", std::to_string(1e6 * result.duration));
+    testing::Test::RecordProperty("above_half", std::to_string(1e6 * result.above_half));
     testing::Test::RecordProperty("force", std::to_string(result.force));
     testing::Test::RecordProperty("restitution", std::to_string(result.restitution));
     return result;
 }
 
-/// The patch has to be a few facets wide: a coarse mesh needs a faster impact, whose formulas are the same. It is less
-/// quasi-static, the patch is a sixth of the radius, and the mesh lacks mass, which the formulas are given.
+/// The patch has to be a few facets wide: a coarse mesh needs a faster impact, whose formulas are the same. The patch is
+/// then a twelfth of the radius, and a ball is no half-space: it is the stiffer, the larger the patch. The mesh lacks mass,
+/// which the formulas are given.
 TEST(HertzImpact, IsNearItsFormulasOnACoarseMeshWithALargePatch) {
-    const double closing = 50;
-    const Impact found =
-        impact({{"bodies.upper.mesh.ball", "{divisions: [10, 4, 4], grading: 1.3, pole_refinement: 4}"},
-                {"bodies.lower.mesh.ball", "{divisions: [8, 4, 4], grading: 1.4, pole_refinement: 4}"},
-                {"bodies.upper.initial_velocity", "[0, 0, -25]"},
-                {"bodies.lower.initial_velocity", "[0, 0, 25]"},
-                {"sets.upper_pole.normal.angle", "20 deg"},
-                {"sets.lower_pole.normal.angle", "25 deg"},
-                {"stages.impact.duration", "33 us"},
-                {"stages.impact.steps", "66"}},
-               closing);
+    const double closing = 10;
+    const Impact found = impact({{"bodies.upper.mesh.ball", "{radius: 10 mm, divisions: [8, 3, 2], portion: quarter, "
+                                                            "grading: 1.3, pole_refinement: 5}"},
+                                 {"bodies.lower.mesh.ball", "{radius: 10 mm, divisions: [6, 3, 2], portion: quarter, "
+                                                            "grading: 1.4, pole_refinement: 5}"},
+                                 {"bodies.upper.initial_velocity", "[0, 0, -5]"},
+                                 {"bodies.lower.initial_velocity", "[0, 0, 5]"},
+                                 {"sets.upper_pole.normal.angle", "9 deg"},
+                                 {"sets.lower_pole.normal.angle", "12 deg"},
+                                 {"stages.impact.duration", "42 us"},
+                                 {"stages.impact.steps", "28"}},
+                                closing);
     const Hertz exact = hertz(0.01, 210e9, 0.3, found.mass, closing);
-    const double coarse =
-        0.08; // three to four facets across the radius of the patch, a step a fiftieth of the duration
-    EXPECT_NEAR(found.duration, exact.duration, coarse * exact.duration);
+    const double above_half = 0.5494; // of the duration, by integration of Hertz's law
+    const double coarse = 0.08;       // three facets across the radius of the patch; its size: 4 %
+    EXPECT_NEAR(found.above_half, above_half * exact.duration, coarse * above_half * exact.duration);
     EXPECT_NEAR(found.force, exact.force, coarse * exact.force);
     EXPECT_NEAR(found.restitution, 1, coarse);
 }
@@ -140,11 +152,11 @@ Rebound rebound(const std::vector<scene::Override>& overrides) {
 }
 
 /// A slender bar without lateral motion is the one of the textbook: it leaves with the speed it came with, but for what
-/// its mesh leaves ringing. Measured: 0.9910 with 80 elements along it, 0.9936 with 160, 0.9956 with 320.
+/// its mesh leaves ringing. Measured: 0.9956.
 TEST(MetalBar, ReboundsWithItsOwnSpeedWhereNothingGoesSideways) {
-    const Rebound found = rebound({{"bodies.bar.mesh.cylinder.divisions", "[2, 1, 160]"},
+    const Rebound found = rebound({{"bodies.bar.mesh.cylinder.divisions", "[2, 1, 80]"},
                                    {"bodies.bar.material.linear_elastic.nu", "0"},
-                                   {"stages.bounce.steps", "250"}});
+                                   {"stages.bounce.steps", "500"}});
     EXPECT_NEAR(found.velocity, 1, 0.01);
     EXPECT_NEAR(found.energy, 1, 1e-3);
     EXPECT_EQ(found.releases, 1);
@@ -162,7 +174,7 @@ TEST(MetalBar, KeepsItsEnergyAndNeverHasMore) {
 }
 
 struct EnergyRecord {
-    double largest_rise = 0, drift = 0; ///< of the largest kinetic and strain energy
+    double largest_rise = 0, drift = 0, lost = 0; ///< of the largest kinetic and strain energy
     int closings = 0;
 };
 
@@ -181,6 +193,7 @@ EnergyRecord energy_record(const support::SceneRun& run) {
         result.closings += touches && !touched;
         touched = touches;
     }
+    result.lost = -run.steps.back().ledger.contact / reference;
     return result;
 }
 
@@ -195,8 +208,7 @@ TEST(BouncingBall, BouncesTenTimesWithoutEverGainingEnergy) {
     EXPECT_GE(record.closings, 10);
     EXPECT_LT(record.largest_rise, allowed_rise);
     EXPECT_LT(record.drift, allowed_drift);
-    const double lost = 0.1; // by closing gaps that a step has left open: it falls with the step
-    EXPECT_GT(run.steps.back().ledger.contact, -lost * energy(run.steps.front()) * 1.5);
+    EXPECT_LT(record.lost, 0.15); // by closing gaps that a step leaves open; 0.03 with half the step
 }
 
 /// configs/validation/thrown_ball.yaml

@@ -211,6 +211,21 @@ TEST(BouncingBall, BouncesTenTimesWithoutEverGainingEnergy) {
     EXPECT_LT(record.lost, 0.15); // by closing gaps that a step leaves open; 0.03 with half the step
 }
 
+/// Newmark's method gains where a node lets go, through the integrator and not through contact's own work.
+TEST(BouncingBall, IsCutWhereAReleaseWouldGainEnergy) {
+    const auto largest_rise = [](const char* tolerance) {
+        support::SceneRun run;
+        support::run_scene(run, support::shipped("validation/ten_bounces.yaml"),
+                           {{"stages.bounces.analysis.dynamic.integrator", "newmark"},
+                            {"stages.bounces.control.energy_tolerance", tolerance},
+                            {"stages.bounces.duration", "0.08"},
+                            {"stages.bounces.steps", "80"}});
+        return energy_record(run).largest_rise;
+    };
+    EXPECT_GT(largest_rise("100"), 1e-4);
+    EXPECT_LT(largest_rise("1e-6"), allowed_rise);
+}
+
 /// configs/validation/thrown_ball.yaml
 TEST(ThrownBall, TurnsByFrictionWithoutGainingEnergy) {
     support::SceneRun run;

@@ -1,6 +1,7 @@
 #include "osculate/app/compile.hpp"
 
 #include "app/contact_pairs.hpp"
+#include "app/courses.hpp"
 #include "app/gaps.hpp"
 #include "app/overloaded.hpp"
 #include "app/supports.hpp"
@@ -85,6 +86,7 @@ public:
                 }))
                 plan_.model.finite_strain = std::make_unique<model::FiniteStrain>(plan_.model.bodies, plan_.model.K);
             add_mass();
+            add_gravity();
         }
         plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0, scene_.solver.predictor, threads_};
         add_items();
@@ -200,10 +202,8 @@ private:
 
     /// Held directions of every stage and external forces at its ends.
     void add_stages() {
-        std::map<std::string, std::array<std::optional<double>, 3>> driven; // keeps its value in later stages
-        std::map<std::string, double> pressure;
-        std::map<std::string, Vec3> body_force;
-        std::vector<Vec3> force(plan_.model.X.size(), Vec3::Zero());
+        Driving now;          // keeps its values in later stages
+        bool settled = false; // courses of the stage before have become values
         for (const auto& [name, spec] : scene_.stages) {
             time::Stage stage;
             stage.name = name;
@@ -223,29 +223,23 @@ private:
             stage.limits.dt_min = scene_.solver.smallest_step * stage.limits.dt_max;
             stage.limits.growth = spec.control.growth;
             stage.limits.easy_iterations = scene_.solver.max_iterations;
-            for (const auto& [set_name, components] : spec.displacement)
-                for (std::size_t k = 0; k < 3; ++k)
-                    if (components[k]) driven[set_name][k] = components[k];
-            for (const auto& [set_name, value] : spec.pressure) pressure[set_name] = value;
-            for (const auto& [body, value] : spec.body_force) body_force[body] = value;
-            add_constraints(driven, stage.constraints);
-            if (plan_.stages.empty()) add_gravity(force); // in full from the start
-            stage.force_start = force;
-            force.assign(force.size(), Vec3::Zero());
-            for (const auto& [set_name, value] : pressure) {
-                const model::Set& s = set(set_name);
-                if (s.facets.empty())
+            const Driving before = now;
+            now.update(spec);
+            CourseList courses(stage.courses);
+            add_constraints(now, courses, stage.constraints);
+            const bool varying = now.has_load_courses();
+            if (plan_.stages.empty() || settled || varying)
+                stage.force_start = ramped_forces(before.without_courses_of(now));
+            else
+                stage.force_start = plan_.stages.back().force_end;
+            stage.force_end = ramped_forces(now);
+            if (varying) add_course_forces(now, courses, stage.course_forces);
+            for (const auto& [set_name, value] : now.pressure)
+                if (set(set_name).facets.empty())
                     faults_.push_back(fault("stages." + name + ".pressure." + set_name, "a set with facets",
                                             "a set of nodes that cover no facet"));
-                for (const mesh::Facet& facet : s.facets) {
-                    const auto f = fe::pressure_forces(facet, plan_.model.X, value);
-                    for (int c = 0; c < facet.count; ++c) force[facet.nodes[c]] += f[c];
-                }
-            }
-            for (const auto& [body, value] : body_force)
-                model::add_body_force(plan_.model.bodies[body_index(body)], value, force);
-            add_gravity(force);
-            stage.force_end = force;
+            now.settle(spec.duration);
+            settled = varying;
             try {
                 (void)model::Constraints(plan_.model.nodes(), stage.constraints);
             } catch (const std::invalid_argument& error) {
@@ -255,9 +249,40 @@ private:
         }
         for (std::size_t s = 0; s < plan_.model.sets.size(); ++s) {
             const std::string& name = plan_.model.sets[s].name;
-            if (scene::find(scene_.supports, name) != nullptr || driven.contains(name))
+            if (scene::find(scene_.supports, name) != nullptr || now.displacement.contains(name))
                 plan_.constrained_sets.push_back(static_cast<Index>(s));
         }
+    }
+
+    void add_pressure(const std::string& set_name, double pressure, std::vector<Vec3>& force) const {
+        for (const mesh::Facet& facet : set(set_name).facets) {
+            const auto f = fe::pressure_forces(facet, plan_.model.X, pressure);
+            for (int c = 0; c < facet.count; ++c) force[facet.nodes[c]] += f[c];
+        }
+    }
+
+    /// Loads that follow no course.
+    [[nodiscard]] std::vector<Vec3> ramped_forces(const Driving& driving) const {
+        std::vector<Vec3> force(plan_.model.X.size(), Vec3::Zero());
+        for (const auto& [set_name, value] : driving.pressure) add_pressure(set_name, ramped(value), force);
+        for (const auto& [body, b] : driving.body_force)
+            model::add_body_force(plan_.model.bodies[body_index(body)], {ramped(b[0]), ramped(b[1]), ramped(b[2])},
+                                  force);
+        return force;
+    }
+
+    void add_course_forces(const Driving& driving, CourseList& courses, std::vector<time::CourseForce>& forces) const {
+        const auto pattern = [&](const std::string& name, const scene::Course& course) -> std::vector<Vec3>& {
+            forces.push_back({courses.index(name, course), std::vector<Vec3>(plan_.model.X.size(), Vec3::Zero())});
+            return forces.back().pattern;
+        };
+        for (const auto& [set_name, value] : driving.pressure)
+            if (!value.is_value()) add_pressure(set_name, 1, pattern("pressure." + set_name, value));
+        for (const auto& [body, components] : driving.body_force)
+            for (int k = 0; k < 3; ++k)
+                if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value())
+                    model::add_body_force(plan_.model.bodies[body_index(body)], Vec3::Unit(k),
+                                          pattern("body_force." + body + "." + std::string(1, "xyz"[k]), course));
     }
 
     static time::Integrator integrator(const scene::DynamicAnalysis& analysis) {
@@ -268,12 +293,6 @@ private:
                               [](const scene::BackwardEuler&) { return time::backward_euler(); },
                           },
                           analysis.integrator);
-    }
-
-    void add_gravity(std::vector<Vec3>& force) const {
-        if (scene_.gravity.isZero(0)) return;
-        for (const model::Body& body : plan_.model.bodies)
-            if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, force);
     }
 
     /// Nodes without mass of their own: slave nodes, where the scene asks for it.
@@ -309,22 +328,46 @@ private:
         }
     }
 
-    void add_constraints(const std::map<std::string, std::array<std::optional<double>, 3>>& driven,
+    /// In full from the start. In dynamics it acts on mass where the mass is, so that bodies fall without strain.
+    void add_gravity() {
+        if (scene_.gravity.isZero(0)) return;
+        const model::Model& m = plan_.model;
+        for (time::Stage& stage : plan_.stages) {
+            std::vector<Vec3> weight(m.X.size(), Vec3::Zero());
+            if (stage.dynamics)
+                m.mass(stage.dynamics->lumped_mass)
+                    .multiply_add(std::vector<Vec3>(m.X.size(), scene_.gravity), weight, threads_);
+            else
+                for (const model::Body& body : m.bodies)
+                    if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, weight);
+            for (auto* force : {&stage.force_start, &stage.force_end})
+                for (std::size_t i = 0; i < weight.size(); ++i) (*force)[i] += weight[i];
+        }
+    }
+
+    void add_constraints(const Driving& driving, CourseList& courses,
                          std::vector<model::NodeConstraint>& constraints) const {
         for (std::size_t s = 0; s < plan_.model.sets.size(); ++s) {
             const model::Set& group = plan_.model.sets[s];
             const scene::Support* support = scene::find(scene_.supports, group.name);
-            const auto motion = driven.find(group.name);
+            const auto motion = driving.displacement.find(group.name);
             const Mat3 axes = support != nullptr ? support->axes : Mat3::Identity();
             for (int k = 0; k < 3; ++k) {
-                const bool moved = motion != driven.end() && motion->second[static_cast<std::size_t>(k)];
+                const bool moved = motion != driving.displacement.end() && motion->second[static_cast<std::size_t>(k)];
                 const bool fixed = support != nullptr &&
                                    (support->fixed[static_cast<std::size_t>(k)] || (support->symmetry && k == 0));
                 if (!moved && !fixed) continue;
+                double target = 0;
+                Index course = -1;
+                if (moved) {
+                    const scene::Course& value = *motion->second[static_cast<std::size_t>(k)];
+                    if (!value.is_value())
+                        course = courses.index("displacement." + group.name + "." + std::string(1, "xyz"[k]), value);
+                    target = value.is_value() ? value.value() : 1;
+                }
                 for (const Index node : group.nodes)
-                    constraints.push_back({node, axes.col(k),
-                                           moved ? *motion->second[static_cast<std::size_t>(k)] : 0.0, moved,
-                                           support != nullptr && support->symmetry, static_cast<Index>(s)});
+                    constraints.push_back({node, axes.col(k), target, moved, support != nullptr && support->symmetry,
+                                           static_cast<Index>(s), course});
             }
         }
     }
@@ -399,6 +442,11 @@ void Compiler::add_items() {
                                        [](const time::Stage& s) { return s.dynamics.has_value(); });
     say("inertia, damping", dynamic > 0,
         dynamic > 0 ? std::to_string(dynamic) + " dynamic stage(s)" : "every stage is static");
+    const auto courses = std::accumulate(plan_.stages.begin(), plan_.stages.end(), std::size_t{0},
+                                         [](std::size_t sum, const time::Stage& s) { return sum + s.courses.size(); });
+    say("courses over time", courses > 0,
+        courses > 0 ? std::to_string(courses) + " load(s) and motion(s) by tables or expressions"
+                    : "every load and motion ramps or jumps to its value");
     say("contact", contact, contact ? std::to_string(scene_.contact.size()) + " pair(s)" : "the scene has no pair");
     say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
     say("smooth master surface", smooth,

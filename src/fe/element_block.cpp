@@ -63,6 +63,22 @@ public:
         return {};
     }
 
+    Deformation step_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u0,
+                           const Eigen::Ref<const Eigen::Matrix3Xd>& u1, const StepMean& mean,
+                           Eigen::Ref<Eigen::Matrix3Xd> f) const override {
+        const double w = mean.end_weight;
+        const Positions u = w * u1 + (1 - w) * u0 + mean.viscosity * (u1 - u0);
+        return internal_force(X, u, f);
+    }
+
+    Deformation step_tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>&,
+                             const Eigen::Ref<const Eigen::Matrix3Xd>&, const StepMean& mean,
+                             Eigen::Ref<Matrix> Ke) const override {
+        stiffness(X, Ke);
+        Ke *= mean.end_weight + mean.viscosity;
+        return {};
+    }
+
     Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
                              Eigen::Ref<Matrix> stress) const override {
         require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,

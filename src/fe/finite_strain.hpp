@@ -21,6 +21,8 @@ class FiniteStrainKernel final : public SolidKernel<E> {
     using Forces = Eigen::Matrix<double, 3, n>;
     using Stiffness = Eigen::Matrix<double, 3 * n, 3 * n>;
     using Row = Eigen::Matrix<double, 1, 3 * n>;
+    using Stresses = std::array<Mat3, E::points>;
+    using Moduli = std::array<Mat6, E::points>;
     using ConstPositions = Eigen::Ref<const Eigen::Matrix3Xd>;
 
 public:
@@ -50,23 +52,7 @@ public:
         f.setZero();
         const Kinematics k(this->table_, X, u);
         if (!k.deformation.admissible()) return k.deformation;
-        Forces sum = Forces::Zero();
-        double pressure = 0; // sum of p dV
-        for (std::size_t q = 0; q < E::points; ++q) {
-            const double dV = k.points.volumes[q];
-            const Mat3 S = material_.pk2(k.strain(q));
-            if constexpr (mean_dilatation) {
-                // dW = (dev tau : grad du + p div-bar du) dV, tau = Fbar S Fbar^T, p = tr tau / 3
-                Mat3 tau = k.scale_squared(q) * k.F(q) * S * k.F(q).transpose();
-                const double p = tau.trace() / 3;
-                tau.diagonal().array() -= p;
-                pressure += p * dV;
-                sum.noalias() += (tau * dV) * k.spatial_gradients(q).transpose();
-            } else {
-                sum.noalias() += (k.F(q) * S * dV) * k.points.gradients[q].transpose();
-            }
-        }
-        if constexpr (mean_dilatation) sum.noalias() += pressure * k.mean_gradients().transpose();
+        const Forces sum = forces(k, stresses(k));
         if (!sum.allFinite()) return overflow;
         f = sum;
         return k.deformation;
@@ -78,22 +64,37 @@ public:
         Ke.setZero();
         const Kinematics k(this->table_, X, u);
         if (!k.deformation.admissible()) return k.deformation;
-        Stiffness K = Stiffness::Zero();
-        if constexpr (mean_dilatation) {
-            add_mean_dilatation_tangent(k, K);
-        } else {
-            for (std::size_t q = 0; q < E::points; ++q) {
-                const double dV = k.points.volumes[q];
-                const Mat3 strain = k.strain(q);
-                const auto B = strain_variation(k.F(q), k.points.gradients[q]);
-                const Eigen::Matrix<double, 6, 3 * n> DB = material_.tangent(strain) * B * dV;
-                K.noalias() += B.transpose() * DB;
-                add_initial_stress(k.points.gradients[q], material_.pk2(strain) * dV, K);
-            }
-        }
+        const Stiffness K = stress_tangent(k, stresses(k)) + material_tangent(k, k, moduli(k));
         if (!K.allFinite()) return overflow;
         Ke = (K + K.transpose()) / 2;
         return k.deformation;
+    }
+
+    Deformation step_force(const ConstPositions& X, const ConstPositions& u0, const ConstPositions& u1,
+                           const StepMean& mean, Eigen::Ref<Eigen::Matrix3Xd> f) const override {
+        require(X.cols() == n && u0.cols() == n && u1.cols() == n && f.cols() == n,
+                "step_force: sizes do not match the element");
+        f.setZero();
+        const Step step(*this, X, u0, u1, mean);
+        if (!step.deformation().admissible()) return step.deformation();
+        const Forces sum = forces(step.mean, step.S);
+        if (!sum.allFinite()) return overflow;
+        f = sum;
+        return step.deformation();
+    }
+
+    Deformation step_tangent(const ConstPositions& X, const ConstPositions& u0, const ConstPositions& u1,
+                             const StepMean& mean, Eigen::Ref<Matrix> Ke) const override {
+        require(X.cols() == n && u0.cols() == n && u1.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n,
+                "step_tangent: sizes do not match the element");
+        Ke.setZero();
+        const Step step(*this, X, u0, u1, mean);
+        if (!step.deformation().admissible()) return step.deformation();
+        const Stiffness K = mean.end_weight * stress_tangent(step.mean, step.S) +
+                            material_tangent(step.mean, step.end, step.moduli(*this));
+        if (!K.allFinite()) return overflow;
+        Ke = K;
+        return step.deformation();
     }
 
     Deformation nodal_stress(const ConstPositions& X, const ConstPositions& u,
@@ -195,6 +196,20 @@ private:
         return B;
     }
 
+    static Row flat(const Gradients<n>& g) { return g.transpose().reshaped().transpose(); }
+
+    /// Variation of k.strain(q): dE, or dEbar = s^2 (dE + h C / 3), h = d ln Jbar - d ln J.
+    static Eigen::Matrix<double, 6, 3 * n> varied_strain(const Kinematics& k, std::size_t q, const Row& mean) {
+        const Mat3 F = k.F(q);
+        Eigen::Matrix<double, 6, 3 * n> B = strain_variation(F, k.points.gradients[q]);
+        if constexpr (mean_dilatation) {
+            const Row h = mean - flat(k.spatial_gradients(q));
+            B += material::strain_vector(F.transpose() * F) / 3 * h;
+            B *= k.scale_squared(q);
+        }
+        return B;
+    }
+
     /// S : d(dE), the part of the tangent that the stress has: dN_a/dX S dN_b/dX on the diagonal of block (a, b).
     static void add_initial_stress(const Gradients<n>& g, const Mat3& S, Stiffness& K) {
         const Eigen::Matrix<double, n, n> initial = g * S * g.transpose();
@@ -202,26 +217,141 @@ private:
             for (int a = 0; a < n; ++a) K.template block<3, 3>(3 * a, 3 * b).diagonal().array() += initial(a, b);
     }
 
-    /// With phi = ln Jbar - ln J, h = dphi, s^2 = exp(2/3 phi) and Ebar the strain of F-bar, p = S : (1 + 2 Ebar) / 3:
-    ///   dEbar = s^2 (dE + h C / 3),
-    ///   S : ddEbar = s^2 S : ddE + 2/3 (h r + r h) + 2/3 p h h + p ddphi,  r = s^2 S : dE,
+    [[nodiscard]] Stresses stresses(const Kinematics& k) const {
+        Stresses S;
+        for (std::size_t q = 0; q < E::points; ++q) S[q] = material_.pk2(k.strain(q));
+        return S;
+    }
+    [[nodiscard]] Moduli moduli(const Kinematics& k) const {
+        Moduli D;
+        for (std::size_t q = 0; q < E::points; ++q) D[q] = material_.tangent(k.strain(q));
+        return D;
+    }
+
+    /// f . du = sum S : dE dV, dE that of k. With mean dilatation (dev tau : grad du + p div-bar du) dV,
+    /// tau = Fbar S Fbar^T, p = tr tau / 3.
+    [[nodiscard]] static Forces forces(const Kinematics& k, const Stresses& S) {
+        Forces sum = Forces::Zero();
+        double pressure = 0; // sum of p dV
+        for (std::size_t q = 0; q < E::points; ++q) {
+            const double dV = k.points.volumes[q];
+            if constexpr (mean_dilatation) {
+                Mat3 tau = k.scale_squared(q) * k.F(q) * S[q] * k.F(q).transpose();
+                const double p = tau.trace() / 3;
+                tau.diagonal().array() -= p;
+                pressure += p * dV;
+                sum.noalias() += (tau * dV) * k.spatial_gradients(q).transpose();
+            } else {
+                sum.noalias() += (k.F(q) * S[q] * dV) * k.points.gradients[q].transpose();
+            }
+        }
+        if constexpr (mean_dilatation) sum.noalias() += pressure * k.mean_gradients().transpose();
+        return sum;
+    }
+
+    /// sum dE : D : dE dV, the first dE that of `varied`, the second that of `moved`, on the right.
+    [[nodiscard]] static Stiffness material_tangent(const Kinematics& varied, const Kinematics& moved,
+                                                    const Moduli& D) {
+        Stiffness K = Stiffness::Zero();
+        Row mean_varied, mean_moved;
+        if constexpr (mean_dilatation) {
+            mean_varied = flat(varied.mean_gradients());
+            mean_moved = flat(moved.mean_gradients());
+        }
+        for (std::size_t q = 0; q < E::points; ++q) {
+            const Eigen::Matrix<double, 6, 3 * n> DB =
+                D[q] * varied_strain(moved, q, mean_moved) * moved.points.volumes[q];
+            K.noalias() += varied_strain(varied, q, mean_varied).transpose() * DB;
+        }
+        return K;
+    }
+
+    /// Derivative of forces(k, S) at constant S, symmetric.
+    [[nodiscard]] static Stiffness stress_tangent(const Kinematics& k, const Stresses& S) {
+        Stiffness K = Stiffness::Zero();
+        if constexpr (mean_dilatation)
+            add_mean_dilatation(k, S, K);
+        else
+            for (std::size_t q = 0; q < E::points; ++q)
+                add_initial_stress(k.points.gradients[q], S[q] * k.points.volumes[q], K);
+        return K;
+    }
+
+    /// Forces over a step from u0 to u1: strains at both ends, their mean stress, and the configuration it acts in,
+    /// u = w u1 + (1 - w) u0. S does the work of the energy's difference,
+    ///     S = (S0 + S1)/2 + g DE + (w - 1/2)(S1 - S0) + viscosity D0 : DE,  g = (DW - (S0 + S1)/2 : DE)/|DE|^2,
+    /// where w = 1/2 without viscosity: S : DE = DW. [Gonzalez 2000, Comput. Meth. Appl. Mech. Engng 190, 1763]
+    struct Step {
+        /// Below this strain increment g, of the order of |DE|^2 in the stress, would be a quotient of round-off.
+        static constexpr double least_increment = 1e-5;
+
+        Kinematics start, end, mean;
+        StepMean weights;
+        Stresses S, S_difference, DE;
+        std::array<double, E::points> g;
+
+        Step(const FiniteStrainKernel& kernel, const Positions& X, const Positions& u0, const Positions& u1,
+             const StepMean& w)
+            : start(kernel.table_, X, u0), end(kernel.table_, X, u1),
+              mean(kernel.table_, X, w.end_weight * u1 + (1 - w.end_weight) * u0), weights(w) {
+            if (!deformation().admissible()) return;
+            for (std::size_t q = 0; q < E::points; ++q) {
+                const Mat3 E0 = start.strain(q), E1 = end.strain(q), S0 = kernel.material_.pk2(E0),
+                           S1 = kernel.material_.pk2(E1), half = (S0 + S1) / 2;
+                DE[q] = E1 - E0;
+                S_difference[q] = S1 - S0;
+                const double square = DE[q].squaredNorm();
+                g[q] = 0;
+                if (square > least_increment * least_increment)
+                    g[q] =
+                        (kernel.material_.energy(E1) - kernel.material_.energy(E0) - half.cwiseProduct(DE[q]).sum()) /
+                        square;
+                S[q] = half + g[q] * DE[q] + (w.end_weight - 0.5) * S_difference[q];
+                if (w.viscosity > 0)
+                    S[q] += w.viscosity *
+                            material::stress_matrix(kernel.material_.tangent(E0) * material::strain_vector(DE[q]));
+            }
+        }
+        /// The worst of the end and of what the mean needs.
+        [[nodiscard]] const Deformation& deformation() const {
+            const bool mean_counts = mean_dilatation && mean.deformation.smallest_J < end.deformation.smallest_J;
+            return mean_counts ? mean.deformation : end.deformation;
+        }
+        /// dS/dE1
+        [[nodiscard]] Moduli moduli(const FiniteStrainKernel& kernel) const {
+            Moduli D;
+            for (std::size_t q = 0; q < E::points; ++q) {
+                const Mat6 D1 = kernel.material_.tangent(end.strain(q));
+                D[q] = weights.end_weight * D1;
+                if (weights.viscosity > 0) D[q] += weights.viscosity * kernel.material_.tangent(start.strain(q));
+                if (g[q] == 0) continue;
+                // g 1 + DE dg, dg = ((S1 - S0)/2 - D1 : DE/2 - 2 g DE)/|DE|^2; 1 on symmetric tensors, Voigt
+                D[q].diagonal() += g[q] * Vec6(1, 1, 1, 0.5, 0.5, 0.5);
+                const Vec6 de = material::stress_vector(DE[q]);
+                const Vec6 dg = (material::stress_vector(S_difference[q]) / 2 -
+                                 D1 * material::strain_vector(DE[q]) / 2 - 2 * g[q] * de) /
+                                DE[q].squaredNorm();
+                D[q] += de * dg.transpose();
+            }
+            return D;
+        }
+    };
+
+    /// With phi = ln Jbar - ln J, h = dphi, s^2 = exp(2/3 phi), p = s^2 S : C / 3, r = s^2 S : dE:
+    ///   S : ddEbar = s^2 S : ddE + 2/3 (h r + r h) + 2/3 p h h + p ddphi,
     ///   dd ln J = -g_b g_a on block (a, b),  dd ln Jbar = sum_q w_q (g g + dd ln J)_q - gbar gbar.
-    void add_mean_dilatation_tangent(const Kinematics& k, Stiffness& K) const {
-        const auto row = [](const Gradients<n>& g) { return Row(g.transpose().reshaped().transpose()); };
-        const Row mean = row(k.mean_gradients());
+    static void add_mean_dilatation(const Kinematics& k, const Stresses& S, Stiffness& K) {
+        const Row mean = flat(k.mean_gradients());
         std::array<double, E::points> pdV;
         double pressure = 0;
         for (std::size_t q = 0; q < E::points; ++q) {
             const double dV = k.points.volumes[q], s2 = k.scale_squared(q);
-            const Mat3 F = k.F(q), C = F.transpose() * F, strain = k.strain(q), S = material_.pk2(strain);
+            const Mat3 F = k.F(q);
             const auto B = strain_variation(F, k.points.gradients[q]);
-            const Row h = mean - row(k.spatial_gradients(q));
-            const Row r = s2 * material::stress_vector(S).transpose() * B;
-            const Eigen::Matrix<double, 6, 3 * n> Bbar = s2 * (B + material::strain_vector(C) / 3 * h);
-            const Eigen::Matrix<double, 6, 3 * n> DB = material_.tangent(strain) * Bbar * dV;
-            const double p = s2 * S.cwiseProduct(C).sum() / 3;
-            K.noalias() += Bbar.transpose() * DB;
-            add_initial_stress(k.points.gradients[q], S * (s2 * dV), K);
+            const Row h = mean - flat(k.spatial_gradients(q));
+            const Row r = s2 * material::stress_vector(S[q]).transpose() * B;
+            const double p = s2 * S[q].cwiseProduct(F.transpose() * F).sum() / 3;
+            add_initial_stress(k.points.gradients[q], S[q] * (s2 * dV), K);
             const Row cross = 2.0 / 3 * dV * (r + p / 2 * h); // h r + r h + p h h
             K.noalias() += h.transpose() * cross;
             K.noalias() += cross.transpose() * h;
@@ -230,9 +360,9 @@ private:
         }
         for (std::size_t q = 0; q < E::points; ++q) {
             const Gradients<n> g = k.spatial_gradients(q);
-            const Row flat = row(g);
+            const Row row = flat(g);
             const double share = pressure * k.weight(q);
-            K.noalias() += (share * flat.transpose()) * flat;
+            K.noalias() += (share * row.transpose()) * row;
             for (int b = 0; b < n; ++b)
                 for (int a = 0; a < n; ++a)
                     K.template block<3, 3>(3 * a, 3 * b).noalias() +=

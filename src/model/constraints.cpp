@@ -1,5 +1,6 @@
 #include "osculate/model/constraints.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -7,7 +8,7 @@ namespace osculate::model {
 
 namespace {
 constexpr double same_direction = 1e-9; ///< sine or cosine below which unit vectors count as parallel or orthogonal
-constexpr double same_value = 1e-12;
+constexpr double same_value = 1e-12;    ///< relative
 } // namespace
 
 Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constraints)
@@ -24,7 +25,8 @@ Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constra
             const double cosine = other.direction.dot(c.direction);
             if (std::abs(std::abs(cosine) - 1) < same_direction) {
                 const double target = cosine > 0 ? c.target : -c.target;
-                if (std::abs(target - other.target) > same_value * (1 + std::abs(target)))
+                if (c.course != other.course ||
+                    std::abs(target - other.target) > same_value * std::max(std::abs(target), std::abs(other.target)))
                     throw std::invalid_argument("node " + std::to_string(c.node) +
                                                 " is given two different displacements along one direction");
                 other.symmetry = other.symmetry || c.symmetry;

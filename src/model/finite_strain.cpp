@@ -3,8 +3,6 @@
 #include "osculate/core/parallel.hpp"
 #include "osculate/model/model.hpp"
 
-#include <span>
-
 namespace osculate::model {
 
 namespace {
@@ -36,41 +34,34 @@ FiniteStrain::FiniteStrain(const std::vector<Body>& bodies, const BlockMatrix& p
 }
 
 template <class Compute, class Use>
-void FiniteStrain::for_each(const Block& block, const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads,
-                            Compute&& compute, Use&& use) const {
-    const Index n = block.kernel->nodes();
+void FiniteStrain::for_each(const Block& block, int threads, Compute&& compute, Use&& use) {
     for (Index first = 0; first < block.size; first += batch) {
         const Index count = std::min(batch, block.size - first);
         parallel_for(threads, count, [&](Index begin, Index end) {
-            Eigen::Matrix3Xd Xe(3, n), ue(3, n);
-            for (Index k = begin; k < end; ++k) {
-                const Index* node = &block.node[static_cast<std::size_t>((first + k) * n)];
-                for (Index i = 0; i < n; ++i) {
-                    Xe.col(i) = X[static_cast<std::size_t>(node[i])];
-                    ue.col(i) = u[static_cast<std::size_t>(node[i])];
-                }
-                compute(k, Xe, ue);
-            }
+            for (Index k = begin; k < end; ++k) compute(k, first + k);
         });
         for (Index k = 0; k < count; ++k) use(k, first + k);
     }
 }
 
-WorstElement FiniteStrain::add_internal_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u,
-                                              std::vector<Vec3>& f, int threads) const {
+Eigen::Matrix3Xd FiniteStrain::gather(const Block& block, Index element, const std::vector<Vec3>& values) {
+    const Index n = block.kernel->nodes();
+    Eigen::Matrix3Xd local(3, n);
+    for (Index i = 0; i < n; ++i) local.col(i) = values[static_cast<std::size_t>(block.node[element * n + i])];
+    return local;
+}
+
+template <class Kernel>
+WorstElement FiniteStrain::add_forces(std::vector<Vec3>& f, int threads, Kernel&& kernel) const {
     WorstElement worst;
     for (const Block& block : blocks_) {
         const Index n = block.kernel->nodes();
         std::vector<Eigen::Matrix3Xd> forces(batch, Eigen::Matrix3Xd(3, n));
         std::vector<fe::Deformation> deformation(batch);
         for_each(
-            block, X, u, threads,
-            [&](Index k, const Eigen::Matrix3Xd& Xe, const Eigen::Matrix3Xd& ue) {
-                deformation[k] = block.kernel->internal_force(Xe, ue, forces[k]);
-            },
+            block, threads, [&](Index k, Index e) { deformation[k] = kernel(block, e, forces[k]); },
             [&](Index k, Index e) {
-                for (Index i = 0; i < n; ++i)
-                    f[static_cast<std::size_t>(block.node[static_cast<std::size_t>(e * n + i)])] += forces[k].col(i);
+                for (Index i = 0; i < n; ++i) f[static_cast<std::size_t>(block.node[e * n + i])] += forces[k].col(i);
                 if (deformation[k].smallest_J < worst.J)
                     worst = {deformation[k].smallest_J, block.body, block.first_element + e};
             });
@@ -78,23 +69,48 @@ WorstElement FiniteStrain::add_internal_force(const std::vector<Vec3>& X, const 
     return worst;
 }
 
-void FiniteStrain::add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
-                               int threads) const {
+template <class Kernel> void FiniteStrain::add_tangents(BlockMatrix& K, int threads, Kernel&& kernel) const {
     for (const Block& block : blocks_) {
         const Index n = block.kernel->nodes();
         std::vector<Matrix> tangent(batch, Matrix(3 * n, 3 * n));
         for_each(
-            block, X, u, threads,
-            [&](Index k, const Eigen::Matrix3Xd& Xe, const Eigen::Matrix3Xd& ue) {
-                (void)block.kernel->tangent(Xe, ue, tangent[k]);
-            },
+            block, threads, [&](Index k, Index e) { (void)kernel(block, e, tangent[k]); },
             [&](Index k, Index e) {
                 const Index* slot = &block.slot[static_cast<std::size_t>(e * n * n)];
                 for (Index i = 0; i < n; ++i)
-                    for (Index j = 0; j < n; ++j)
-                        K.block(slot[i * n + j]) += factor * tangent[k].block<3, 3>(3 * i, 3 * j);
+                    for (Index j = 0; j < n; ++j) K.block(slot[i * n + j]) += tangent[k].block<3, 3>(3 * i, 3 * j);
             });
     }
+}
+
+WorstElement FiniteStrain::add_internal_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u,
+                                              std::vector<Vec3>& f, int threads) const {
+    return add_forces(f, threads, [&](const Block& block, Index e, Eigen::Matrix3Xd& fe) {
+        return block.kernel->internal_force(gather(block, e, X), gather(block, e, u), fe);
+    });
+}
+
+void FiniteStrain::add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, BlockMatrix& K,
+                               int threads) const {
+    add_tangents(K, threads, [&](const Block& block, Index e, Matrix& Ke) {
+        return block.kernel->tangent(gather(block, e, X), gather(block, e, u), Ke);
+    });
+}
+
+WorstElement FiniteStrain::add_step_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u0,
+                                          const std::vector<Vec3>& u1, const fe::StepMean& mean, std::vector<Vec3>& f,
+                                          int threads) const {
+    return add_forces(f, threads, [&](const Block& block, Index e, Eigen::Matrix3Xd& fe) {
+        return block.kernel->step_force(gather(block, e, X), gather(block, e, u0), gather(block, e, u1), mean, fe);
+    });
+}
+
+void FiniteStrain::add_step_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u0,
+                                    const std::vector<Vec3>& u1, const fe::StepMean& mean, BlockMatrix& K,
+                                    int threads) const {
+    add_tangents(K, threads, [&](const Block& block, Index e, Matrix& Ke) {
+        return block.kernel->step_tangent(gather(block, e, X), gather(block, e, u0), gather(block, e, u1), mean, Ke);
+    });
 }
 
 double FiniteStrain::energy(const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads) const {
@@ -102,10 +118,8 @@ double FiniteStrain::energy(const std::vector<Vec3>& X, const std::vector<Vec3>&
     for (const Block& block : blocks_) {
         std::vector<double> W(batch);
         for_each(
-            block, X, u, threads,
-            [&](Index k, const Eigen::Matrix3Xd& Xe, const Eigen::Matrix3Xd& ue) {
-                (void)block.kernel->energy(Xe, ue, W[k]);
-            },
+            block, threads,
+            [&](Index k, Index e) { (void)block.kernel->energy(gather(block, e, X), gather(block, e, u), W[k]); },
             [&](Index k, Index) { sum += W[k]; });
     }
     return sum;

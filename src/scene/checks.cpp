@@ -1,6 +1,7 @@
 #include "scene/checks.hpp"
 
 #include "osculate/scene/units.hpp"
+#include "scene/describe_parts.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -118,6 +119,36 @@ public:
             const Tree* written = locate({"stages", name, "displacement", set});
             if (written->key == set && written->children.empty())
                 fault({"stages", name, "displacement", set}, "at least one of x, y, z", "none");
+            for (std::size_t a = 0; a < 3; ++a)
+                if (components[a])
+                    check_course({"stages", name, "displacement", set, axis_words[a]}, *components[a], stage,
+                                 range::position);
+        }
+        for (const auto& [set, pressure] : stage.pressure)
+            check_course({"stages", name, "pressure", set}, pressure, stage, {});
+        for (const auto& [body, force] : stage.body_force)
+            for (std::size_t a = 0; a < 3; ++a)
+                check_course({"stages", name, "body_force", body}, force[a], stage, {}, a);
+    }
+
+    /// Values of an expression at the ends of the stage's steps, in dynamics at its start too.
+    /// @param component  of a list at the path
+    void check_course(const std::vector<std::string>& path, const Course& course, const Stage& stage,
+                      const Range& range, std::size_t component = 0) {
+        const auto* expression = std::get_if<Expression>(&course.form);
+        if (expression == nullptr) return;
+        const auto value = course.function();
+        for (int k = std::holds_alternative<DynamicAnalysis>(stage.analysis) ? 0 : 1; k <= stage.steps; ++k) {
+            const double t = stage.duration * k / stage.steps, y = value(t);
+            if (std::isfinite(y) && range.contains(y)) continue;
+            const Tree* at = locate(path);
+            if (at->kind == Tree::Kind::list && component < at->children.size()) at = &at->children[component];
+            if (const Tree* text = at->find("expression")) at = text;
+            const std::string bounds = range.text();
+            faults_.push_back(fault_at(at->place, join(path, ".") + ".expression",
+                                       "finite values" + (bounds.empty() ? "" : " " + bounds) + " over the stage",
+                                       number_text(y) + " at t = " + number_text(t) + " s"));
+            return;
         }
     }
 

@@ -194,12 +194,12 @@ void describe(Visitor& v, Stage& stage) {
            .meaning = "Displacement of sets reached at the end of the stage.",
            .names = Names::set,
            .item = "set"},
-          stage.displacement, [&](const std::string& set, std::array<std::optional<double>, 3>& components) {
+          stage.displacement, [&](const std::string& set, std::array<std::optional<Course>, 3>& components) {
               v.group(
                   {.name = set, .meaning = "Components along the set's axes; one left out stays free or as it was."},
                   [&] {
                       for (std::size_t a = 0; a < 3; ++a)
-                          v.optional_number({.name = axis_words[a],
+                          v.optional_course({.name = axis_words[a],
                                              .meaning = "Component from the reference position.",
                                              .unit = dimension::length,
                                              .range = range::position},
@@ -211,8 +211,8 @@ void describe(Visitor& v, Stage& stage) {
            .meaning = "Dead pressure on sets, on the reference area, reached at the end of the stage.",
            .names = Names::set,
            .item = "set"},
-          stage.pressure, [&](const std::string& set, double& value) {
-              v.number({.name = set,
+          stage.pressure, [&](const std::string& set, Course& value) {
+              v.course({.name = set,
                         .meaning = "Positive pushes into the body.",
                         .unit = dimension::pressure,
                         .required = true},
@@ -223,12 +223,12 @@ void describe(Visitor& v, Stage& stage) {
            .meaning = "Force per volume on bodies, reached at the end of the stage.",
            .names = Names::body,
            .item = "body"},
-          stage.body_force, [&](const std::string& body, Vec3& value) {
-              v.vector({.name = body,
-                        .meaning = "Force per reference volume.",
-                        .unit = dimension::force_per_volume,
-                        .required = true},
-                       value);
+          stage.body_force, [&](const std::string& body, std::array<Course, 3>& value) {
+              v.courses({.name = body,
+                         .meaning = "Force per reference volume.",
+                         .unit = dimension::force_per_volume,
+                         .required = true},
+                        value);
           });
 }
 

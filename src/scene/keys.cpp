@@ -23,6 +23,13 @@ public:
         list(key, "[x, y, z] " + unit(key),
              "[" + number_text(value.x()) + ", " + number_text(value.y()) + ", " + number_text(value.z()) + "]");
     }
+    void course(const Key& key, Course& value) override { list(key, unit(key), number_text(value.value()), over_time); }
+    void optional_course(const Key& key, std::optional<Course>& /*value*/) override {
+        list(key, unit(key), "not set", over_time);
+    }
+    void courses(const Key& key, std::array<Course, 3>& /*value*/) override {
+        list(key, "[x, y, z] " + unit(key), "[0, 0, 0]", std::string("each ") + over_time);
+    }
     void integer(const Key& key, int& value) override { list(key, "whole number", std::to_string(value)); }
     void divisions(const Key& key, std::array<int, 3>& value) override {
         list(key, "three whole numbers",
@@ -67,6 +74,8 @@ public:
     }
 
 private:
+    static constexpr const char* over_time =
+        "or {table: [[time, value], ...]} or {expression: formula in t, unit: its unit}";
     static std::string unit(const Key& key) {
         return key.unit == dimension::none ? "number" : name_of(key.unit) + " in " + unit_of(key.unit);
     }

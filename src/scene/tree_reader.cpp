@@ -17,15 +17,6 @@ std::string with_article(const std::string& noun) {
     return (vowel ? "an " : "a ") + noun;
 }
 
-/// "a pressure (Pa) > 0".
-std::string expected_number(const Key& key) {
-    std::string text = with_article(name_of(key.unit));
-    if (key.unit != dimension::none) text += " (" + unit_of(key.unit) + ")";
-    if (const std::string bounds = key.range.text(); !bounds.empty()) text += " " + bounds;
-    if (key.not_whole) text += ", not whole";
-    return text;
-}
-
 std::string expected_integer(const Key& key) {
     const std::string bounds = key.range.text();
     return "a whole number" + (bounds.empty() ? "" : " " + bounds);
@@ -44,6 +35,14 @@ bool is_identifier(const std::string& name) {
 constexpr double shortest_direction = 1e-12;
 
 } // namespace
+
+std::string expected_number(const Key& key) {
+    std::string text = with_article(name_of(key.unit));
+    if (key.unit != dimension::none) text += " (" + unit_of(key.unit) + ")";
+    if (const std::string bounds = key.range.text(); !bounds.empty()) text += " " + bounds;
+    if (key.not_whole) text += ", not whole";
+    return text;
+}
 
 std::string Range::text() const {
     const bool bounded_low = std::isfinite(low), bounded_high = std::isfinite(high);

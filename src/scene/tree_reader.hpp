@@ -14,6 +14,9 @@ struct KnownNames {
     Words bodies, sets;
 };
 
+/// "a pressure (Pa) > 0".
+[[nodiscard]] std::string expected_number(const Key& key);
+
 class TreeReader final : public Visitor {
 public:
     TreeReader(const KnownNames& names, std::vector<Fault>& faults) : names_(names), faults_(faults) {}
@@ -24,6 +27,9 @@ public:
     void number(const Key& key, double& value) override;
     void optional_number(const Key& key, std::optional<double>& value) override;
     void vector(const Key& key, Vec3& value) override;
+    void course(const Key& key, Course& value) override;
+    void optional_course(const Key& key, std::optional<Course>& value) override;
+    void courses(const Key& key, std::array<Course, 3>& value) override;
     void integer(const Key& key, int& value) override;
     void divisions(const Key& key, std::array<int, 3>& value) override;
     void flag(const Key& key, bool& value) override;
@@ -54,6 +60,10 @@ private:
     std::optional<double> read_number(const Tree& tree, const Key& key, const std::string& expected);
     std::optional<int> read_integer(const Tree& tree, const Key& key, const std::string& expected);
     std::optional<Vec3> read_vector(const Tree& tree, const Key& key);
+    std::optional<Course> read_course(const Tree& tree, const Key& key, const std::string& expected);
+    /// Of the current map.
+    std::optional<Table> read_table(const Key& key);
+    std::optional<Expression> read_expression(const Key& key);
     bool check_name(const Tree& at, const Place& place, const Key& key, const std::string& name, Names names);
 
     const KnownNames& names_;

@@ -2,6 +2,7 @@
 /// One description of every key; reader, writer and key list are visitors of it.
 
 #include "osculate/core/types.hpp"
+#include "osculate/scene/course.hpp"
 #include "osculate/scene/units.hpp"
 
 #include <array>
@@ -39,6 +40,8 @@ inline constexpr Range direction{.low = -1e9, .high = 1e9}; ///< a component of 
 enum class Names { any, identifier, body, set };
 
 using Words = std::vector<std::string>;
+
+inline const Words course_tags{"table", "expression"}; ///< of a value that changes over a stage
 
 /// What is known of a key; members that a kind of value has no use for stay at their defaults.
 struct Key {
@@ -79,6 +82,9 @@ public:
     virtual void number(const Key& key, double& value) = 0;
     virtual void optional_number(const Key& key, std::optional<double>& value) = 0;
     virtual void vector(const Key& key, Vec3& value) = 0;
+    virtual void course(const Key& key, Course& value) = 0;
+    virtual void optional_course(const Key& key, std::optional<Course>& value) = 0;
+    virtual void courses(const Key& key, std::array<Course, 3>& value) = 0; ///< components of a vector
     virtual void integer(const Key& key, int& value) = 0;
     virtual void divisions(const Key& key, std::array<int, 3>& value) = 0;
     virtual void flag(const Key& key, bool& value) = 0;

@@ -51,6 +51,14 @@ public:
         if (value) line(key, decimal(*value));
     }
     void vector(const Key& key, Vec3& value) override { line(key, list(value)); }
+    void course(const Key& key, Course& value) override { line(key, inline_course(value)); }
+    void optional_course(const Key& key, std::optional<Course>& value) override {
+        if (value) line(key, inline_course(*value));
+    }
+    void courses(const Key& key, std::array<Course, 3>& value) override {
+        line(key,
+             "[" + inline_course(value[0]) + ", " + inline_course(value[1]) + ", " + inline_course(value[2]) + "]");
+    }
     void integer(const Key& key, int& value) override { line(key, std::to_string(value)); }
     void divisions(const Key& key, std::array<int, 3>& value) override {
         line(key,
@@ -85,6 +93,15 @@ public:
     }
 
 private:
+    static std::string inline_course(const Course& course) {
+        if (course.is_value()) return decimal(course.value());
+        if (const auto* expression = std::get_if<Expression>(&course.form))
+            return "{expression: " + quoted(expression->text) + ", unit: " + quoted(expression->unit) + "}";
+        std::string rows;
+        for (const auto& [t, y] : std::get<Table>(course.form).rows)
+            rows += (rows.empty() ? "[" : ", [") + decimal(t) + ", " + decimal(y) + "]";
+        return "{table: [" + rows + "]}";
+    }
     static std::string list(const Vec3& v) {
         return "[" + decimal(v.x()) + ", " + decimal(v.y()) + ", " + decimal(v.z()) + "]";
     }

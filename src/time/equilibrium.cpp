@@ -33,10 +33,10 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     }
     const ScopedTimer timer(timings_, Part::assembly);
     matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), std::move(couplings));
-    if (model_.finite_strain && model_.pairs.empty()) matrix_->expect_buckling();
+    if (model_.finite_strain) matrix_->expect_buckling();
     kept_couplings_ = matrix_->couplings();
     size_ = matrix_->size();
-    if (!model.pairs.empty())
+    if (!model.pairs.empty() || !bodies_.symmetric())
         preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, bodies_.tangent());
     const auto n = static_cast<std::size_t>(model.nodes());
     u_.assign(n, Vec3::Zero());
@@ -152,13 +152,28 @@ Mat3 Equilibrium::symmetry_directions(Index node) const {
     return sum;
 }
 
+void Equilibrium::linearise_first_about(const std::vector<Vec3>& u) {
+    if (model_.finite_strain) linear_about_ = u;
+}
+
+bool Equilibrium::evaluate_bodies() {
+    const ScopedTimer timer(timings_, Part::assembly);
+    linearised_ = !linear_about_.empty() && linear_about_ != u_;
+    const std::vector<Vec3>& at = linearised_ ? linear_about_ : u_;
+    worst_element_ = bodies_.evaluate(at, internal_);
+    if (linearised_ && worst_element_.admissible()) {
+        bodies_.linearise(at);
+        std::vector<Vec3> rest(u_.size());
+        for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = u_[i] - at[i];
+        bodies_.tangent().multiply_add(rest, internal_, threads_);
+    }
+    linear_about_.clear();
+    return worst_element_.admissible();
+}
+
 solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* F) {
     unpack(z);
-    {
-        const ScopedTimer timer(timings_, Part::assembly);
-        worst_element_ = bodies_.evaluate(u_, internal_);
-    }
-    if (!worst_element_.admissible()) return Verdict::shorten;
+    if (!evaluate_bodies()) return Verdict::shorten;
     for (auto& pair : model_.pairs) pair->evaluate(x_, timings_, threads_);
 
     int status_changes = 0;
@@ -331,7 +346,7 @@ void Equilibrium::precondition(const double* r, double* z) {
 const solve::SparseMatrix& Equilibrium::jacobian() {
     {
         const ScopedTimer timer(timings_, Part::assembly);
-        if (bodies_.linearise(u_)) {
+        if (linearised_ || bodies_.linearise(u_)) {
             matrix_->stiffness_changed();
             stale_preconditioner_ = true;
         }

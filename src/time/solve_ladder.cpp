@@ -27,7 +27,7 @@ bool take_back_half(const Statuses& before, Statuses& now) {
 }
 
 LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, Statuses statuses,
-                    const solve::KinsolOptions& kinsol) {
+                    const std::vector<Vec3>& unpredicted, const solve::KinsolOptions& kinsol) {
     LadderResult result;
     result.rung = "frozen statuses";
     std::set<Statuses> seen;
@@ -36,6 +36,7 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
     for (int settling = 0; settling < most_settlings; ++settling) {
         equilibrium.set_statuses(statuses, StatusRule::frozen, false);
         z = last_z;
+        if (settling == 0) equilibrium.linearise_first_about(unpredicted);
         const auto solved = solver.solve(equilibrium, z, kinsol);
         result.iterations += solved.iterations;
         result.outcome = solved.outcome;
@@ -70,6 +71,7 @@ solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const 
 LadderResult solve_trial(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Statuses& statuses,
                          const LadderOptions& options) {
     equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+    equilibrium.linearise_first_about(options.predicted);
     const auto solved =
         solver.solve(equilibrium, z, kinsol_options(equilibrium, static_cast<Index>(z.size()), options));
     return {solved.outcome, solved.iterations, solved.residual, "trial", solved.failing_equation};
@@ -80,18 +82,22 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     const solve::KinsolOptions kinsol = kinsol_options(equilibrium, static_cast<Index>(z.size()), options);
     const bool predicted = z != unpredicted;
     LadderResult result;
-    const auto newton = [&](const char* rung) {
+    const auto newton = [&](const char* rung, const std::vector<Vec3>& from) {
         equilibrium.set_statuses(start, StatusRule::natural, force_first);
-        const auto solved = solver.solve(equilibrium, z, kinsol);
+        equilibrium.linearise_first_about(from);
+        auto solved = solver.solve(equilibrium, z, kinsol);
+        // what the linear residual alone says is no equilibrium
+        if (solved.iterations == 0 && !from.empty()) solved = solver.solve(equilibrium, z, kinsol);
         result = {solved.outcome, result.iterations + solved.iterations, solved.residual, rung,
                   solved.failing_equation};
         return result.converged();
     };
-    if (newton("semismooth Newton") || start.empty()) return result;
+    if (newton("semismooth Newton", options.predicted)) return result;
     z = unpredicted;
-    if (predicted && newton("semismooth Newton without predictor")) return result;
+    if (predicted && newton("semismooth Newton without predictor", options.unpredicted)) return result;
+    if (start.empty()) return result;
     z = unpredicted;
-    LadderResult settled = settle(equilibrium, solver, z, start, kinsol);
+    LadderResult settled = settle(equilibrium, solver, z, start, options.unpredicted, kinsol);
     settled.iterations += result.iterations;
     return settled;
 }

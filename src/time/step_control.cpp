@@ -120,6 +120,21 @@ Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt
     return decision;
 }
 
+std::vector<double> corners_between(std::vector<double> corners, double t_start, double duration, int steps) {
+    constexpr double sliver = 1e-9; // of the step: round-off of the times, not a step of its own
+    const double step = duration / steps;
+    std::ranges::sort(corners);
+    std::vector<double> times;
+    double last = 0;
+    for (const double corner : corners) {
+        if (!(corner < duration) || corner - last <= sliver * step) continue;
+        if (std::abs(corner - std::round(corner / step) * step) <= sliver * step) continue;
+        times.push_back(t_start + corner);
+        last = corner;
+    }
+    return times;
+}
+
 FittedStep fit_to(double t, double dt, const std::vector<double>& targets) {
     constexpr double same_time = 1e-12; // relative; sums of some thousand steps differ by less
     constexpr double same_step = 1e-9;  // relative; what a step is stretched rather than leave a sliver

@@ -54,18 +54,28 @@ void Stepper::run(StepObserver& observer) {
 }
 
 StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, const std::vector<Vec3>& prescribed_start,
-                          double fraction) const {
-    const double ramp = stage.ramp ? fraction : 1;
+                          double elapsed) const {
+    const double ramp = stage.ramp ? elapsed / stage.duration : 1;
     StepLoad load;
     load.force.resize(model_.X.size());
     for (std::size_t i = 0; i < load.force.size(); ++i)
         load.force[i] = stage.force_start[i] + ramp * (stage.force_end[i] - stage.force_start[i]);
+    std::vector<double> value;
+    for (const Course& course : stage.courses) {
+        value.push_back(course.at(elapsed));
+        if (!std::isfinite(value.back()))
+            throw RunFailure("stage '" + stage.name + "': " + course.name + " is " + number(value.back()) + " at " +
+                             number(elapsed) + " s after the stage's start");
+    }
+    for (const CourseForce& part : stage.course_forces)
+        for (std::size_t i = 0; i < load.force.size(); ++i) load.force[i] += value[part.course] * part.pattern[i];
     load.prescribed = prescribed_start;
     for (Index node = 0; node < model_.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
             if (const auto* c = constraints.constraint(node, k); c != nullptr && c->driven) {
                 const double start = prescribed_start[node](k);
-                load.prescribed[node](k) = start + ramp * (c->target - start);
+                load.prescribed[node](k) =
+                    c->course >= 0 ? c->target * value[c->course] : start + ramp * (c->target - start);
             }
     return load;
 }
@@ -144,7 +154,7 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     const Dynamics& dynamics = *stage.dynamics;
     const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
     const auto n = static_cast<std::size_t>(model_.nodes());
-    const std::vector<Vec3> own = BodyForces(model_, &dynamics, options_.threads).of(state_);
+    const std::vector<Vec3> own = body_forces(model_, dynamics, state_, options_.threads);
     std::vector<Vec3> f = force, x = model_.X;
     for (std::size_t i = 0; i < n; ++i) {
         f[i] -= own[i];
@@ -166,11 +176,12 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     const auto solver = solve::make_cholesky();
     // nodes without mass have no acceleration of their own
     solve::SparseMatrix matrix = free_mass.matrix();
+    const double heaviest = *std::max_element(matrix.value.begin(), matrix.value.end());
     std::vector<char> empty(static_cast<std::size_t>(constraints.equations()), 0);
     for (solve::SparseIndex i = 0; i < matrix.rows(); ++i)
         for (solve::SparseIndex k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
             if (matrix.column[k] == i && matrix.value[k] == 0) {
-                matrix.value[k] = 1;
+                matrix.value[k] = heaviest;
                 empty[static_cast<std::size_t>(i)] = 1;
             }
     if (solver->factorise(matrix) != solve::FactorStatus::ok)
@@ -202,6 +213,19 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
             M.multiply_add(*motion, internal, options_.threads);
             carried = std::max(carried, factor * norm(internal));
         }
+        // inertia of the last digit of positions, which gaps are made of: no tolerance can ask for less
+        double largest = 0;
+        for (const bool displacements : {true, false}) {
+            std::vector<Vec3> x = state_.u;
+            for (std::size_t i = 0; i < x.size() && !displacements; ++i) x[i] += model_.X[i];
+            std::fill(internal.begin(), internal.end(), Vec3::Zero());
+            M.multiply_add(x, internal, options_.threads);
+            for (const Vec3& f : internal) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+            if (model_.pairs.empty()) break;
+        }
+        const double digit = std::numeric_limits<double>::epsilon() / options_.tolerance;
+        const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
+        carried = std::max(carried, digit * by_u * largest);
     }
     if (carried > 0) return carried;
     // forces that the motion of the step would call up from rest; a small part of it, as elements may not bear the whole
@@ -328,6 +352,12 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         // a later one, after statics, starts at rest
         state_.v = moved_ ? std::vector<Vec3>(model_.X.size(), Vec3::Zero()) : model_.initial_velocity;
         moved_ = true;
+        for (Index node = 0; node < model_.nodes(); ++node) { // what holds a body does not move with it
+            Vec3 v = constraints.to_local(node, state_.v[node]);
+            for (int k = 0; k < 3; ++k)
+                if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
+            state_.v[node] = constraints.to_global(node, v);
+        }
         find_initial_acceleration(stage, constraints, load_at(stage, constraints, prescribed_start, 0).force);
         ledger_ = opened(model_, *dynamics, state_);
     }
@@ -337,19 +367,25 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
     SlaveStarts starts;
+    std::vector<double> corners;
+    for (const Course& course : stage.courses)
+        corners.insert(corners.end(), course.corners.begin(), course.corners.end());
+    corners = corners_between(std::move(corners), t_start, stage.duration, stage.steps);
+    auto corner = corners.begin();
     for (int k = 0; k < stage.steps;) {
-        const double end = t_start + (k + 1) * step; // a time that is hit exactly
-        constexpr double sliver = 1e-9;              // of the step: round-off of the times, not a step of its own
+        const double step_end = t_start + (k + 1) * step;
+        const bool to_corner = corner != corners.end() && *corner < step_end;
+        const double end = to_corner ? *corner : step_end; // a time that is hit exactly
+        constexpr double sliver = 1e-9;                    // of the step: round-off of the times, not a step of its own
         const double left = end - state_.time;
         const bool to_end = dt >= left * (1 - sliver);
         const double time = to_end ? end : state_.time + dt, proposed = dt;
         if (to_end && dt > left * (1 + sliver)) dt = left;
 
-        StepLoad load = load_at(stage, constraints, prescribed_start, (time - t_start) / stage.duration);
+        StepLoad load = load_at(stage, constraints, prescribed_start, time - t_start);
         std::vector<Vec3> u = state_.u;
         if (dynamics != nullptr) {
-            const StepLoad before =
-                load_at(stage, constraints, prescribed_start, (state_.time - t_start) / stage.duration);
+            const StepLoad before = load_at(stage, constraints, prescribed_start, state_.time - t_start);
             const double alpha = dynamics->integrator.alpha_f;
             for (std::size_t i = 0; i < u.size(); ++i) {
                 load.force[i] = (1 - alpha) * load.force[i] + alpha * before.force[i];
@@ -362,8 +398,16 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         equilibrium.begin_attempt(state_, load, dt);
         Vector z = equilibrium.unknowns(u, state_.contact);
         const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
-        LadderOptions ladder{options_.tolerance, options_.max_iterations, characteristic_length_,
-                             reference_force(stage, load, equilibrium, z, dt)};
+        LadderOptions ladder{options_.tolerance,
+                             options_.max_iterations,
+                             characteristic_length_,
+                             reference_force(stage, load, equilibrium, z, dt),
+                             {},
+                             {}};
+        if (model_.finite_strain) {
+            ladder.predicted = u;
+            ladder.unpredicted = state_.u;
+        }
         Statuses statuses;
         equilibrium.set_reference_force(ladder.reference_force);
         bool forced = false;
@@ -389,6 +433,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 evidence.iterations = iterations;
                 decision = judge(evidence, stage.limits, dt, repeats);
                 z = std::move(trial);
+                ladder.predicted.clear();
             }
         }
         model::State next;
@@ -438,7 +483,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
             refresh_patches();
             repeats = 0;
-            k += to_end ? 1 : 0;
+            if (to_end && to_corner) ++corner;
+            if (to_end && !to_corner) ++k;
             dt = std::max(decision.dt, proposed); // a step that was short of a target alone keeps its size for the next
             continue;
         }

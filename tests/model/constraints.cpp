@@ -115,6 +115,7 @@ TEST(Constraints, ThrowOnTwoValuesAlongOneDirection) {
     expect_contradiction({hold(7, slant, 0.1), hold(7, slant, 0.2)});
     expect_contradiction({hold(7, slant, 0.1), hold(7, -slant, 0.1)});
     expect_contradiction({hold(7, Vec3::UnitX()), hold(3, Vec3::UnitX(), 1), hold(7, Vec3::UnitX(), 1e-6)});
+    expect_contradiction({hold(7, slant, 1e-13), hold(7, slant, 2e-13)}); // of a body small enough
 }
 
 TEST(Constraints, ThrowOnObliqueDirections) {

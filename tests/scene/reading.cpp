@@ -40,7 +40,7 @@ TEST(Reader, TurnsEveryQuantityIntoSi) {
     const Stage& load = scene.stages.front().second;
     EXPECT_EQ(load.duration, 60);
     EXPECT_EQ(load.pressure.front().second, 5e3);
-    EXPECT_EQ(load.body_force.front().second, Vec3(0, 0, -2e3));
+    EXPECT_EQ(load.body_force.front().second, (std::array<Course, 3>{0.0, 0.0, -2e3}));
     EXPECT_EQ(load.displacement.front().second[0], 1e-3);
     EXPECT_FALSE(load.displacement.front().second[1]);
 }

@@ -455,5 +455,14 @@ TEST(Fall, ReserveSavesASlowingPointFromCreepingUpToItsBound) {
     EXPECT_LT(with.cuts, without.cuts / 2);
 }
 
+TEST(Corners, AreThoseWithinTheStageThatNoStepHitsAnyway) {
+    using ::testing::ElementsAre;
+    using ::testing::IsEmpty;
+    EXPECT_THAT(corners_between({0.7, 0.1, 0.1, 0.5, 1, 3}, 10, 1, 4), ElementsAre(10 + 0.1, 10 + 0.7));
+    EXPECT_THAT(corners_between({0, 0.25, 3 * 0.1 - 0.3, 0.5 + 1e-13, 1 - 1e-13}, 0, 1, 4), IsEmpty());
+    EXPECT_THAT(corners_between({0.1, 0.1 + 1e-13, 0.3}, 0, 1, 1), ElementsAre(0.1, 0.3));
+    EXPECT_THAT(corners_between({}, 0, 1, 4), IsEmpty());
+}
+
 } // namespace
 } // namespace osculate::time

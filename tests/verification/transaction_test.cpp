@@ -2,6 +2,7 @@
 
 #include "support/scene_runner.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace osculate {
@@ -10,10 +11,14 @@ namespace {
 struct Diary final : time::StepObserver {
     std::vector<time::Attempt> attempts;
     std::vector<model::State> states;
+    std::vector<time::Ledger> ledgers; ///< of dynamic steps
     void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>&) override {
         attempts.push_back(attempt);
     }
-    void accepted(const time::AcceptedStep& step) override { states.push_back(step.state); }
+    void accepted(const time::AcceptedStep& step) override {
+        states.push_back(step.state);
+        if (step.ledger != nullptr) ledgers.push_back(*step.ledger);
+    }
     [[nodiscard]] int count(time::Reason reason) const {
         return static_cast<int>(std::count_if(attempts.begin(), attempts.end(), [&](const time::Attempt& a) {
             return a.verdict == time::Verdict::retry && a.reason == reason;
@@ -47,6 +52,14 @@ void expect_same_bits(const Diary& a, const Diary& b) {
             ASSERT_EQ(x.contact[p].facet, y.contact[p].facet) << "step " << k;
         }
     }
+    ASSERT_EQ(a.ledgers.size(), b.ledgers.size());
+    for (std::size_t k = 0; k < a.ledgers.size(); ++k) {
+        const time::Ledger &x = a.ledgers[k], &y = b.ledgers[k];
+        ASSERT_EQ(x.kinetic + x.strain, y.kinetic + y.strain) << "step " << k;
+        ASSERT_EQ(x.friction, y.friction) << "step " << k;
+        ASSERT_EQ(x.contact, y.contact) << "step " << k;
+        ASSERT_EQ(x.angular, y.angular) << "step " << k;
+    }
 }
 
 const std::vector<scene::Override> impact{{"stages.bounce.duration", "1.1"},
@@ -55,9 +68,38 @@ const std::vector<scene::Override> impact{{"stages.bounce.duration", "1.1"},
 /// Stick and slip on a smooth master, facets left and entered: half a metre along the half-tube.
 const std::vector<scene::Override> slide{{"bodies.tube.mesh.half_tube.divisions", "[7, 6, 1]"},
                                          {"bodies.contactor.mesh.contactor.divisions", "[5, 6, 1]"},
-                                         {"stages.slide.steps", "4"},
-                                         {"stages.slide.duration", "4"},
-                                         {"stages.slide.displacement.rear.y", "0.4"}};
+                                         {"stages.slide.steps", "7"},
+                                         {"stages.slide.duration", "7"},
+                                         {"stages.slide.displacement.rear.y", "0.5"}};
+
+/// Dynamics with all of it: a tilted block thrown on a smooth master sticks and slips, corner after corner.
+const std::vector<scene::Override> thrown{{"bodies.block.mesh.rotate", "{axis: [1, 2, 0], angle: 0.02}"},
+                                          {"bodies.block.mesh.translate", "[0, 0, -0.45]"},
+                                          {"bodies.block.initial_velocity", "[0.05, 0.02, 0]"},
+                                          {"contact.floor.surface", "blend"},
+                                          {"contact.floor.friction", "0.8"},
+                                          {"stages.fall.analysis.dynamic.contact_mass", "redistributed"},
+                                          {"stages.fall.duration", "0.13"},
+                                          {"stages.fall.steps", "65"}};
+
+TEST(Transaction, RejectedAttemptsOfAThrowWithFrictionLeaveNoTrace) {
+    const Diary straight = run("validation/falling_block.yaml", thrown, 0);
+    EXPECT_GT(straight.count(time::Reason::interpenetration), 3);
+    int stick = 0, slip = 0;
+    for (const model::State& state : straight.states) {
+        stick += static_cast<int>(std::ranges::count(state.contact[0].status, contact::Status::stick));
+        slip += static_cast<int>(std::ranges::count(state.contact[0].status, contact::Status::slip));
+    }
+    EXPECT_GT(stick, 3);
+    EXPECT_GT(slip, 3);
+    for (const int every : {2, 3, 7}) {
+        const Diary rejected = run("validation/falling_block.yaml", thrown, every);
+        EXPECT_GT(rejected.count(time::Reason::forced), 5);
+        expect_same_bits(straight, rejected);
+    }
+    for (const int threads : {2, 3})
+        expect_same_bits(straight, run("validation/falling_block.yaml", thrown, 0, threads));
+}
 
 TEST(Transaction, RejectedAttemptsOfAnImpactLeaveNoTrace) {
     const Diary straight = run("validation/bouncing_rod.yaml", impact, 0);
@@ -72,7 +114,7 @@ TEST(Transaction, RejectedAttemptsOfAnImpactLeaveNoTrace) {
 
 TEST(Transaction, RejectedAttemptsOfASlideLeaveNoTrace) {
     const Diary straight = run("paper/half_tube.yaml", slide, 0);
-    for (const int every : {2, 3}) {
+    for (const int every : {2, 3, 7}) {
         const Diary rejected = run("paper/half_tube.yaml", slide, every);
         EXPECT_GT(rejected.count(time::Reason::forced), 0);
         expect_same_bits(straight, rejected);

@@ -27,6 +27,12 @@ struct Deformation {
     [[nodiscard]] bool admissible() const { return smallest_J > 0; }
 };
 
+/// How the forces of a step are averaged over it.
+struct StepMean {
+    double end_weight = 0.5; ///< of the step's end, 1 - alpha_f
+    double viscosity = 0;    ///< stiffness damping over dt: adds viscosity D : (E1 - E0) to the stress
+};
+
 /// Kernels of one block of equal elements; strain, material and formulation are chosen once, at construction.
 /// X holds the reference positions (3 x n, metres), u the displacements (3 x n, metres), n = nodes(), node order VTK's.
 /// Every kernel throws std::runtime_error where the Jacobian of the reference map is not positive. No allocation.
@@ -55,6 +61,20 @@ public:
     [[nodiscard]] virtual Deformation tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
                                               const Eigen::Ref<const Eigen::Matrix3Xd>& u,
                                               Eigen::Ref<Matrix> Ke) const = 0;
+
+    /// Internal forces of a step from u0 to u1, f (3 x n), N, whose work over u1 - u0 is the difference of the energies,
+    /// with end_weight 1/2, without viscosity and without mean dilatation; and which a rigid motion by any angle does not
+    /// call up. Admissible where u1 is.            [Simo, Tarnow 1992, Z. angew. Math. Phys. 43, 757; Gonzalez 2000]
+    [[nodiscard]] virtual Deformation step_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
+                                                 const Eigen::Ref<const Eigen::Matrix3Xd>& u0,
+                                                 const Eigen::Ref<const Eigen::Matrix3Xd>& u1, const StepMean& mean,
+                                                 Eigen::Ref<Eigen::Matrix3Xd> f) const = 0;
+
+    /// df/du1 (3n x 3n) of step_force, N/m, not symmetric.
+    [[nodiscard]] virtual Deformation step_tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
+                                                   const Eigen::Ref<const Eigen::Matrix3Xd>& u0,
+                                                   const Eigen::Ref<const Eigen::Matrix3Xd>& u1, const StepMean& mean,
+                                                   Eigen::Ref<Matrix> Ke) const = 0;
 
     /// Cauchy stress (6 x n), Pa, Voigt xx yy zz xy yz zx, carried from the quadrature points to the nodes.
     virtual Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X,

@@ -19,4 +19,11 @@ namespace osculate::material {
     return v;
 }
 
+/// The stress that a vector stands for.
+[[nodiscard]] inline Mat3 stress_matrix(const Vec6& v) {
+    Mat3 S;
+    S << v(0), v(3), v(5), v(3), v(1), v(4), v(5), v(4), v(2);
+    return S;
+}
+
 } // namespace osculate::material

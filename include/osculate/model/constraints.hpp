@@ -16,6 +16,7 @@ struct NodeConstraint {
     bool driven = false;            ///< false: stays at zero whatever the time
     bool symmetry = false;          ///< no contact force acts along it either
     Index set = -1;                 ///< constrained set, for messages
+    Index course = -1; ///< the displacement is `target` times this course of the stage; -1: `target` itself, in the end
 };
 
 /// Local frames and equation numbers of every node for one stage. Directions held at one node must be parallel or

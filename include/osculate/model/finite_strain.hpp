@@ -5,7 +5,8 @@
 
 namespace osculate::fe {
 class ElementKernel;
-}
+struct StepMean;
+} // namespace osculate::fe
 
 namespace osculate::model {
 
@@ -26,12 +27,16 @@ public:
     /// @param pattern  holds every pair of nodes of an element; matrices of add_tangent() must have the same
     FiniteStrain(const std::vector<Body>& bodies, const BlockMatrix& pattern);
 
-    /// f += f_int(u). X, u, f (nodes), m, m, N
+    /// f += f_int(u). X, u, f (nodes), m, m, N.
     WorstElement add_internal_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u, std::vector<Vec3>& f,
                                     int threads) const;
-    /// K += factor df_int/du. Elements that are not admissible are left out.
-    void add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, double factor, BlockMatrix& K,
-                     int threads) const;
+    /// K += df_int/du. Elements that are not admissible are left out.
+    void add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, BlockMatrix& K, int threads) const;
+    /// The forces of a step from u0 to u1, see fe::ElementKernel::step_force, and their derivative by u1.
+    WorstElement add_step_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u0, const std::vector<Vec3>& u1,
+                                const fe::StepMean& mean, std::vector<Vec3>& f, int threads) const;
+    void add_step_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u0, const std::vector<Vec3>& u1,
+                          const fe::StepMean& mean, BlockMatrix& K, int threads) const;
     /// Strain energy, J.
     [[nodiscard]] double energy(const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads) const;
 
@@ -43,10 +48,14 @@ private:
         std::vector<Index> node;                      ///< (size x n) global
         std::vector<Index> slot;                      ///< (size x n x n) of block (i, j) in the pattern, row by row
     };
-    /// In batches: compute(k, X, u) for the k-th element of the batch, on several threads; then use(k, element), in order.
+    /// In batches: compute(k, element) for the k-th element of the batch, on several threads; then use(k, element), in
+    /// order.
     template <class Compute, class Use>
-    void for_each(const Block& block, const std::vector<Vec3>& X, const std::vector<Vec3>& u, int threads,
-                  Compute&& compute, Use&& use) const;
+    static void for_each(const Block& block, int threads, Compute&& compute, Use&& use);
+    /// Values (3 x n) of the nodes of an element.
+    static Eigen::Matrix3Xd gather(const Block& block, Index element, const std::vector<Vec3>& values);
+    template <class Kernel> WorstElement add_forces(std::vector<Vec3>& f, int threads, Kernel&& kernel) const;
+    template <class Kernel> void add_tangents(BlockMatrix& K, int threads, Kernel&& kernel) const;
 
     std::vector<Block> blocks_;
 };

@@ -5,6 +5,7 @@
 #include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/mesh/portion.hpp"
+#include "osculate/scene/course.hpp"
 
 #include <array>
 #include <map>
@@ -252,16 +253,17 @@ struct StepControl {
     bool operator==(const StepControl&) const = default;
 };
 
-/// Every value is reached at the end of the stage; values not named keep theirs.
+/// Every plain value is reached at the end of the stage; values not named keep theirs, those with a course over time its
+/// last.
 struct Stage {
     std::variant<StaticAnalysis, DynamicAnalysis> analysis;
     double duration = 1; ///< s
     int steps = 1;
     StepControl control;
     bool ramp = true; ///< linear from the last value; false: the full value from the first step on
-    Named<std::array<std::optional<double>, 3>> displacement; ///< set -> components along the support's axes, m
-    Named<double> pressure; ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
-    Named<Vec3> body_force; ///< body -> N/m^3
+    Named<std::array<std::optional<Course>, 3>> displacement; ///< set -> components along the support's axes, m
+    Named<Course> pressure; ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
+    Named<std::array<Course, 3>> body_force; ///< body -> N/m^3
     bool operator==(const Stage&) const = default;
 };
 

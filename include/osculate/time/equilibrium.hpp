@@ -53,6 +53,9 @@ public:
     void rollback();
     /// Statuses for the next solve. With `natural` they hold for the first iterate only, where `force_first` asks for it.
     void set_statuses(std::vector<std::vector<contact::Status>> statuses, StatusRule rule, bool force_first);
+    /// The next residual is linear in the displacements about u, (nodes) m, where elements bear a driven motion that has
+    /// not spread into the body yet. Of no concern, and not kept, without finite strain.
+    void linearise_first_about(const std::vector<Vec3>& u);
     void set_reference_force(double force) { reference_force_ = force; }
 
     [[nodiscard]] Index size() const override { return size_; }
@@ -93,6 +96,7 @@ private:
         contact::ContactVariation variation;
     };
     void linearise(std::size_t p, Index j, ContactTangent& tangent) const;
+    [[nodiscard]] bool evaluate_bodies();
     void unpack(const double* z);
     void fill(double* F);
     void record(const double* F, int status_changes);
@@ -108,13 +112,15 @@ private:
     Index size_ = 0;
     std::vector<Index> first_coupling_; ///< (pairs + 1)
     std::unique_ptr<model::SystemMatrix> matrix_;
-    std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none without contact
+    std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none where the tangent is symmetric
     std::vector<model::Coupling> kept_couplings_;           ///< of matrix_ at the last commit
     long kept_patterns_ = 0;                                ///< patterns_built_ then
     StepLoad load_;
     double reference_force_ = 1;
 
     std::vector<Vec3> u_, x_, internal_, unbalanced_;
+    std::vector<Vec3> linear_about_; ///< of the next residual; empty: exact
+    bool linearised_ = false;        ///< the last residual was, and the tangent belongs to it
     std::vector<std::vector<Vec3>> lambda_;
     std::vector<std::vector<contact::Status>> statuses_;
     StatusRule rule_ = StatusRule::natural;

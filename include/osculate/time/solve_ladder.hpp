@@ -10,6 +10,9 @@ struct LadderOptions {
     int max_iterations = 30;
     double characteristic_length = 1; ///< m
     double reference_force = 1;       ///< N
+    /// (nodes) displacements behind the start values, driven nodes where they were: what first residuals are linear about
+    /// at finite strain (Equilibrium::linearise_first_about); empty: exact from the start.
+    std::vector<Vec3> predicted, unpredicted;
 };
 
 struct LadderResult {

@@ -5,6 +5,7 @@
 #include "osculate/time/integrator.hpp"
 #include "osculate/time/step_control.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,19 @@ struct Dynamics {
     double mass_damping = 0, stiffness_damping = 0; ///< C = mass_damping M + stiffness_damping K, 1/s and s
 };
 
+/// A load's or a motion's value over the time of a stage.
+struct Course {
+    std::string name;                 ///< for messages
+    std::function<double(double)> at; ///< value at a time since the stage's start, s
+    std::vector<double> corners;      ///< times since the stage's start that steps must hit, s
+};
+
+/// External forces that follow a course.
+struct CourseForce {
+    Index course = -1;         ///< of the stage
+    std::vector<Vec3> pattern; ///< (nodes) forces where the course is 1, N
+};
+
 struct Stage {
     std::string name;
     double duration = 1; ///< s
@@ -27,6 +41,8 @@ struct Stage {
     bool ramp = true;                               ///< linear from the last value; false: full value at once
     std::vector<model::NodeConstraint> constraints; ///< every direction held during this stage
     std::vector<Vec3> force_start, force_end;       ///< (nodes) external forces at its two ends, N
+    std::vector<Course> courses;
+    std::vector<CourseForce> course_forces; ///< on top of these
 };
 
 } // namespace osculate::time

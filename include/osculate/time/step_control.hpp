@@ -84,4 +84,11 @@ struct FittedStep {
 /// @param targets  ascending, s; those reached are passed over, those equal but for round-off count as one, the last
 [[nodiscard]] FittedStep fit_to(double t, double dt, const std::vector<double>& targets);
 
+/// Times at which the steps of a stage must end on top of the ends of its equal steps.
+/// @param corners  since the stage's start, s, in any order
+/// @param t_start  of the stage, s
+/// @returns        ascending, within the stage, none that is an end of a step or another corner but for round-off
+[[nodiscard]] std::vector<double> corners_between(std::vector<double> corners, double t_start, double duration,
+                                                  int steps);
+
 } // namespace osculate::time

@@ -69,7 +69,7 @@ private:
     void refresh_patches();
     void name_node(Index node, Attempt& attempt) const;
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
-                                   const std::vector<Vec3>& prescribed_start, double fraction) const;
+                                   const std::vector<Vec3>& prescribed_start, double elapsed) const;
     /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
     void predict(const model::Constraints& constraints, const std::vector<Vec3>& prescribed,
                  std::vector<Vec3>& u) const;

@@ -1,0 +1,45 @@
+#pragma once
+/// Loads and motions of the stages: what they ramp to, and the courses they follow within one stage.
+
+#include "osculate/scene/scene.hpp"
+#include "osculate/time/stage.hpp"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osculate::app {
+
+/// What is driven during a stage, and what it keeps from those before.
+struct Driving {
+    std::map<std::string, std::array<std::optional<scene::Course>, 3>> displacement; ///< by set
+    std::map<std::string, scene::Course> pressure;                                   ///< by set
+    std::map<std::string, std::array<scene::Course, 3>> body_force;                  ///< by body
+
+    /// Takes over what a stage names.
+    void update(const scene::Stage& stage);
+    /// Courses end with their last values.
+    void settle(double duration);
+    [[nodiscard]] bool has_load_courses() const;
+    /// Without the loads that follow a course in `next`, since a course is no change of the value before it.
+    [[nodiscard]] Driving without_courses_of(const Driving& next) const;
+};
+
+/// The courses of one stage, each once: sets that follow the same one may share nodes.
+class CourseList {
+public:
+    explicit CourseList(std::vector<time::Course>& courses) : courses_(courses) {}
+    /// Number of a course, which is listed where it is new.
+    [[nodiscard]] Index index(const std::string& name, const scene::Course& course);
+
+private:
+    std::vector<time::Course>& courses_;
+    std::vector<scene::Course> listed_;
+};
+
+/// What a value contributes to ramped loads: nothing where it follows a course.
+[[nodiscard]] double ramped(const scene::Course& course);
+
+} // namespace osculate::app

@@ -44,6 +44,12 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory) {
             [](const scene::ContactorMesh& c) {
                 return mesh::make_contactor(c.radius, c.width, c.length, c.height, c.rear, c.divisions, c.element);
             },
+            [](const scene::BallMesh& b) {
+                return mesh::make_ball(b.radius, b.divisions, b.portion, b.grading, b.pole_refinement);
+            },
+            [](const scene::CylinderMesh& c) {
+                return mesh::make_cylinder(c.radius, c.length, c.divisions, c.portion, c.grading);
+            },
             [&](const scene::FileMesh& f) {
                 return mesh::read_vtu((std::filesystem::path(directory) / f.path).string());
             },

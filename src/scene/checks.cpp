@@ -38,6 +38,13 @@ public:
                   "more than " + number_text(least) + " m, where the flat top meets the underside's edges",
                   number_text(m.height) + " m");
     }
+    void check_mesh(const std::string& body, const BallMesh& m) { check_around(body, "ball", m.divisions[0]); }
+    void check_mesh(const std::string& body, const CylinderMesh& m) { check_around(body, "cylinder", m.divisions[0]); }
+    void check_around(const std::string& body, const char* tag, int around) {
+        if (around % 2 != 0)
+            fault({"bodies", body, "mesh", tag, "divisions"}, "an even number of elements around a quarter",
+                  std::to_string(around));
+    }
     void check_mesh(const std::string& body, const FileMesh& m) {
         std::error_code ignored;
         if (!m.path.empty() && !std::filesystem::is_regular_file(m.path, ignored))

@@ -159,7 +159,8 @@ void describe(Visitor& v, StepControl& s) {
                       s.allowed_interpenetration);
     v.number({.name = "energy_tolerance",
               .meaning =
-                  "Energy that contact may add in one dynamic step, of kinetic plus strain energy; more cuts the step.",
+                  "Rise of kinetic plus strain energy beyond external work that contact may cause in one dynamic step, "
+                  "of that energy; more cuts the step.",
               .range = range::positive},
              s.energy_tolerance);
     v.number({.name = "growth",

@@ -74,6 +74,54 @@ void describe(Visitor& v, ContactorMesh& m) {
     word(v, {.name = "element", .meaning = "Element shape."}, cell_words, m.element);
 }
 
+void describe_portion(Visitor& v, Portion& portion) {
+    static const Words portions{"full", "half", "quarter"};
+    word(v,
+         {.name = "portion",
+          .meaning = "All of the body, x >= 0 of it (cut surface x_min), or x >= 0 and y >= 0 (x_min and y_min)."},
+         portions, portion);
+}
+
+void describe(Visitor& v, BallMesh& m) {
+    v.number({.name = "radius", .meaning = "Radius.", .unit = dimension::length, .range = range::size}, m.radius);
+    v.divisions({.name = "divisions",
+                 .meaning = "Elements around a quarter of the equator (even), from the inner cube to the sphere, along "
+                            "the cube's edges parallel to z.",
+                 .range = divisions_range,
+                 .largest_product = most_elements},
+                m.divisions);
+    describe_portion(v, m.portion);
+    v.number({.name = "grading",
+              .meaning = "How many times longer each element is than its neighbour towards the z axis, or towards the "
+                         "sphere.",
+              .range = {.low = 1, .high = 2}},
+             m.grading);
+    v.number({.name = "pole_refinement",
+              .meaning = "How many times smaller the elements at the lowest point are; those at the highest grow as "
+                         "much, angles stay.",
+              .range = {.low = 1, .high = 100}},
+             m.pole_refinement);
+}
+
+void describe(Visitor& v, CylinderMesh& m) {
+    v.number({.name = "radius", .meaning = "Radius.", .unit = dimension::length, .range = range::size}, m.radius);
+    v.number(
+        {.name = "length", .meaning = "Length along z, from z = 0.", .unit = dimension::length, .range = range::size},
+        m.length);
+    v.divisions({.name = "divisions",
+                 .meaning =
+                     "Elements around a quarter of the circle (even), from the inner square to the circle, along "
+                     "z.",
+                 .range = divisions_range,
+                 .largest_product = most_elements},
+                m.divisions);
+    describe_portion(v, m.portion);
+    v.number({.name = "grading",
+              .meaning = "How many times longer each layer along z is than the one below.",
+              .range = {.low = 0.5, .high = 2}},
+             m.grading);
+}
+
 void describe(Visitor& v, FileMesh& m) {
     v.text({.name = "path", .meaning = "VTU file; a relative path starts at the scene's folder.", .required = true},
            m.path);
@@ -99,11 +147,12 @@ void describe(Visitor& v, ElasticConstants& m) {
 }
 
 void describe(Visitor& v, MeshSpec& mesh) {
-    static const Words tags{"block", "half_tube", "contactor", "file"};
+    static const Words tags{"block", "half_tube", "contactor", "ball", "cylinder", "file"};
     one_of(v, tags,
            {"Axis-parallel block; surfaces x_min x_max y_min y_max z_min z_max.",
             "Lower half of a tube along y, open towards +z; surfaces inner outer y_min y_max rim_left rim_right.",
             "Block with a cylindrical underside along y; surfaces bottom top rear front left right.",
+            "Solid ball about the origin; surface outer.", "Solid cylinder along z; surfaces z_min z_max outer.",
             "Mesh from a VTU file."},
            true, mesh.source, [&v](auto& alternative) { describe(v, alternative); });
     Placement& p = mesh.placement;

@@ -218,6 +218,10 @@ TEST(BadScene, ShapesThatCannotBe) {
     expect_override_fault(
         {"bodies.cap.mesh.block", "{pattern: hybrid, element: tet4}"},
         "--set: bodies.cap.mesh.block.pattern: expected pattern hybrid with element hex8, found another element");
+    for (const std::string body : {"ball", "cylinder"})
+        expect_override_fault({"bodies.cap.mesh", "{" + body + ": {divisions: [7, 4, 4]}}"},
+                              "--set: bodies.cap.mesh." + body +
+                                  ".divisions: expected an even number of elements around a quarter, found 7");
     expect_override_fault({"sets.top", "{body: cap, box: {min: [0, 0, 2], max: [1, 1, 1]}}"},
                           "--set: sets.top.box: expected min at most max in every component, found min above max");
 }

@@ -4,6 +4,7 @@
 
 #include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/mesh.hpp"
+#include "osculate/mesh/portion.hpp"
 
 namespace osculate::mesh {
 
@@ -31,6 +32,24 @@ namespace osculate::mesh {
 /// @param divisions  elements across x, along y, through z
 [[nodiscard]] Mesh make_contactor(double radius, double width, double length, double height, double rear,
                                   const std::array<int, 3>& divisions, CellType element = CellType::hex8);
+
+/// Solid ball of hex8 about the origin: a cube within, and layers from it to the sphere. Surface outer, on the true
+/// sphere, and those of the cuts.
+/// @param divisions        elements around a quarter of the equator (even), from the cube to the sphere, and along the
+///                         cube's edges parallel to z
+/// @param grading          each element is this many times longer than its neighbour towards the z axis, or towards the
+///                         sphere; 1: equal angles and thicknesses
+/// @param pole_refinement  elements at (0, 0, -radius) are smaller by this factor, those opposite larger, all of them
+///                         without change of their angles
+[[nodiscard]] Mesh make_ball(double radius, const std::array<int, 3>& divisions, Portion portion = Portion::full,
+                             double grading = 1, double pole_refinement = 1);
+
+/// Solid cylinder of hex8 about the z axis, from z = 0 to `length`. Surfaces z_min z_max outer (on the true cylinder),
+/// and those of the cuts.
+/// @param divisions  elements around a quarter of the circle (even), from the square within to the circle, and along z
+/// @param grading    each layer along z is this many times longer than the one below
+[[nodiscard]] Mesh make_cylinder(double radius, double length, const std::array<int, 3>& divisions,
+                                 Portion portion = Portion::full, double grading = 1);
 
 /// Moves every node to x = scale * (R X) + translation, R the rotation by `angle` (rad) about `axis`.
 /// @pre  scale > 0 and axis is not zero; std::invalid_argument otherwise

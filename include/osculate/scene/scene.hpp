@@ -4,6 +4,7 @@
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/mesh.hpp"
+#include "osculate/mesh/portion.hpp"
 #include "osculate/scene/course.hpp"
 
 #include <array>
@@ -49,6 +50,27 @@ struct ContactorMesh {
     bool operator==(const ContactorMesh&) const = default;
 };
 
+using mesh::Portion;
+
+/// Solid ball about the origin.
+struct BallMesh {
+    double radius = 1;                     ///< m
+    std::array<int, 3> divisions{8, 4, 8}; ///< around a quarter of the equator, radial, inner cube along z
+    Portion portion = Portion::full;
+    double grading = 1;
+    double pole_refinement = 1; ///< how much smaller the elements at the lowest point are
+    bool operator==(const BallMesh&) const = default;
+};
+
+/// Solid cylinder about the z axis, from z = 0 up.
+struct CylinderMesh {
+    double radius = 1, length = 1;         ///< m
+    std::array<int, 3> divisions{8, 4, 8}; ///< around a quarter, radial, along z
+    Portion portion = Portion::full;
+    double grading = 1; ///< of the layers along z
+    bool operator==(const CylinderMesh&) const = default;
+};
+
 struct FileMesh {
     std::string path; ///< VTU file; the reader makes it absolute
     bool operator==(const FileMesh&) const = default;
@@ -64,7 +86,7 @@ struct Placement {
 };
 
 struct MeshSpec {
-    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, FileMesh> source;
+    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, FileMesh> source;
     Placement placement;
     bool operator==(const MeshSpec&) const = default;
 };
@@ -226,7 +248,7 @@ struct DynamicAnalysis {
 struct StepControl {
     std::optional<double>
         allowed_interpenetration;   ///< of the facet size; not given: 0.05 in dynamics, no bound in statics
-    double energy_tolerance = 0.01; ///< energy that contact may add in one dynamic step, of kinetic plus strain energy
+    double energy_tolerance = 0.01; ///< rise beyond external work in one dynamic step, of kinetic plus strain energy
     double growth = 2;              ///< of dt after an easy step, up to the stage's step
     bool operator==(const StepControl&) const = default;
 };

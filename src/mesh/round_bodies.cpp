@@ -1,0 +1,117 @@
+#include "mesh/o_grid.hpp"
+#include "osculate/mesh/generators.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace osculate::mesh {
+namespace {
+
+void require_at_least(const char* name, double value, double least) {
+    if (!(value >= least) || !std::isfinite(value))
+        throw std::invalid_argument(std::string(name) + " must be finite and at least " + std::to_string(least) +
+                                    ", not " + std::to_string(value));
+}
+
+void require_positive(const char* name, double value) {
+    if (!(value > 0) || !std::isfinite(value))
+        throw std::invalid_argument(std::string(name) + " must be positive and finite, not " + std::to_string(value));
+}
+
+/// Divisions of the core along x and y. The part of a circle between two diagonals has as many elements as a side of the
+/// core; a cut through the middle of the core halves them.
+std::array<int, 2> core_divisions(int around, Portion portion) {
+    if (around < 2 || around % 2 != 0)
+        throw std::invalid_argument("elements around a quarter must be an even number, 2 or more, not " +
+                                    std::to_string(around));
+    return {portion == Portion::full ? around : around / 2, portion == Portion::quarter ? around / 2 : around};
+}
+
+/// (ratio^i - 1)/(ratio^n - 1): the end of part i of n, each `ratio` times as long as the one before.
+double graded(int i, int n, double ratio) {
+    if (i == 0 || i == n) return i == 0 ? 0 : 1;
+    const double log = std::log(ratio);
+    return log == 0 ? static_cast<double>(i) / n : std::expm1(i * log) / std::expm1(n * log);
+}
+
+/// Node i of the core's n + 1 along a line, within [-1, 1], or [0, 1] where the core is cut at 0; graded away from 0.
+double along_core(int i, int n, bool cut, double ratio) {
+    if (cut) return graded(i, n, ratio);
+    const int half = n / 2;
+    return i < half ? -graded(half - i, half, ratio) : graded(i - half, half, ratio);
+}
+
+/// Equal parts become equal angles seen from the centre.
+double equal_angles(double part) {
+    return part == 1 || part == -1 ? part : std::tan(std::numbers::pi / 4 * part);
+}
+
+// The core's corners would be pressed into the outer surface if it were large, its elements small if it were small; its
+// sides are bulged part of the way to round ones, which opens the angles at its edges.
+constexpr double core_size = 0.5, bulge = 0.4;
+
+/// Moves the unit ball conformally onto itself so that lengths at (0, 0, -1) shrink to `scale`: a translation of the
+/// hyperbolic space whose Poincare model the ball is. Angles stay, and so do planes through the axis.
+Vec3 towards_pole(const Vec3& x, double scale) {
+    if (scale == 1) return x;
+    const Vec3 a(0, 0, -(1 - scale) / (1 + scale));
+    const double aa = a.squaredNorm(), ax = a.dot(x), xx = x.squaredNorm();
+    return ((1 + 2 * ax + xx) * a + (1 - aa) * x) / (1 + 2 * ax + aa * xx);
+}
+
+} // namespace
+
+Mesh make_ball(double radius, const std::array<int, 3>& divisions, Portion portion, double grading,
+               double pole_refinement) {
+    require_positive("radius", radius);
+    require_at_least("grading", grading, 1);
+    require_at_least("pole_refinement", pole_refinement, 1);
+    const auto [nx, ny] = core_divisions(divisions[0], portion);
+    const int layers = divisions[1], nz = divisions[2];
+    const bool cut_x = portion != Portion::full, cut_y = portion == Portion::quarter;
+    OGrid grid;
+    grid.core = {nx, ny, nz};
+    grid.layers = layers;
+    grid.grown = {!cut_x, true, !cut_y, true, true, true};
+    grid.sides = {"x_min", nullptr, "y_min", nullptr, nullptr, nullptr};
+    grid.position = [=, nx = nx, ny = ny](int i, int j, int k, int l) -> Vec3 {
+        const Vec3 cube(equal_angles(along_core(i, nx, cut_x, grading)),
+                        equal_angles(along_core(j, ny, cut_y, grading)), equal_angles(2. * k / nz - 1));
+        const double size = cube.lpNorm<Eigen::Infinity>();
+        const Vec3 round = size > 0 ? Vec3(size / cube.norm() * cube) : cube;
+        const Vec3 core = core_size * ((1 - bulge) * cube + bulge * round);
+        const double out = 1 - graded(layers - l, layers, grading);
+        const Vec3 x = towards_pole((1 - out) * core + out * round, 1 / pole_refinement);
+        return l == layers ? Vec3(radius * x.normalized()) : Vec3(radius * x);
+    };
+    return mesh_o_grid(grid);
+}
+
+Mesh make_cylinder(double radius, double length, const std::array<int, 3>& divisions, Portion portion, double grading) {
+    require_positive("radius", radius);
+    require_positive("length", length);
+    require_positive("grading", grading);
+    const auto [nx, ny] = core_divisions(divisions[0], portion);
+    const int layers = divisions[1], nz = divisions[2];
+    const bool cut_x = portion != Portion::full, cut_y = portion == Portion::quarter;
+    OGrid grid;
+    grid.core = {nx, ny, nz};
+    grid.layers = layers;
+    grid.grown = {!cut_x, true, !cut_y, true, false, false};
+    grid.sides = {"x_min", nullptr, "y_min", nullptr, "z_min", "z_max"};
+    grid.position = [=, nx = nx, ny = ny](int i, int j, int k, int l) -> Vec3 {
+        const Vec3 square(equal_angles(along_core(i, nx, cut_x, 1)), equal_angles(along_core(j, ny, cut_y, 1)), 0);
+        const double size = square.lpNorm<Eigen::Infinity>();
+        const Vec3 round = size > 0 ? Vec3(size / square.norm() * square) : square;
+        const Vec3 core = core_size * ((1 - bulge) * square + bulge * round);
+        const double out = static_cast<double>(l) / layers;
+        Vec3 x = radius * (l == layers ? round.normalized() : Vec3((1 - out) * core + out * round));
+        x.z() = length * graded(k, nz, grading);
+        return x;
+    };
+    return mesh_o_grid(grid);
+}
+
+} // namespace osculate::mesh

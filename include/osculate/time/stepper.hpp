@@ -52,20 +52,6 @@ public:
 
 private:
     void run_stage(const Stage& stage, StepObserver& observer);
-    /// A slave node at the accepted state.
-    struct SlaveStart {
-        bool found = false; ///< the master has a point for it
-        double gap = 0;
-        Vec3 normal = Vec3::Zero();
-        Index facet = -1;
-    };
-    using SlaveStarts = std::vector<std::vector<SlaveStart>>; ///< per pair
-    [[nodiscard]] SlaveStarts slave_starts();
-    /// Gaps of the nodes open at the start, in the trial evaluated last at displacements u.
-    [[nodiscard]] std::vector<GapEvidence> trial_gaps(const SlaveStarts& before, const std::vector<Vec3>& u) const;
-    /// Nodes that have gone through the master in this step, and have lost it or see its far side now: with the gap that
-    /// their motion along the normal at the start has led to.
-    [[nodiscard]] std::vector<GapEvidence> passed_through(const SlaveStarts& before, const std::vector<Vec3>& u) const;
     void refresh_patches();
     void name_node(Index node, Attempt& attempt) const;
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,

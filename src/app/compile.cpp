@@ -210,8 +210,11 @@ private:
             }
             const bool dynamic = stage.dynamics.has_value();
             constexpr double in_dynamics = 0.05; // of the facet size
-            stage.limits.allowed_interpenetration = spec.control.allowed_interpenetration.value_or(
-                dynamic ? in_dynamics : std::numeric_limits<double>::infinity());
+            const scene::RelativeLength g_p = spec.control.allowed_interpenetration.value_or(
+                scene::RelativeLength{dynamic ? in_dynamics : std::numeric_limits<double>::infinity(), false});
+            stage.limits.allowed_interpenetration = g_p.value;
+            stage.limits.in_metres = g_p.metres;
+            if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
             if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
             stage.follow_paths = dynamic && !scene_.contact.empty();
             stage.limits.dt_max = spec.duration / spec.steps;
@@ -373,7 +376,7 @@ private:
             const ScopedTimer timer(timings_, Part::patches);
             try {
                 plan_.model.pairs.push_back(make_contact_term(scene_, name, spec, plan_.model, slave, master,
-                                                               paths ? &exterior_[master.body] : nullptr));
+                                                              paths ? &exterior_[master.body] : nullptr));
             } catch (const std::runtime_error& error) {
                 faults_.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
             }
@@ -439,9 +442,10 @@ void Compiler::add_items() {
     for (const auto& pair : plan_.model.pairs) finest = std::min(finest, pair->finest());
     const bool paths = std::ranges::any_of(plan_.stages, &time::Stage::follow_paths);
     say("collision check", paths,
-        paths ? fmt::format("paths of open nodes, in steps that move them by {:.3g} m or more against a master, or in which "
-                            "they lose it",
-                            time::CollisionCheck::reach * finest)
+        paths ? fmt::format(
+                    "paths of open nodes, in steps that move them by {:.3g} m or more against a master, or in which "
+                    "they lose it",
+                    time::CollisionCheck::reach * finest)
               : (contact ? "every stage is static" : "the scene has no pair"));
     say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
     say("smooth master surface", smooth,

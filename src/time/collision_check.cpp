@@ -51,7 +51,8 @@ void CollisionCheck::begin_step(const model::State& state) {
 
 double CollisionCheck::length(std::size_t p, Index facet) const {
     const model::ContactTerm& pair = *model_.pairs[p];
-    return std::min(pair.surface().facet_size(facet), deepest * pair.thickness(facet) / limits_.allowed_interpenetration);
+    const double unit = limits_.in_metres ? 1 : pair.surface().facet_size(facet);
+    return std::min(unit, deepest * pair.thickness(facet) / limits_.allowed_interpenetration);
 }
 
 double CollisionCheck::allowed(std::size_t p, Index facet) const {
@@ -98,8 +99,8 @@ void CollisionCheck::add_normal_motions(const std::vector<Vec3>& u, StepEvidence
             const auto around = pair.surface().facet_vertices(start.facet);
             Vec3 motion = moved(pair.slaves().node[j]);
             for (const Index v : around) motion -= moved(pair.master_nodes()[v]) / static_cast<double>(around.size());
-            evidence.gaps.push_back({start.gap, start.gap + start.normal.dot(motion), static_cast<Index>(p), j,
-                                     length(p, start.facet)});
+            evidence.gaps.push_back(
+                {start.gap, start.gap + start.normal.dot(motion), static_cast<Index>(p), j, length(p, start.facet)});
         }
     }
 }
@@ -151,9 +152,8 @@ void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, con
         }
         // as (27) and (28): on to the surface, or from near it to what is allowed
         const double least = tolerated(entry.facet);
-        const double fraction = entry.before >= least
-                                    ? entry.time
-                                    : limits_.reserve * reduction_factor(entry.before, entry.after, least);
+        const double fraction =
+            entry.before >= least ? entry.time : limits_.reserve * reduction_factor(entry.before, entry.after, least);
         if (fraction >= evidence.collision) continue;
         evidence.collision = fraction;
         evidence.collision_pair = static_cast<Index>(p);

@@ -257,6 +257,23 @@ void Stepper::name_node(Index node, Attempt& attempt) const {
         }
 }
 
+double Stepper::local_error(const Dynamics& dynamics, const Constraints& constraints, const std::vector<Vec3>& a,
+                            double dt) const {
+    const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
+    double largest = 0;
+    for (Index i = 0; i < model_.nodes(); ++i) {
+        // nothing ties down the acceleration of a node without mass; that of a held direction is given
+        bool massless = true;
+        for (Index k = M.row_begin(i); k < M.row_end(i) && massless; ++k) massless = M.block(k).isZero(0);
+        if (massless) continue;
+        Vec3 change = constraints.to_local(i, a[i] - state_.a[i]);
+        for (int k = 0; k < 3; ++k)
+            if (constraints.constraint(i, k) != nullptr) change(k) = 0;
+        largest = std::max(largest, dynamics.integrator.local_error(change, Vec3::Zero(), dt));
+    }
+    return largest;
+}
+
 void Stepper::refresh_patches() {
     if (model_.pairs.empty()) return;
     std::vector<Vec3> x = model_.X;
@@ -372,9 +389,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 if (dynamics != nullptr) {
                     ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
                     if (std::isfinite(stage.limits.error_tolerance))
-                        for (std::size_t i = 0; i < next.a.size(); ++i)
-                            evidence.local_error = std::max(
-                                evidence.local_error, dynamics->integrator.local_error(next.a[i], state_.a[i], dt));
+                        evidence.local_error = local_error(*dynamics, constraints, next.a, dt);
                     const double energy = ledger_.kinetic + ledger_.strain;
                     evidence.energy_jump = energy > 0 ? std::max(0.0, ledger.contact - ledger_.contact) / energy : 0;
                 }
@@ -382,6 +397,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             decision = judge(evidence, stage.limits, dt, repeats);
         }
         factorisations_ += solver.factorisations() - factorised;
+        paths_followed_ += collisions.take_paths_followed();
 
         Attempt attempt;
         attempt.attempt = ++attempts_;

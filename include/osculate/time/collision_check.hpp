@@ -5,6 +5,7 @@
 #include "osculate/model/model.hpp"
 #include "osculate/time/step_control.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace osculate::time {
@@ -36,8 +37,8 @@ public:
     void add_trial(const std::vector<Vec3>& u, StepEvidence& evidence);
     /// The same for a solution with contact, whose gaps need no proof.
     void add_solution(const std::vector<Vec3>& u, StepEvidence& evidence);
-    /// Paths followed so far.
-    [[nodiscard]] long paths_followed() const { return followed_; }
+    /// Paths followed since it was asked last.
+    [[nodiscard]] long take_paths_followed() { return std::exchange(followed_, 0); }
 
 private:
     /// A slave node at the accepted state.

@@ -40,13 +40,14 @@ struct StepEvidence {
     double energy_jump = 0; ///< in the unit of its tolerance, >= 0
     double collision = 1;   ///< fraction of the step at which a path first goes through a surface; 1: none does
     Index collision_pair = -1, collision_slave = -1; ///< whose path that is
-    bool forced = false;    ///< repeat the step as it is, for tests of repetition
+    bool forced = false;                             ///< repeat the step as it is, for tests of repetition
 };
 
 struct StepLimits {
     double allowed_interpenetration = std::numeric_limits<double>::infinity(); ///< g_p in GapEvidence::length, > 0
-    double smallest_lambda = 0.1;                                              ///< floor of lambda
-    double failure_lambda = 0.5; ///< where nothing tells how much to cut: failed solves, energy jumps
+    bool in_metres = false;       ///< for whoever sets GapEvidence::length: 1 m, else the facet's size
+    double smallest_lambda = 0.1; ///< floor of lambda
+    double failure_lambda = 0.5;  ///< where nothing tells how much to cut: failed solves, energy jumps
     /// Of the proposals that aim at a bound itself: (28) and the time error. Without it a gap that closes
     /// slower and slower creeps up to -g_p from below, cut by cut, and does not arrive.
     double reserve = 0.9;

@@ -48,10 +48,15 @@ public:
     [[nodiscard]] long factorisations() const { return factorisations_; }
     /// Master patches fitted anew between steps, see contact::MasterSurface::refresh().
     [[nodiscard]] long refreshed_patches() const { return refreshed_patches_; }
+    /// Paths of slave nodes that were followed facet by facet, see CollisionCheck.
+    [[nodiscard]] long paths_followed() const { return paths_followed_; }
     [[nodiscard]] double end_time() const;
 
 private:
     void run_stage(const Stage& stage, StepObserver& observer);
+    /// Largest of Integrator::local_error() over the nodes with mass, free directions, m.
+    [[nodiscard]] double local_error(const Dynamics& dynamics, const model::Constraints& constraints,
+                                     const std::vector<Vec3>& a, double dt) const;
     void refresh_patches();
     void name_node(Index node, Attempt& attempt) const;
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
@@ -77,7 +82,7 @@ private:
     Ledger ledger_;
     bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
-    long factorisations_ = 0, refreshed_patches_ = 0;
+    long factorisations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;
 };
 

@@ -120,6 +120,36 @@ TEST(PlateImpact, IsStoppedByItsPathWhereItStartsOutOfReach) {
     EXPECT_LT(lowest(without), -5e-3) << "gaps alone do not see it";
 }
 
+/// A facet, and more, would be far behind the plate: the thickness bounds what is allowed.
+TEST(PlateImpact, AllowsNoMoreThanAQuarterOfTheThickness) {
+    for (const char* g_p : {"1", "5 mm"}) {
+        Shot shot;
+        shoot(shot, {{"stages.impact.duration", "0.1 ms"},
+                     {"stages.impact.steps", "1"},
+                     {"stages.impact.control.allowed_interpenetration", g_p}});
+        EXPECT_GT(lowest(shot), -allowed) << g_p;
+        EXPECT_GT(shot.cuts(), 0) << g_p;
+        for (const time::Attempt& attempt : shot.attempts)
+            if (attempt.reason == time::Reason::interpenetration) {
+                EXPECT_LT(attempt.value, -allowed);
+            }
+    }
+}
+
+TEST(PlateImpact, TakesTheAllowanceInMetres) {
+    const auto cuts_with = [](const char* g_p) {
+        Shot shot; // into the plate by 0.1 mm at the end of the first step
+        shoot(shot, {{"stages.impact.duration", "36 us"},
+                     {"stages.impact.steps", "1"},
+                     {"stages.impact.control.allowed_interpenetration", g_p}});
+        return shot.cuts();
+    };
+    EXPECT_EQ(cuts_with("0.12 mm"), 0);
+    EXPECT_GT(cuts_with("0.08 mm"), 0);
+    EXPECT_EQ(cuts_with("0.024"), 0); // of 5 mm
+    EXPECT_GT(cuts_with("0.016"), 0);
+}
+
 TEST(PlateImpact, LeavesACubeAloneThatPassesBy) {
     const Overrides one_step{{"stages.impact.duration", "0.1 ms"}, {"stages.impact.steps", "1"}};
     const Overrides beside{{"bodies.cube.mesh.block.origin", "[50.5 mm, -5 mm, 3.5 mm]"}};

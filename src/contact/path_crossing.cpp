@@ -113,7 +113,8 @@ void MovingFacets::cross(const Corners& triangle, Index facet, const Vec3& s0, c
         const Vec3 e = e0 + t * (e1 - e0), p = p0 + t * (p1 - p0), q = q0 + t * (q1 - q0), n = p.cross(q);
         const double area = n.squaredNorm();
         if (area == 0) continue;
-        constexpr double edge = 1e-9; // shares of corners: a path through an edge meets both its facets rather than none
+        constexpr double edge =
+            1e-9; // shares of corners: a path through an edge meets both its facets rather than none
         const double u = e.cross(q).dot(n) / area, v = p.cross(e).dot(n) / area;
         if (u < -edge || v < -edge || u + v > 1 + edge) continue;
         crossing.facet = facet;

@@ -50,7 +50,8 @@ public:
 
 private:
     struct Tree;
-    void cross(const Corners& triangle, Index facet, const Vec3& s0, const Vec3& s1, std::vector<Crossing>& found) const;
+    void cross(const Corners& triangle, Index facet, const Vec3& s0, const Vec3& s1,
+               std::vector<Crossing>& found) const;
 
     std::vector<Corners> facets_;
     std::vector<Vec3> x0_, x1_; ///< x1 without the mean motion

@@ -12,6 +12,7 @@
 #include "osculate/mesh/select.hpp"
 #include "osculate/mesh/vtu_reader.hpp"
 #include "osculate/scene/nearest.hpp"
+#include "osculate/time/collision_check.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -216,9 +217,13 @@ private:
             }
             const bool dynamic = stage.dynamics.has_value();
             constexpr double in_dynamics = 0.05; // of the facet size
-            stage.limits.allowed_interpenetration = spec.control.allowed_interpenetration.value_or(
-                dynamic ? in_dynamics : std::numeric_limits<double>::infinity());
+            const scene::RelativeLength g_p = spec.control.allowed_interpenetration.value_or(
+                scene::RelativeLength{dynamic ? in_dynamics : std::numeric_limits<double>::infinity(), false});
+            stage.limits.allowed_interpenetration = g_p.value;
+            stage.limits.in_metres = g_p.metres;
+            if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
             if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
+            stage.follow_paths = dynamic && !scene_.contact.empty();
             stage.limits.dt_max = spec.duration / spec.steps;
             stage.limits.dt_min = scene_.solver.smallest_step * stage.limits.dt_max;
             stage.limits.growth = spec.control.growth;
@@ -382,6 +387,7 @@ private:
     }
 
     void add_pairs() {
+        const bool paths = std::ranges::any_of(plan_.stages, &time::Stage::follow_paths);
         for (const auto& [name, spec] : scene_.contact) {
             const model::Set& slave = set(spec.slave);
             const model::Set& master = set(spec.master.set);
@@ -395,7 +401,8 @@ private:
             if (broken) continue;
             const ScopedTimer timer(timings_, Part::patches);
             try {
-                plan_.model.pairs.push_back(make_contact_term(scene_, name, spec, plan_.model, slave, master));
+                plan_.model.pairs.push_back(make_contact_term(scene_, name, spec, plan_.model, slave, master,
+                                                              paths ? &exterior_[master.body] : nullptr));
             } catch (const std::runtime_error& error) {
                 faults_.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
             }
@@ -460,6 +467,15 @@ void Compiler::add_items() {
         courses > 0 ? std::to_string(courses) + " load(s) and motion(s) by tables or expressions"
                     : "every load and motion ramps or jumps to its value");
     say("contact", contact, contact ? std::to_string(scene_.contact.size()) + " pair(s)" : "the scene has no pair");
+    double finest = std::numeric_limits<double>::infinity();
+    for (const auto& pair : plan_.model.pairs) finest = std::min(finest, pair->finest());
+    const bool paths = std::ranges::any_of(plan_.stages, &time::Stage::follow_paths);
+    say("collision check", paths,
+        paths ? fmt::format(
+                    "paths of open nodes, in steps that move them by {:.3g} m or more against a master, or in which "
+                    "they lose it",
+                    time::CollisionCheck::reach * finest)
+              : (contact ? "every stage is static" : "the scene has no pair"));
     say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
     say("smooth master surface", smooth,
         smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");

@@ -2,6 +2,7 @@
 
 #include "app/overloaded.hpp"
 #include "osculate/contact/mirror.hpp"
+#include "osculate/contact/path_crossing.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
 #include <algorithm>
@@ -68,11 +69,31 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
                       spec.surface);
 }
 
+/// Thickness of the master's body behind each of its nodes, the least over the facets that meet there; infinite elsewhere.
+std::vector<double> thickness(const model::Model& model, const model::Set& master,
+                              const std::vector<mesh::Facet>& exterior) {
+    const auto corners = [](const std::vector<mesh::Facet>& facets) {
+        std::vector<contact::MovingFacets::Corners> result;
+        for (const mesh::Facet& facet : facets) result.push_back(facet.nodes);
+        return result;
+    };
+    const model::Body& body = model.bodies[static_cast<std::size_t>(master.body)];
+    std::vector<mesh::Facet> own = master.facets;
+    for (mesh::Facet& facet : own)
+        for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] -= body.first_node;
+    const std::vector<double> behind = contact::thickness_behind(corners(own), corners(exterior), body.mesh.nodes);
+    std::vector<double> result(model.X.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t f = 0; f < master.facets.size(); ++f)
+        for (const Index node : master.facets[f]) result[node] = std::min(result[node], behind[f]);
+    return result;
+}
+
 } // namespace
 
 std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene, const std::string& name,
                                                       const scene::Pair& spec, const model::Model& model,
-                                                      const model::Set& slave, const model::Set& master) {
+                                                      const model::Set& slave, const model::Set& master,
+                                                      const std::vector<mesh::Facet>* exterior) {
     const std::vector<Vec3>& X = model.X;
     const contact::MirroredSurface mirrored = mirror_at_symmetry(scene, model, master);
     auto surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
@@ -98,10 +119,13 @@ std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene,
     }
 
     model::MasterNodes master_nodes;
+    const std::vector<double> behind =
+        exterior != nullptr ? thickness(model, master, *exterior) : std::vector<double>{};
     std::vector<Vec3> vertices;
     for (const Index node : surface->vertex_nodes()) {
         master_nodes.node.push_back(mirrored.original[node]);
         vertices.push_back(mirrored.positions[node]);
+        if (exterior != nullptr) master_nodes.thickness.push_back(behind[mirrored.original[node]]);
         if (mirrored.images.size() > 1) master_nodes.image.push_back(mirrored.image[node]);
     }
     master_nodes.images = mirrored.images;

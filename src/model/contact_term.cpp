@@ -3,6 +3,8 @@
 #include "osculate/contact/facet_patch.hpp"
 #include "osculate/core/parallel.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -27,11 +29,21 @@ ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNode
       search_(*surface_, vertices(X), centre(X, slaves_.node)), options_(options), inertia_(slaves_.node.size(), 0.0),
       held_(slaves_.node.size(), 0), facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0),
       hits_(slaves_.node.size()), points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {
+    finest_ = std::numeric_limits<double>::infinity();
+    for (Index f = 0; f < surface_->facet_count(); ++f)
+        finest_ = std::min({finest_, surface_->facet_size(f), thickness(f)});
     if (master_nodes_.image.empty()) return;
     std::map<Index, Index> own; // node -> vertex
     for (std::size_t v = 0; v < master_nodes_.node.size(); ++v)
         if (master_nodes_.image[v] == 0) own[master_nodes_.node[v]] = static_cast<Index>(v);
     for (const Index node : master_nodes_.node) own_vertex_.push_back(own.at(node));
+}
+
+double ContactTerm::thickness(Index facet) const {
+    double least = std::numeric_limits<double>::infinity();
+    if (!master_nodes_.thickness.empty())
+        for (const Index v : surface_->facet_vertices(facet)) least = std::min(least, master_nodes_.thickness[v]);
+    return least;
 }
 
 std::vector<Vec3> ContactTerm::vertices(const std::vector<Vec3>& x) const {

@@ -107,6 +107,8 @@ public:
     }
 
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {
+        if (stage.control.error_tolerance && std::holds_alternative<StaticAnalysis>(stage.analysis))
+            fault({"stages", name, "control", "error_tolerance"}, "a dynamic stage", "a static one");
         const std::vector<std::string> path{"stages", name, "displacement"};
         for (const auto& [set, components] : stage.displacement) {
             const Support* support = find(supports, set);

@@ -150,13 +150,21 @@ void describe(Visitor& v, DynamicAnalysis& s) {
 
 namespace {
 void describe(Visitor& v, StepControl& s) {
-    v.optional_number({.name = "allowed_interpenetration",
-                       .meaning =
-                           "Of the facet size: a step that takes an open slave node deeper in its trial is cut. In "
-                           "statics no bound where it is not given.",
-                       .range = {.low = 0, .high = 1, .open_low = true},
-                       .default_text = "0.05 in dynamics"},
-                      s.allowed_interpenetration);
+    v.optional_relative_length(
+        {.name = "allowed_interpenetration",
+         .meaning = "A number is one of facet sizes: a step that takes an open slave node deeper in its trial is "
+                    "cut. In dynamics never more than a quarter of the thickness of the master's body; in statics "
+                    "no bound where it is not given.",
+         .range = {.low = 0, .high = 1, .open_low = true},
+         .default_text = "0.05 in dynamics"},
+        s.allowed_interpenetration);
+    v.optional_number({.name = "error_tolerance",
+                       .meaning = "Estimated error of the displacement of any node that a dynamic step may make by "
+                                  "itself; more cuts the step.",
+                       .unit = dimension::length,
+                       .range = range::positive,
+                       .default_text = "no bound"},
+                      s.error_tolerance);
     v.number({.name = "energy_tolerance",
               .meaning =
                   "Rise of kinetic plus strain energy beyond external work that contact may cause in one dynamic step, "

@@ -19,6 +19,9 @@ public:
 
     void number(const Key& key, double& value) override { list(key, unit(key), number_text(value)); }
     void optional_number(const Key& key, std::optional<double>& /*value*/) override { list(key, unit(key), "not set"); }
+    void optional_relative_length(const Key& key, std::optional<RelativeLength>& /*value*/) override {
+        list(key, unit(key), "not set", "or a length with its unit");
+    }
     void vector(const Key& key, Vec3& value) override {
         list(key, "[x, y, z] " + unit(key),
              "[" + number_text(value.x()) + ", " + number_text(value.y()) + ", " + number_text(value.z()) + "]");

@@ -163,6 +163,18 @@ void TreeReader::optional_number(const Key& key, std::optional<double>& value) {
     if (const Tree* tree = take(key, expected)) value = read_number(*tree, key, expected);
 }
 
+void TreeReader::optional_relative_length(const Key& key, std::optional<RelativeLength>& value) {
+    Key length = key;
+    length.unit = dimension::length;
+    length.range = range::size;
+    const std::string expected = expected_number(key) + ", or " + expected_number(length) + " with its unit";
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    const bool metres = tree->kind == Tree::Kind::scalar && parse_quantity(tree->scalar).has_unit;
+    const auto read = read_number(*tree, metres ? length : key, expected);
+    value = read ? std::optional(RelativeLength{*read, metres}) : std::nullopt;
+}
+
 void TreeReader::vector(const Key& key, Vec3& value) {
     if (const Tree* tree = take(key, expected_vector(key))) value = read_vector(*tree, key).value_or(value);
 }

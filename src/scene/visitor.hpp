@@ -3,6 +3,7 @@
 
 #include "osculate/core/types.hpp"
 #include "osculate/scene/course.hpp"
+#include "osculate/scene/scene.hpp"
 #include "osculate/scene/units.hpp"
 
 #include <array>
@@ -81,6 +82,8 @@ public:
     virtual ~Visitor() = default;
     virtual void number(const Key& key, double& value) = 0;
     virtual void optional_number(const Key& key, std::optional<double>& value) = 0;
+    /// A plain number within the key's range, or a length with its unit.
+    virtual void optional_relative_length(const Key& key, std::optional<RelativeLength>& value) = 0;
     virtual void vector(const Key& key, Vec3& value) = 0;
     virtual void course(const Key& key, Course& value) = 0;
     virtual void optional_course(const Key& key, std::optional<Course>& value) = 0;

@@ -50,6 +50,9 @@ public:
     void optional_number(const Key& key, std::optional<double>& value) override {
         if (value) line(key, decimal(*value));
     }
+    void optional_relative_length(const Key& key, std::optional<RelativeLength>& value) override {
+        if (value) line(key, decimal(value->value) + (value->metres ? " m" : ""));
+    }
     void vector(const Key& key, Vec3& value) override { line(key, list(value)); }
     void course(const Key& key, Course& value) override { line(key, inline_course(value)); }
     void optional_course(const Key& key, std::optional<Course>& value) override {

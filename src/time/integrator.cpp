@@ -17,7 +17,7 @@ void demand(bool within, const char* bounds, double found) {
 }
 
 Integrator newmark_family(double alpha_m, double alpha_f, double beta, double gamma) {
-    return {alpha_m, alpha_f, beta, gamma, 0.5 - beta, std::abs(beta - 1. / 6)};
+    return {alpha_m, alpha_f, beta, gamma, 0.5 - beta, std::abs(beta - 1. / 6 + 0.5 * (alpha_m - alpha_f))};
 }
 
 /// gamma and beta that make the method second order and most dissipative at high frequencies.

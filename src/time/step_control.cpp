@@ -12,7 +12,7 @@ struct Objection {
     Reason reason = Reason::none;
     double lambda = 1;
     double value = 0;
-    const GapEvidence* point = nullptr;
+    const GapEvidence* point = nullptr; ///< of an interpenetration
 };
 
 /// The smaller lambda; among equals the one there already.
@@ -33,7 +33,7 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits) {
     if (!evidence.solved) return {Reason::solver, limits.failure_lambda, evidence.residual, nullptr};
     for (const GapEvidence& gap : evidence.gaps) consider_gap(governing, gap, limits);
     if (!(evidence.collision >= 1))
-        consider(governing, {Reason::collision, limits.reserve * evidence.collision, evidence.collision, nullptr});
+        consider(governing, {Reason::collision, evidence.collision, evidence.collision, nullptr});
     if (!(evidence.local_error <= limits.error_tolerance)) {
         const double lambda =
             limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error); // of order dt^3
@@ -104,6 +104,9 @@ Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt
     if (objection.point != nullptr) {
         decision.pair = objection.point->pair;
         decision.slave = objection.point->slave;
+    } else if (objection.reason == Reason::collision) {
+        decision.pair = evidence.collision_pair;
+        decision.slave = evidence.collision_slave;
     }
     std::ostringstream cause;
     describe(cause, objection, limits);

@@ -1,6 +1,7 @@
 #include "osculate/time/stepper.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/time/collision_check.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -302,56 +303,21 @@ void Stepper::name_node(Index node, Attempt& attempt) const {
         }
 }
 
-Stepper::SlaveStarts Stepper::slave_starts() {
-    std::vector<Vec3> x = model_.X;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];
-    SlaveStarts starts;
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactTerm& pair = *model_.pairs[p];
-        pair.begin_step(x, state_.contact[p], timings_, options_.threads);
-        pair.evaluate(x, timings_, options_.threads);
-        auto& list = starts.emplace_back(static_cast<std::size_t>(pair.size()));
-        for (Index j = 0; j < pair.size(); ++j)
-            if (const contact::ContactPoint& point = pair.point(j); point.found)
-                list[j] = {true, point.gap, point.normal, point.facet};
+double Stepper::local_error(const Dynamics& dynamics, const Constraints& constraints, const std::vector<Vec3>& a,
+                            double dt) const {
+    const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
+    double largest = 0;
+    for (Index i = 0; i < model_.nodes(); ++i) {
+        // nothing ties down the acceleration of a node without mass; that of a held direction is given
+        bool massless = true;
+        for (Index k = M.row_begin(i); k < M.row_end(i) && massless; ++k) massless = M.block(k).isZero(0);
+        if (massless) continue;
+        Vec3 change = constraints.to_local(i, a[i] - state_.a[i]);
+        for (int k = 0; k < 3; ++k)
+            if (constraints.constraint(i, k) != nullptr) change(k) = 0;
+        largest = std::max(largest, dynamics.integrator.local_error(change, Vec3::Zero(), dt));
     }
-    return starts;
-}
-
-std::vector<GapEvidence> Stepper::trial_gaps(const SlaveStarts& before, const std::vector<Vec3>& u) const {
-    std::vector<GapEvidence> gaps = passed_through(before, u);
-    for (std::size_t p = 0; p < before.size(); ++p)
-        for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
-            const contact::ContactPoint& point = model_.pairs[p]->point(j);
-            if (contact::is_closed(state_.contact[p].status[j]) || !before[p][j].found) continue;
-            if (point.found || point.behind)
-                gaps.push_back({before[p][j].gap, point.gap, static_cast<Index>(p), j,
-                                model_.pairs[p]->surface().facet_size(point.facet)});
-        }
-    return gaps;
-}
-
-std::vector<GapEvidence> Stepper::passed_through(const SlaveStarts& before, const std::vector<Vec3>& u) const {
-    constexpr double same_side = 0.5; // cosine of the turn of the normal within a step
-    std::vector<GapEvidence> gaps;
-    for (std::size_t p = 0; p < before.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
-        for (Index j = 0; j < pair.size(); ++j) {
-            const SlaveStart& start = before[p][j];
-            const contact::ContactPoint& point = pair.point(j);
-            if (!start.found) continue;
-            if (point.found && point.normal.dot(start.normal) > same_side) continue;
-            const auto corners = pair.surface().facet_vertices(start.facet);
-            Vec3 motion = u[pair.slaves().node[j]] - state_.u[pair.slaves().node[j]];
-            for (const Index v : corners) {
-                const Index node = pair.master_nodes()[v];
-                motion -= (u[node] - state_.u[node]) / static_cast<double>(corners.size());
-            }
-            gaps.push_back({start.gap, start.gap + start.normal.dot(motion), static_cast<Index>(p), j,
-                            pair.surface().facet_size(start.facet)});
-        }
-    }
-    return gaps;
+    return largest;
 }
 
 void Stepper::refresh_patches() {
@@ -391,7 +357,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const bool controlled = std::isfinite(stage.limits.allowed_interpenetration) && !model_.pairs.empty();
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
-    SlaveStarts starts;
+    CollisionCheck collisions(model_, stage.limits, stage.follow_paths, timings_, options_.threads);
     std::vector<double> corners;
     for (const Course& course : stage.courses)
         corners.insert(corners.end(), course.corners.begin(), course.corners.end());
@@ -420,7 +386,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         } else if (options_.predictor) {
             predict(constraints, load.prescribed, u);
         }
-        if (controlled && repeats == 0) starts = slave_starts();
+        if (controlled && repeats == 0) collisions.begin_step(state_);
         equilibrium.begin_attempt(state_, load, dt);
         Vector z = equilibrium.unknowns(u, state_.contact);
         const Vector unpredicted = equilibrium.unknowns(state_.u, state_.contact);
@@ -455,7 +421,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             result = solve_trial(equilibrium, solver, trial, statuses, ladder);
             iterations = result.iterations;
             if (result.converged()) {
-                evidence.gaps = trial_gaps(starts, equilibrium.state(trial).u);
+                collisions.add_trial(equilibrium.state(trial).u, evidence);
                 evidence.iterations = iterations;
                 decision = judge(evidence, stage.limits, dt, repeats);
                 z = std::move(trial);
@@ -475,19 +441,18 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             if (result.converged()) {
                 next = equilibrium.state(z);
                 next.time = time;
-                if (controlled) evidence.gaps = passed_through(starts, next.u);
+                if (controlled) collisions.add_solution(next.u, evidence);
                 if (dynamics != nullptr) {
                     ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
                     if (std::isfinite(stage.limits.error_tolerance))
-                        for (std::size_t i = 0; i < next.a.size(); ++i)
-                            evidence.local_error = std::max(
-                                evidence.local_error, dynamics->integrator.local_error(next.a[i], state_.a[i], dt));
+                        evidence.local_error = local_error(*dynamics, constraints, next.a, dt);
                     evidence.energy_jump = energy_from_nowhere(ledger_, ledger);
                 }
             }
             decision = judge(evidence, stage.limits, dt, repeats);
         }
         factorisations_ += solver.factorisations() - factorised;
+        paths_followed_ += collisions.take_paths_followed();
 
         Attempt attempt;
         attempt.attempt = ++attempts_;

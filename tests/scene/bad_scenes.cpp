@@ -148,6 +148,19 @@ TEST(BadScene, DynamicsWithoutMass) {
                 ::testing::HasSubstr("bodies.base.material: expected a density, which dynamic stage 'load' needs"));
 }
 
+TEST(BadScene, BoundsOfStepControl) {
+    const std::string key = "stages.load.control.allowed_interpenetration",
+                      expected =
+                          ": expected a number in (0, 1], or a length (m) in [1e-12, 1e+09] with its unit, found ";
+    EXPECT_THAT(faults_of(small_scene, {{key, "0.1"}}), IsEmpty());
+    EXPECT_THAT(faults_of(small_scene, {{key, "2 mm"}}), IsEmpty());
+    expect_override_fault({key, "1.5"}, "--set: " + key + expected + "'1.5'");
+    expect_override_fault({key, "0 mm"}, "--set: " + key + expected + "'0 mm'");
+    expect_override_fault({key, "2 s"}, "--set: " + key + expected + "'2 s' (time)");
+    expect_override_fault({"stages.load.control.error_tolerance", "1 mm"},
+                          "--set: stages.load.control.error_tolerance: expected a dynamic stage, found a static one");
+}
+
 TEST(BadScene, AllFaultsAtOnceInOrder) {
     std::string text = replaced(small_scene, "nu: 0.3", "nu: 3");
     text = replaced(text, "steps: 2", "stpes: 2");

@@ -206,6 +206,17 @@ TEST(Keys, AreListedWithUnitRangeAndDefault) {
     EXPECT_EQ(describe_keys("no.such.key"), "");
 }
 
+TEST(Reading, AnAllowedInterpenetrationIsAFractionOrALength) {
+    const std::string key = "stages.load.control.allowed_interpenetration";
+    for (const auto& [text, value] :
+         {std::pair{"0.02", RelativeLength{0.02, false}}, {"2 mm", RelativeLength{0.002, true}}}) {
+        const Scene scene = parse_scene(small_scene, "good.yaml", {{key, text}});
+        ASSERT_TRUE(scene.stages[0].second.control.allowed_interpenetration);
+        EXPECT_EQ(*scene.stages[0].second.control.allowed_interpenetration, value);
+        EXPECT_EQ(again(scene), scene) << text;
+    }
+}
+
 /// Every scene that is shipped reads, and says the same after a round trip.
 TEST(ShippedScenes, AreValid) {
     int count = 0;

@@ -241,6 +241,26 @@ TEST(Newmark, LocalErrorIsEstimatedToTheNextOrder) {
     }
 }
 
+/// a_n of these methods belongs to the time t + (alpha_m - alpha_f) dt.
+TEST(GeneralisedAlpha, LocalErrorIsEstimatedToTheNextOrderToo) {
+    const Oscillator oscillator{.xi = 0.1};
+    const double dt = 0.002;
+    for (const Integrator& integrator :
+         {generalised_alpha(0), generalised_alpha(0.5), generalised_alpha(0.8), hht(-0.3)}) {
+        Motion n = oscillator.start();
+        Oscillator at = oscillator; // the same, from where a_n belongs to
+        const double early = (integrator.alpha_m - integrator.alpha_f) * dt;
+        const Motion then = oscillator.exact(early);
+        at.u_start = then.u;
+        at.v_start = then.v;
+        n.a = at.start().a;
+        const Motion next = step(integrator, oscillator, dt, n, {}, {});
+        const double error = std::abs(next.u - oscillator.exact(dt).u);
+        constexpr double next_order = 0.05; // of the order of w dt = 0.004, over coefficients that differ by 10
+        EXPECT_NEAR(integrator.local_error(along_x(next.a), along_x(n.a), dt) / error, 1, next_order);
+    }
+}
+
 TEST(BackwardEuler, LocalErrorIsThatOfTheVelocityTimesTheStep) {
     const Oscillator oscillator{.xi = 0.1};
     const double dt = 0.001;

@@ -227,13 +227,17 @@ TEST(StepControl, CutsForAnEnergyJump) {
     EXPECT_EQ(decision.value, 2e-6);
 }
 
-TEST(StepControl, CutsShortOfACollision) {
+TEST(StepControl, CutsToACollision) {
     StepEvidence evidence;
     evidence.collision = 0.4;
+    evidence.collision_pair = 1;
+    evidence.collision_slave = 7;
     const Decision decision = judge(evidence, StepLimits{}, 1, 0);
     EXPECT_EQ(decision.reason, Reason::collision);
     EXPECT_EQ(decision.value, 0.4);
-    EXPECT_DOUBLE_EQ(decision.lambda, 0.9 * 0.4);
+    EXPECT_DOUBLE_EQ(decision.lambda, 0.4);
+    EXPECT_EQ(decision.pair, 1);
+    EXPECT_EQ(decision.slave, 7);
 }
 
 TEST(StepControl, TheStrongestObjectionGoverns) {

@@ -124,6 +124,53 @@ stages:
     }
 }
 
+/// A bar of one element, E = density = 1, nu = 0: its free end swings as 0.1 cos(sqrt(3) t).
+std::string one_element(const std::string& control, const std::string& damping = "") {
+    std::string text = free_bar("{integrator: {generalised_alpha: {rho_inf: 0.8}}" + damping + "}", 1);
+    text.replace(text.find("[20, 1, 1]"), 10, "[1, 1, 1]");
+    return text + "    control: {error_tolerance: " + control + "}\n";
+}
+
+TEST(TimeError, FollowsItsTolerance) {
+    const double w = std::sqrt(3.), T = 4;
+    std::vector<double> errors;
+    for (const char* tolerance : {"1e-5 m", "1e-7 m"}) {
+        support::SceneRun run;
+        support::run_scene(run, scene_file("one_element.yaml", one_element(tolerance)));
+        const model::State& end = last(run).state;
+        errors.push_back(std::hypot(end.u[0].x() - 0.1 * std::cos(w * T), end.v[0].x() / w + 0.1 * std::sin(w * T)));
+    }
+    // dt ~ tolerance^(1/3), error ~ dt^2; steps that stay between two sizes leave some room
+    const double expected = std::pow(100., 2. / 3);
+    EXPECT_GT(errors[0] / errors[1], expected / 2);
+    EXPECT_LT(errors[0] / errors[1], expected * 2);
+    EXPECT_LT(errors[1], 1e-4);
+}
+
+TEST(TimeError, LetsStepsGrowOnceTheMotionHasDied) {
+    support::SceneRun run;
+    support::run_scene(run, scene_file("damped.yaml", one_element("1e-6 m", ", stiffness_damping: 1 s")),
+                       {{"stages.swing.duration", "64 s"}, {"solver.smallest_step", "1e-5"}});
+    const double end = last(run).time;
+    const auto within = [&](double from, double to) {
+        return std::ranges::count_if(run.steps, [&](const auto& step) { return step.time > from && step.time <= to; });
+    };
+    EXPECT_GT(within(1, 5), 20);
+    EXPECT_LE(within(end - 32, end), 4);
+}
+
+/// The acceleration of nodes without mass means nothing: it must not cut steps.
+TEST(TimeError, IgnoresNodesWithoutMass) {
+    support::SceneRun kept, moved;
+    for (auto* run : {&kept, &moved})
+        support::run_scene(*run, support::shipped("validation/bouncing_rod.yaml"),
+                           {{"stages.bounce.duration", "1"},
+                            {"stages.bounce.steps", "200"},
+                            {"stages.bounce.control.error_tolerance", "2e-4"},
+                            {"stages.bounce.analysis.dynamic.contact_mass", run == &kept ? "kept" : "redistributed"}});
+    EXPECT_LE(moved.attempts, kept.attempts * 1.2);
+}
+
 TEST(Mass, MovedOffContactNodesStaysInTheBody) {
     support::SceneRun run;
     support::run_scene(run, support::shipped("validation/bouncing_rod.yaml"),

@@ -35,6 +35,7 @@ struct MasterNodes {
     std::vector<Index> node;    ///< (vertices) global
     std::vector<Index> image{}; ///< (vertices) into images; empty: every vertex is its node
     std::vector<contact::Image> images{contact::Image{}};
+    std::vector<double> thickness{}; ///< (vertices) of the body behind, m; empty: not asked for
 };
 
 struct ContactOptions {
@@ -62,6 +63,10 @@ public:
     [[nodiscard]] const contact::MasterSurface& master() const { return *master_; }
     [[nodiscard]] const std::vector<Index>& master_nodes() const { return master_nodes_.node; }
     [[nodiscard]] const ContactOptions& options() const { return options_; }
+    /// Least thickness of the body behind a facet's vertices, m; infinite where none was given.
+    [[nodiscard]] double thickness(Index facet) const;
+    /// The smallest of all facet sizes and thicknesses, m: motions well below it leave no doubt about the side of a node.
+    [[nodiscard]] double finest() const { return finest_; }
     /// Positions of the master's vertices, mirror images among them.
     [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const;
     /// The vertex that stands for the node itself of which `vertex` may be an image.
@@ -78,6 +83,8 @@ public:
     Index refresh(const std::vector<Vec3>& x) { return master_->refresh(vertices(x)); }
 
     [[nodiscard]] const contact::ContactPoint& point(Index j) const { return points_[j]; }
+    /// Closest point of slave j on its facet at the last evaluation, whether or not there is contact.
+    [[nodiscard]] const contact::FacetHit& hit(Index j) const { return hits_[j]; }
     /// Global nodes of the patch of slave j, in the order of point(j).weights.
     [[nodiscard]] const std::vector<Index>& point_nodes(Index j) const { return point_nodes_[j]; }
     /// Global nodes of the patch that the facet of slave j would use, whether or not there is contact.
@@ -125,6 +132,7 @@ private:
     std::unique_ptr<contact::MasterSurface> master_;
     contact::FacetSearch search_;
     ContactOptions options_;
+    double finest_ = 0;
 
     std::vector<double> inertia_; ///< (slaves) N/m
     std::vector<char> held_;      ///< (slaves) of the current stage

@@ -244,10 +244,18 @@ struct DynamicAnalysis {
     bool operator==(const DynamicAnalysis&) const = default;
 };
 
+/// A length, or a fraction of another one that depends on the place.
+struct RelativeLength {
+    double value = 0;    ///< m, or the fraction
+    bool metres = false; ///< written with a unit
+    bool operator==(const RelativeLength&) const = default;
+};
+
 /// What an attempted step must keep to; one that does not is repeated with a smaller dt.
 struct StepControl {
-    std::optional<double>
-        allowed_interpenetration;   ///< of the facet size; not given: 0.05 in dynamics, no bound in statics
+    /// A fraction is one of the facet size. Not given: 0.05 in dynamics, no bound in statics.
+    std::optional<RelativeLength> allowed_interpenetration;
+    std::optional<double> error_tolerance; ///< of the displacement, in one dynamic step, m; not given: no bound
     double energy_tolerance = 0.01; ///< rise beyond external work in one dynamic step, of kinetic plus strain energy
     double growth = 2;              ///< of dt after an easy step, up to the stage's step
     bool operator==(const StepControl&) const = default;

@@ -17,9 +17,10 @@ struct Integrator {
 
     /// Displacement at t + dt for which the acceleration stays a_n, m.
     [[nodiscard]] Vec3 predictor(const Vec3& u_n, const Vec3& v_n, const Vec3& a_n, double dt) const;
-    /// Estimate of the error made in this step, m: dt^2 |beta - 1/6| |a - a_n| for Newmark's formulas, up to 2.5 times too
-    /// large for alpha_m != alpha_f, where a_n belongs to another time than t. For backward Euler
-    /// dt^2/2 |a - a_n|, dt times the local error of its velocity; that of its displacement, dt^2/2 |a|, is not in it.
+    /// Estimate of the error made in this step, m: dt^2 |beta - 1/6 + (alpha_m - alpha_f)/2| |a - a_n|, exact but for the next
+    /// order once a_n belongs to its time: u_n + dt v_n + dt^2/2 a_n + beta dt^2 (a - a_n) against Taylor's series. For
+    /// backward Euler dt^2/2 |a - a_n|, dt times the local error of its velocity; that of its displacement, dt^2/2 |a|, is
+    /// not in it.
     [[nodiscard]] double local_error(const Vec3& a, const Vec3& a_n, double dt) const;
 };
 

@@ -46,6 +46,7 @@ struct Stage {
     int steps = 1;
     std::optional<Dynamics> dynamics;               ///< absent: static
     StepLimits limits;                              ///< g_p in facet sizes; dt_max is the stage's step
+    bool follow_paths = false;                      ///< of slave nodes, see CollisionCheck
     bool ramp = true;                               ///< linear from the last value; false: full value at once
     std::vector<model::NodeConstraint> constraints; ///< every direction held during this stage
     std::vector<Vec3> force_start, force_end;       ///< (nodes) external forces at its two ends, N

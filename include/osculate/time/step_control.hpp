@@ -39,14 +39,16 @@ struct StepEvidence {
     double local_error = 0; ///< Integrator::local_error(), m
     double energy_jump = 0; ///< in the unit of its tolerance, >= 0
     double collision = 1;   ///< fraction of the step at which a path first goes through a surface; 1: none does
-    bool forced = false;    ///< repeat the step as it is, for tests of repetition
+    Index collision_pair = -1, collision_slave = -1; ///< whose path that is
+    bool forced = false;                             ///< repeat the step as it is, for tests of repetition
 };
 
 struct StepLimits {
     double allowed_interpenetration = std::numeric_limits<double>::infinity(); ///< g_p in GapEvidence::length, > 0
-    double smallest_lambda = 0.1;                                              ///< floor of lambda
-    double failure_lambda = 0.5; ///< where nothing tells how much to cut: failed solves, energy jumps
-    /// Of the proposals that aim at a bound itself: (28), the time error and collisions. Without it a gap that closes
+    bool in_metres = false;       ///< for whoever sets GapEvidence::length: 1 m, else the facet's size
+    double smallest_lambda = 0.1; ///< floor of lambda
+    double failure_lambda = 0.5;  ///< where nothing tells how much to cut: failed solves, energy jumps
+    /// Of the proposals that aim at a bound itself: (28) and the time error. Without it a gap that closes
     /// slower and slower creeps up to -g_p from below, cut by cut, and does not arrive.
     double reserve = 0.9;
     double dt_min = 0, dt_max = std::numeric_limits<double>::infinity(); ///< s
@@ -63,7 +65,7 @@ struct Decision {
     double dt = 0;     ///< of the next step after accept, of the same step after retry, s
     double lambda = 1; ///< fraction of a rejected attempt's dt that was called for, floor included, dt_min not
     double value = 0;  ///< what decided: gap g1, residual, local error, energy jump or fraction; accepted: the residual
-    Index pair = -1, slave = -1; ///< governing point of an interpenetration
+    Index pair = -1, slave = -1; ///< governing point of an interpenetration or a collision
     std::string cause;           ///< in words; empty when accepted
 };
 

@@ -48,24 +48,15 @@ public:
     [[nodiscard]] long factorisations() const { return factorisations_; }
     /// Master patches fitted anew between steps, see contact::MasterSurface::refresh().
     [[nodiscard]] long refreshed_patches() const { return refreshed_patches_; }
+    /// Paths of slave nodes that were followed facet by facet, see CollisionCheck.
+    [[nodiscard]] long paths_followed() const { return paths_followed_; }
     [[nodiscard]] double end_time() const;
 
 private:
     void run_stage(const Stage& stage, StepObserver& observer);
-    /// A slave node at the accepted state.
-    struct SlaveStart {
-        bool found = false; ///< the master has a point for it
-        double gap = 0;
-        Vec3 normal = Vec3::Zero();
-        Index facet = -1;
-    };
-    using SlaveStarts = std::vector<std::vector<SlaveStart>>; ///< per pair
-    [[nodiscard]] SlaveStarts slave_starts();
-    /// Gaps of the nodes open at the start, in the trial evaluated last at displacements u.
-    [[nodiscard]] std::vector<GapEvidence> trial_gaps(const SlaveStarts& before, const std::vector<Vec3>& u) const;
-    /// Nodes that have gone through the master in this step, and have lost it or see its far side now: with the gap that
-    /// their motion along the normal at the start has led to.
-    [[nodiscard]] std::vector<GapEvidence> passed_through(const SlaveStarts& before, const std::vector<Vec3>& u) const;
+    /// Largest of Integrator::local_error() over the nodes with mass, free directions, m.
+    [[nodiscard]] double local_error(const Dynamics& dynamics, const model::Constraints& constraints,
+                                     const std::vector<Vec3>& a, double dt) const;
     void refresh_patches();
     void name_node(Index node, Attempt& attempt) const;
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
@@ -91,7 +82,7 @@ private:
     Ledger ledger_;
     bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
-    long factorisations_ = 0, refreshed_patches_ = 0;
+    long factorisations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;
 };
 

@@ -1,0 +1,164 @@
+#include "osculate/time/collision_check.hpp"
+
+#include "osculate/contact/path_crossing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osculate::time {
+
+namespace {
+/// Cosine of the turn of the normal within a step.
+constexpr double same_side = 0.5;
+
+std::vector<contact::MovingFacets::Corners> corners(const mesh::HalfEdgeSurface& surface) {
+    std::vector<contact::MovingFacets::Corners> facets;
+    for (Index f = 0; f < surface.facet_count(); ++f) {
+        facets.push_back({-1, -1, -1, -1});
+        std::ranges::copy(surface.facet_vertices(f), facets.back().begin());
+    }
+    return facets;
+}
+} // namespace
+
+CollisionCheck::CollisionCheck(model::Model& model, const StepLimits& limits, bool paths, Timings& timings, int threads)
+    : model_(model), limits_(limits), paths_(paths), timings_(timings), threads_(threads) {}
+
+void CollisionCheck::begin_step(const model::State& state) {
+    x_ = model_.X;
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state.u[i];
+    starts_.clear();
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        model::ContactTerm& pair = *model_.pairs[p];
+        pair.begin_step(x_, state.contact[p], timings_, threads_);
+        pair.evaluate(x_, timings_, threads_);
+        auto& list = starts_.emplace_back(static_cast<std::size_t>(pair.size()));
+        for (Index j = 0; j < pair.size(); ++j) {
+            const contact::ContactPoint& point = pair.point(j);
+            const contact::FacetHit& hit = pair.hit(j);
+            Start& start = list[j];
+            start.closed = contact::is_closed(state.contact[p].status[j]);
+            start.facet = hit.facet;
+            start.distance = hit.distance - pair.options().hysteresis * pair.surface().facet_size(hit.facet);
+            start.found = point.found;
+            if (!point.found) continue;
+            start.gap = point.gap;
+            start.normal = point.normal;
+            start.facet = point.facet;
+        }
+    }
+}
+
+double CollisionCheck::length(std::size_t p, Index facet) const {
+    const model::ContactTerm& pair = *model_.pairs[p];
+    const double unit = limits_.in_metres ? 1 : pair.surface().facet_size(facet);
+    return std::min(unit, deepest * pair.thickness(facet) / limits_.allowed_interpenetration);
+}
+
+double CollisionCheck::allowed(std::size_t p, Index facet) const {
+    return limits_.allowed_interpenetration * length(p, facet);
+}
+
+bool CollisionCheck::speaks_by_normal(std::size_t p, const Start& start) const {
+    // facets of a smooth surface, which turn by 40 degrees at most, leave an arc by less than this part of their size
+    constexpr double hollow = 0.1;
+    return start.found && (!paths_ || start.closed || start.gap < allowed(p, start.facet) ||
+                           start.distance < hollow * model_.pairs[p]->surface().facet_size(start.facet));
+}
+
+bool CollisionCheck::sheet_lost(std::size_t p, Index j) const {
+    const contact::ContactPoint& point = model_.pairs[p]->point(j);
+    return !point.found || point.normal.dot(starts_[p][j].normal) <= same_side;
+}
+
+void CollisionCheck::add_trial(const std::vector<Vec3>& u, StepEvidence& evidence) {
+    add_normal_motions(u, evidence);
+    for (std::size_t p = 0; p < starts_.size(); ++p)
+        for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
+            const Start& start = starts_[p][j];
+            const contact::ContactPoint& point = model_.pairs[p]->point(j);
+            if (start.closed || !start.found || !(point.found || point.behind)) continue;
+            if (paths_ && sheet_lost(p, j)) continue; // of another sheet: told by motion or path
+            evidence.gaps.push_back({start.gap, point.gap, static_cast<Index>(p), j, length(p, point.facet)});
+        }
+    if (paths_) add_paths(u, evidence);
+}
+
+void CollisionCheck::add_solution(const std::vector<Vec3>& u, StepEvidence& evidence) {
+    add_normal_motions(u, evidence);
+    if (paths_) add_paths(u, evidence);
+}
+
+void CollisionCheck::add_normal_motions(const std::vector<Vec3>& u, StepEvidence& evidence) const {
+    for (std::size_t p = 0; p < starts_.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        for (Index j = 0; j < pair.size(); ++j) {
+            const Start& start = starts_[p][j];
+            if (!speaks_by_normal(p, start) || !sheet_lost(p, j)) continue;
+            const auto moved = [&](Index node) -> Vec3 { return model_.X[node] + u[node] - x_[node]; };
+            const auto around = pair.surface().facet_vertices(start.facet);
+            Vec3 motion = moved(pair.slaves().node[j]);
+            for (const Index v : around) motion -= moved(pair.master_nodes()[v]) / static_cast<double>(around.size());
+            evidence.gaps.push_back(
+                {start.gap, start.gap + start.normal.dot(motion), static_cast<Index>(p), j, length(p, start.facet)});
+        }
+    }
+}
+
+void CollisionCheck::add_paths(const std::vector<Vec3>& u, StepEvidence& evidence) {
+    std::vector<Vec3> x = model_.X;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += u[i];
+    for (std::size_t p = 0; p < starts_.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        // motion relative to the mean of the master's
+        const std::vector<Vec3> v0 = pair.vertices(x_), v1 = pair.vertices(x);
+        Vec3 mean = Vec3::Zero();
+        for (std::size_t v = 0; v < v0.size(); ++v) mean += (v1[v] - v0[v]) / static_cast<double>(v0.size());
+        double farthest = 0;
+        for (std::size_t v = 0; v < v0.size(); ++v) farthest = std::max(farthest, (v1[v] - v0[v] - mean).norm());
+
+        std::vector<Index> slaves;
+        for (Index j = 0; j < pair.size(); ++j) {
+            const Start& start = starts_[p][j];
+            const Index node = pair.slaves().node[j];
+            const double motion = (x[node] - x_[node] - mean).norm() + farthest;
+            if (start.closed || motion < start.distance) continue;
+            const bool far = motion > reach * pair.finest(), lost = !start.found || sheet_lost(p, j);
+            if (far || (lost && !speaks_by_normal(p, start))) slaves.push_back(j);
+        }
+        if (!slaves.empty()) follow(p, slaves, x, evidence);
+    }
+}
+
+void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, const std::vector<Vec3>& x,
+                            StepEvidence& evidence) {
+    const ScopedTimer timer(timings_, Part::search);
+    const model::ContactTerm& pair = *model_.pairs[p];
+    const contact::MovingFacets facets(corners(pair.surface()), pair.vertices(x_), pair.vertices(x));
+    const auto tolerated = [&](Index facet) { return allowed(p, facet); };
+    for (const Index j : slaves) {
+        ++followed_;
+        const Index node = pair.slaves().node[j];
+        const auto passage = facets.first_passage(x_[node], x[node], tolerated);
+        if (!passage) continue;
+        const contact::Crossing& entry = passage->entry;
+        const contact::ContactPoint& point = pair.point(j);
+        if (!passage->left && point.found && point.normal.dot(entry.normal) > same_side) {
+            // it ends behind facets of a sheet that it sees: what counts is the gap, that of a smooth surface perhaps
+            const std::vector<Index> around = pair.surface().vertex_neighbours(entry.facet);
+            const bool here = point.facet == entry.facet || std::ranges::count(around, point.facet) > 0;
+            const bool told = starts_[p][j].found && !sheet_lost(p, j);
+            if (here && (told || point.gap >= -tolerated(entry.facet))) continue;
+        }
+        // as (27) and (28): on to the surface, or from near it to what is allowed
+        const double least = tolerated(entry.facet);
+        const double fraction =
+            entry.before >= least ? entry.time : limits_.reserve * reduction_factor(entry.before, entry.after, least);
+        if (fraction >= evidence.collision) continue;
+        evidence.collision = fraction;
+        evidence.collision_pair = static_cast<Index>(p);
+        evidence.collision_slave = j;
+    }
+}
+
+} // namespace osculate::time

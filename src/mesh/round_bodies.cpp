@@ -1,4 +1,5 @@
 #include "mesh/o_grid.hpp"
+#include "mesh/structured_grid.hpp"
 #include "osculate/mesh/generators.hpp"
 
 #include <cmath>
@@ -112,6 +113,36 @@ Mesh make_cylinder(double radius, double length, const std::array<int, 3>& divis
         return x;
     };
     return mesh_o_grid(grid);
+}
+
+Mesh make_tube(double inner_radius, double thickness, double length, const std::array<int, 3>& divisions) {
+    require_positive("inner_radius", inner_radius);
+    require_positive("thickness", thickness);
+    require_positive("length", length);
+    const auto [around, along, through] = divisions;
+    if (around < 3) throw std::invalid_argument("elements around must be 3 or more, not " + std::to_string(around));
+    // around, along z and outward are right-handed
+    const auto position = [&, around = around, along = along, through = through](int i, int j, int k) -> Vec3 {
+        const double angle = 2 * std::numbers::pi * i / around, r = inner_radius + thickness * k / through;
+        return {r * std::cos(angle), r * std::sin(angle), length * j / along};
+    };
+    Mesh mesh = mesh_grid({divisions, {"first", "last", "z_min", "z_max", "inner", "outer"}, position}, CellType::hex8,
+                          BlockPattern::quad);
+    // the last row of nodes around is the first
+    const Index row = around + 1;
+    const auto closed = [&, around = around](Index node) { return node / row * around + node % row % around; };
+    std::vector<Vec3> nodes(mesh.nodes.size() / static_cast<std::size_t>(row) * static_cast<std::size_t>(around));
+    for (Index i = 0; i < mesh.node_count(); ++i)
+        if (i % row != around) nodes[static_cast<std::size_t>(closed(i))] = mesh.nodes[static_cast<std::size_t>(i)];
+    mesh.nodes = std::move(nodes);
+    for (ElementBlock& block : mesh.blocks)
+        for (Index& node : block.connectivity) node = closed(node);
+    mesh.surfaces.erase("first");
+    mesh.surfaces.erase("last");
+    for (auto& [name, facets] : mesh.surfaces)
+        for (Facet& facet : facets)
+            for (int c = 0; c < facet.count; ++c) facet.nodes[c] = closed(facet.nodes[c]);
+    return mesh;
 }
 
 } // namespace osculate::mesh

@@ -45,6 +45,11 @@ public:
             fault({"bodies", body, "mesh", tag, "divisions"}, "an even number of elements around a quarter",
                   std::to_string(around));
     }
+    void check_mesh(const std::string& body, const TubeMesh& m) {
+        if (m.divisions[0] < 3)
+            fault({"bodies", body, "mesh", "tube", "divisions"}, "3 or more elements around",
+                  std::to_string(m.divisions[0]));
+    }
     void check_mesh(const std::string& body, const FileMesh& m) {
         std::error_code ignored;
         if (!m.path.empty() && !std::filesystem::is_regular_file(m.path, ignored))

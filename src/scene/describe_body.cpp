@@ -122,6 +122,21 @@ void describe(Visitor& v, CylinderMesh& m) {
              m.grading);
 }
 
+void describe(Visitor& v, TubeMesh& m) {
+    v.number({.name = "inner_radius", .meaning = "Inner radius.", .unit = dimension::length, .range = range::size},
+             m.inner_radius);
+    v.number({.name = "thickness", .meaning = "Of the wall.", .unit = dimension::length, .range = range::size},
+             m.thickness);
+    v.number(
+        {.name = "length", .meaning = "Length along z, from z = 0.", .unit = dimension::length, .range = range::size},
+        m.length);
+    v.divisions({.name = "divisions",
+                 .meaning = "Elements around (3 or more), along z, through the wall.",
+                 .range = divisions_range,
+                 .largest_product = most_elements},
+                m.divisions);
+}
+
 void describe(Visitor& v, FileMesh& m) {
     v.text({.name = "path", .meaning = "VTU file; a relative path starts at the scene's folder.", .required = true},
            m.path);
@@ -147,13 +162,13 @@ void describe(Visitor& v, ElasticConstants& m) {
 }
 
 void describe(Visitor& v, MeshSpec& mesh) {
-    static const Words tags{"block", "half_tube", "contactor", "ball", "cylinder", "file"};
+    static const Words tags{"block", "half_tube", "contactor", "ball", "cylinder", "tube", "file"};
     one_of(v, tags,
            {"Axis-parallel block; surfaces x_min x_max y_min y_max z_min z_max.",
             "Lower half of a tube along y, open towards +z; surfaces inner outer y_min y_max rim_left rim_right.",
             "Block with a cylindrical underside along y; surfaces bottom top rear front left right.",
             "Solid ball about the origin; surface outer.", "Solid cylinder along z; surfaces z_min z_max outer.",
-            "Mesh from a VTU file."},
+            "Tube along z; surfaces inner outer z_min z_max.", "Mesh from a VTU file."},
            true, mesh.source, [&v](auto& alternative) { describe(v, alternative); });
     Placement& p = mesh.placement;
     v.number({.name = "scale",

@@ -171,5 +171,29 @@ TEST(RoundBodies, RefuseImpossibleArguments) {
     EXPECT_THROW((void)make_cylinder(1, 1, {0, 4, 8}), std::invalid_argument);
 }
 
+TEST(Tube, ClosesUponItself) {
+    const double inner = 2, thickness = 0.5, length = 3;
+    for (const int around : {3, 4, 24}) {
+        const Mesh tube = make_tube(inner, thickness, length, {around, 2, 2});
+        EXPECT_THAT(faults(tube), IsEmpty());
+        EXPECT_EQ(tube.node_count(), around * 3 * 3) << "no seam";
+        EXPECT_EQ(tube.surfaces.size(), 4U);
+        const auto facets = exterior_facets(tube);
+        std::size_t named = 0;
+        for (const auto& [name, surface] : tube.surfaces) named += surface.size();
+        EXPECT_EQ(named, facets.size());
+        const auto sum = testing::integrate(facets, tube.nodes);
+        EXPECT_LT(sum.area_vector.norm(), 1e-12 * sum.area);
+        const double section = around / 2. * std::sin(2 * pi / around); // of the polygon of radius 1
+        const double outer = inner + thickness;
+        EXPECT_NEAR(sum.volume, section * (outer * outer - inner * inner) * length, 1e-12 * sum.volume);
+        for (const auto& [name, radius] : {std::pair{"inner", inner}, {"outer", outer}})
+            for (const Facet& facet : tube.surfaces.at(name))
+                for (int c = 0; c < 4; ++c)
+                    EXPECT_NEAR(tube.nodes[facet.nodes[c]].head<2>().norm(), radius, round_off * radius);
+    }
+    EXPECT_THROW((void)make_tube(2, 1, 1, {2, 1, 1}), std::invalid_argument);
+}
+
 } // namespace
 } // namespace osculate::mesh

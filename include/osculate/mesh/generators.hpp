@@ -51,6 +51,11 @@ namespace osculate::mesh {
 [[nodiscard]] Mesh make_cylinder(double radius, double length, const std::array<int, 3>& divisions,
                                  Portion portion = Portion::full, double grading = 1);
 
+/// Tube of hex8 with its axis along z, from z = 0 to `length`; equal angles around, the first nodes at y = 0, x > 0.
+/// Surfaces inner outer z_min z_max.
+/// @param divisions  elements around, 3 or more, along z, through the thickness
+[[nodiscard]] Mesh make_tube(double inner_radius, double thickness, double length, const std::array<int, 3>& divisions);
+
 /// Moves every node to x = scale * (R X) + translation, R the rotation by `angle` (rad) about `axis`.
 /// @pre  scale > 0 and axis is not zero; std::invalid_argument otherwise
 void place(Mesh& mesh, const Vec3& axis, double angle, const Vec3& translation, double scale);

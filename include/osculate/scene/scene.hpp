@@ -71,6 +71,13 @@ struct CylinderMesh {
     bool operator==(const CylinderMesh&) const = default;
 };
 
+/// Tube about the z axis, from z = 0 up.
+struct TubeMesh {
+    double inner_radius = 1, thickness = 0.1, length = 1; ///< m
+    std::array<int, 3> divisions{24, 2, 1};               ///< around, along, through the thickness
+    bool operator==(const TubeMesh&) const = default;
+};
+
 struct FileMesh {
     std::string path; ///< VTU file; the reader makes it absolute
     bool operator==(const FileMesh&) const = default;
@@ -86,7 +93,7 @@ struct Placement {
 };
 
 struct MeshSpec {
-    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, FileMesh> source;
+    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, TubeMesh, FileMesh> source;
     Placement placement;
     bool operator==(const MeshSpec&) const = default;
 };

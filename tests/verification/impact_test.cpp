@@ -231,7 +231,7 @@ TEST(ThrownBall, TurnsByFrictionWithoutGainingEnergy) {
     support::SceneRun run;
     support::run_scene(run, support::shipped("validation/thrown_ball.yaml"),
                        {{"stages.throw.duration", full_size() ? "50 ms" : "25 ms"},
-                        {"stages.throw.steps", full_size() ? "500" : "250"}});
+                        {"stages.throw.steps", full_size() ? "500" : "50"}});
     const EnergyRecord record = energy_record(run);
     EXPECT_EQ(record.closings, 1);
     EXPECT_LT(record.largest_rise, allowed_rise);

@@ -15,9 +15,15 @@ using contact::Status;
 using model::Constraints;
 
 namespace {
-/// What a step's energy has risen by beyond external work, of the kinetic and strain energy at its start. Contact may feed
-/// it through its own work, and through the integrator: a force that ends with a node's release acts on, in the formulas
-/// that take it as linear over the step, along the way that opens the gap.
+bool touches(const model::State& state) {
+    return std::ranges::any_of(state.contact, [](const model::ContactHistory& pair) {
+        return std::ranges::any_of(pair.status, contact::is_closed);
+    });
+}
+
+/// What the energy of a step in which something touches has risen by beyond external work, of the kinetic and strain energy
+/// at its start. Contact may feed it through its own work, and through the integrator: a force that ends with a node's
+/// release acts on, in the formulas that take it as linear over the step, along the way that opens the gap.
 double energy_from_nowhere(const Ledger& before, const Ledger& after) {
     const auto free = [](const Ledger& ledger) { return ledger.kinetic + ledger.strain - ledger.external; };
     const double energy = before.kinetic + before.strain;
@@ -235,7 +241,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                     ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
                     if (std::isfinite(stage.limits.error_tolerance))
                         evidence.local_error = local_error(*dynamics, constraints, next.a, dt);
-                    evidence.energy_jump = energy_from_nowhere(ledger_, ledger);
+                    if (touches(state_) || touches(next)) evidence.energy_jump = energy_from_nowhere(ledger_, ledger);
                 }
             }
             decision = judge(evidence, stage.limits, dt, repeats);

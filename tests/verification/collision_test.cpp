@@ -2,6 +2,7 @@
 /// lands on a smooth surface, is left alone.
 
 #include "osculate/app/run.hpp"
+#include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
 
 #include <algorithm>
@@ -212,7 +213,7 @@ TEST(PlateImpact, FollowsNoPathWhereStepsAreShort) {
 
 TEST(PlateImpact, WritesWhatStoppedItIntoTheDiary) {
     app::RunOptions options;
-    options.directory = ::testing::TempDir() + "plate_impact";
+    options.directory = support::temporary("plate_impact");
     options.quiet = true;
     app::run(support::shipped("validation/plate_impact.yaml"),
              {{"stages.impact.duration", "0.1 ms"}, {"stages.impact.steps", "1"}}, options);

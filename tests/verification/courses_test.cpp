@@ -1,6 +1,7 @@
 /// Loads and motions by tables and expressions, on bars.
 
 #include "osculate/core/error.hpp"
+#include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 /// L = E = density = 1, nu = 0: wave speed 1. The end is at x = 0, the far face free or clamped.
 std::string bar(const std::string& stages, const std::string& clamped = "{}") {
-    const std::string path = testing::TempDir() + "course_bar.yaml";
+    const std::string path = support::temporary("course_bar.yaml");
     std::ofstream(path) << R"(
 bodies:
   bar:

@@ -1,10 +1,10 @@
 /// Bodies at finite strain against what is known of large rotations and strains.
 
 #include "osculate/fe/facet_quadrature.hpp"
+#include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -13,9 +13,7 @@ namespace {
 
 /// A scene of its own, written where the test runs.
 std::string scene_file(const std::string& name, const std::string& text) {
-    const std::string path = testing::TempDir() + name + ".yaml";
-    std::ofstream(path) << "name: " << name << "\n" << text;
-    return path;
+    return support::scene_file(name + ".yaml", "name: " + name + "\n" + text);
 }
 
 // ---- large strains ---------------------------------------------------------------------------------------------------

@@ -1,20 +1,16 @@
 /// Bodies without contact: the Cholesky path against exact solutions.
 
 #include "osculate/output/vtk_file.hpp"
+#include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <gtest/gtest.h>
 
 namespace osculate {
 namespace {
 
-std::string scene_file(const std::string& name, const std::string& text) {
-    const std::string path = testing::TempDir() + name;
-    std::ofstream(path) << text;
-    return path;
-}
+using support::scene_file;
 
 const std::string block = R"(
 bodies:
@@ -78,7 +74,7 @@ TEST(Bar, ReadFromAFileIsTheSameBar) {
     support::SceneRun generated, read;
     support::run_scene(generated, path);
     const mesh::Mesh& mesh = generated.plan.model.bodies[0].mesh;
-    const std::string file = testing::TempDir() + "bar.vtu";
+    const std::string file = support::temporary("bar.vtu");
     output::write_vtu(file, mesh.nodes, mesh.blocks, {}, 0);
     support::run_scene(read, path,
                        {{"bodies.bar.mesh", "{file: {path: '" + file + "'}}"},

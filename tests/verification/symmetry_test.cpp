@@ -1,9 +1,9 @@
 /// Half and quarter models give the answer of the full model.
 
+#include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 
@@ -56,9 +56,7 @@ solver: {tolerance: 1.0e-10}
 using Displacements = std::map<std::array<long, 4>, Vec3>; // by body and position in micrometres
 
 Displacements solve(const std::string& surface, bool half_x, bool half_y) {
-    const std::string path =
-        testing::TempDir() + "symmetry_" + surface + std::to_string(half_x) + std::to_string(half_y) + ".yaml";
-    std::ofstream(path) << scene(half_x, half_y);
+    const std::string path = support::scene_file("symmetry.yaml", scene(half_x, half_y));
     support::SceneRun run;
     support::run_scene(run, path, {{"contact.base.surface", surface}});
     Displacements u;

@@ -1,0 +1,59 @@
+/// What the tutorials promise, on their first part where they are long. The bouncing ball is in impact_test.
+
+#include "support/scene_runner.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace osculate {
+namespace {
+
+/// Velocity of a body's centre of mass along x.
+double velocity(const support::SceneRun& run, const char* name) {
+    const model::Model& model = run.plan.model;
+    const std::vector<Vec3>& v = run.steps.back().state.v;
+    std::vector<Vec3> p(v.size(), Vec3::Zero()), ones(v.size(), Vec3::UnitX()), m(v.size(), Vec3::Zero());
+    model.consistent_mass.multiply_add(v, p, 1);
+    model.consistent_mass.multiply_add(ones, m, 1);
+    double momentum = 0, mass = 0;
+    for (const model::Body& body : model.bodies)
+        for (Index i = body.first_node; body.name == name && i < body.first_node + body.nodes(); ++i) {
+            momentum += p[i].x();
+            mass += m[i].x();
+        }
+    return momentum / mass;
+}
+
+TEST(Tutorials, BlockSlidesDownTheSlopeOrStays) {
+    const double g = 10 / std::sqrt(1.25), down = 0.5 * g; // components of 10 m/s^2 on 1 : 2
+    support::SceneRun slides, stays;
+    support::run_scene(slides, support::shipped("tutorials/block_on_incline.yaml"));
+    support::run_scene(stays, support::shipped("tutorials/block_on_incline.yaml"), {{"contact.sole.friction", "0.6"}});
+    // it lets go once the hold, taken away within 0.05 s, is less than what friction leaves over
+    const double start = 0.05 * 0.3 / 0.5, net = down - 0.3 * g;
+    const double expected = net * (1 - 0.05) + 0.5 * net * (0.05 - start);
+    EXPECT_NEAR(velocity(slides, "block"), expected, 0.01 * expected);
+    EXPECT_LT(std::abs(velocity(stays, "block")), 1e-3);
+}
+
+TEST(Tutorials, BarsExchangeTheirVelocities) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/two_bars.yaml"));
+    // what remains is drawn out with the fronts of the waves, some elements of the sixty
+    EXPECT_NEAR(velocity(run, "left"), 0, 0.03 * 10);
+    EXPECT_NEAR(velocity(run, "right"), 10, 0.03 * 10);
+}
+
+TEST(Tutorials, RingIsBrakedByFrictionAlone) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/ring_on_cylinder.yaml"),
+                       {{"stages.spin.duration", "80 ms"}, {"stages.spin.steps", "40"}});
+    const time::Ledger &first = run.steps.front().ledger, &last = run.steps.back().ledger;
+    EXPECT_GT(last.friction, 0.3 * first.kinetic);
+    EXPECT_LT(last.kinetic, 0.7 * first.kinetic);
+    EXPECT_LT(std::abs(last.balance), 1e-6 * first.kinetic);
+    EXPECT_LT(last.kinetic + last.strain + last.friction - last.external, 1.02 * first.kinetic);
+}
+
+} // namespace
+} // namespace osculate

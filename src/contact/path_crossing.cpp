@@ -1,29 +1,16 @@
 #include "osculate/contact/path_crossing.hpp"
 
+#include "contact/box_tree.hpp"
+
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/geometries/segment.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
 
 namespace osculate::contact {
 
-namespace bg = boost::geometry;
-namespace bgi = boost::geometry::index;
-
 namespace {
-using Point = bg::model::point<double, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Point>;
-using Leaf = std::pair<Box, Index>;
-
-Point to_point(const Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
 int count(const MovingFacets::Corners& facet) {
     return facet[3] < 0 ? 3 : 4;
 }

@@ -1,22 +1,12 @@
 #include "osculate/time/ledger.hpp"
 
+#include "time/nodal_field.hpp"
+
 namespace osculate::time {
 
 namespace {
 
-using Field = std::vector<Vec3>;
-
-double dot(const Field& a, const Field& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-    return sum;
-}
-
-Field weighted(double a, const Field& x, double b, const Field& y) {
-    Field result(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) result[i] = a * x[i] + b * y[i];
-    return result;
-}
+using Field = NodalField;
 
 Field times(const model::BlockMatrix& A, const Field& x) {
     Field y(x.size(), Vec3::Zero());

@@ -138,7 +138,7 @@ std::vector<double> corners_between(std::vector<double> corners, double t_start,
     return times;
 }
 
-FittedStep fit_to(double t, double dt, const std::vector<double>& targets) {
+FittedStep fit_to(double t, double dt, std::span<const double> targets) {
     constexpr double same_time = 1e-12; // relative; sums of some thousand steps differ by less
     constexpr double same_step = 1e-9;  // relative; what a step is stretched rather than leave a sliver
     const auto after = [](double later, double earlier) {
@@ -148,7 +148,8 @@ FittedStep fit_to(double t, double dt, const std::vector<double>& targets) {
     if (next == targets.end()) return {dt, t + dt, false};
     const auto beyond = std::find_if(next, targets.end(), [&](double target) { return after(target, *next); });
     const double target = *(beyond - 1), left = target - t;
-    if (left <= dt * (1 + same_step)) return {left, target, true};
+    if (std::abs(left - dt) <= dt * same_step) return {dt, target, true}; // equal steps stay equal, bit by bit
+    if (left < dt) return {left, target, true};
     if (left < 2 * dt) dt = 0.5 * left;
     return {dt, t + dt, false};
 }

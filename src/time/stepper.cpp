@@ -30,6 +30,18 @@ double energy_from_nowhere(const Ledger& before, const Ledger& after) {
     return energy > 0 ? std::max({0.0, free(after) - free(before), after.contact - before.contact}) / energy : 0;
 }
 
+/// Ends of the stage's equal steps and corners of its courses, ascending.
+std::vector<double> times_to_hit(const Stage& stage, double t_start) {
+    std::vector<double> corners;
+    for (const Course& course : stage.courses)
+        corners.insert(corners.end(), course.corners.begin(), course.corners.end());
+    std::vector<double> times = corners_between(std::move(corners), t_start, stage.duration, stage.steps);
+    const double step = stage.duration / stage.steps;
+    for (int k = 1; k <= stage.steps; ++k) times.push_back(t_start + k * step);
+    std::ranges::sort(times);
+    return times;
+}
+
 } // namespace
 
 Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
@@ -122,6 +134,38 @@ void Stepper::refresh_patches() {
     for (auto& pair : model_.pairs) refreshed_patches_ += pair->refresh(x);
 }
 
+void Stepper::start_motion(const Stage& stage, const Constraints& constraints, StepLoad load) {
+    // a later one, after statics, starts at rest
+    state_.v = moved_ ? std::vector<Vec3>(model_.X.size(), Vec3::Zero()) : model_.initial_velocity;
+    moved_ = true;
+    for (Index node = 0; node < model_.nodes(); ++node) { // what holds a body does not move with it
+        Vec3 v = constraints.to_local(node, state_.v[node]);
+        for (int k = 0; k < 3; ++k)
+            if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
+        state_.v[node] = constraints.to_global(node, v);
+    }
+    add_follower_forces(load.pressures, model_, state_.u, load.force);
+    find_initial_acceleration(stage, constraints, load.force);
+    ledger_ = opened(model_, *stage.dynamics, state_);
+}
+
+Attempt Stepper::diary(const Decision& decision, const LadderResult& result, const Equilibrium& equilibrium,
+                       double time, double dt, int iterations) {
+    Attempt attempt;
+    attempt.attempt = ++attempts_;
+    attempt.time = time;
+    attempt.dt = dt;
+    attempt.iterations = iterations;
+    attempt.verdict = decision.verdict;
+    attempt.reason = decision.reason;
+    attempt.value = decision.value;
+    attempt.lambda = decision.lambda;
+    attempt.cause = decision.cause;
+    if (decision.reason == Reason::solver) attempt.cause = explain(result, equilibrium, attempt);
+    if (decision.pair >= 0) name_node(model_.pairs[decision.pair]->slaves().node[decision.slave], attempt);
+    return attempt;
+}
+
 void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const Constraints constraints(model_.nodes(), stage.constraints);
     const Dynamics* dynamics = stage.dynamics ? &*stage.dynamics : nullptr;
@@ -132,41 +176,19 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     for (Index node = 0; node < model_.nodes(); ++node)
         prescribed_start[node] = constraints.to_local(node, state_.u[node]);
 
-    if (dynamics != nullptr && state_.v.empty()) {
-        // a later one, after statics, starts at rest
-        state_.v = moved_ ? std::vector<Vec3>(model_.X.size(), Vec3::Zero()) : model_.initial_velocity;
-        moved_ = true;
-        for (Index node = 0; node < model_.nodes(); ++node) { // what holds a body does not move with it
-            Vec3 v = constraints.to_local(node, state_.v[node]);
-            for (int k = 0; k < 3; ++k)
-                if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
-            state_.v[node] = constraints.to_global(node, v);
-        }
-        StepLoad load = load_at(stage, constraints, prescribed_start, 0);
-        add_follower_forces(load.pressures, model_, state_.u, load.force);
-        find_initial_acceleration(stage, constraints, load.force);
-        ledger_ = opened(model_, *dynamics, state_);
-    }
+    if (dynamics != nullptr && state_.v.empty())
+        start_motion(stage, constraints, load_at(stage, constraints, prescribed_start, 0));
 
     const double t_start = state_.time, step = stage.duration / stage.steps;
     const bool controlled = std::isfinite(stage.limits.allowed_interpenetration) && !model_.pairs.empty();
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
     CollisionCheck collisions(model_, stage.limits, stage.follow_paths, timings_, options_.threads);
-    std::vector<double> corners;
-    for (const Course& course : stage.courses)
-        corners.insert(corners.end(), course.corners.begin(), course.corners.end());
-    corners = corners_between(std::move(corners), t_start, stage.duration, stage.steps);
-    auto corner = corners.begin();
-    for (int k = 0; k < stage.steps;) {
-        const double step_end = t_start + (k + 1) * step;
-        const bool to_corner = corner != corners.end() && *corner < step_end;
-        const double end = to_corner ? *corner : step_end; // a time that is hit exactly
-        constexpr double sliver = 1e-9;                    // of the step: round-off of the times, not a step of its own
-        const double left = end - state_.time;
-        const bool to_end = dt >= left * (1 - sliver);
-        const double time = to_end ? end : state_.time + dt, proposed = dt;
-        if (to_end && dt > left * (1 + sliver)) dt = left;
+    const std::vector<double> targets = times_to_hit(stage, state_.time);
+    for (std::size_t reached = 0; reached < targets.size();) {
+        const FittedStep fit = fit_to(state_.time, dt, std::span(targets).subspan(reached));
+        const double proposed = dt, time = fit.time;
+        dt = fit.dt;
 
         StepLoad load = load_at(stage, constraints, prescribed_start, time - t_start);
         std::vector<Vec3> u = state_.u;
@@ -249,18 +271,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         factorisations_ += solver.factorisations() - factorised;
         paths_followed_ += collisions.take_paths_followed();
 
-        Attempt attempt;
-        attempt.attempt = ++attempts_;
-        attempt.time = time;
-        attempt.dt = dt;
-        attempt.iterations = iterations;
-        attempt.verdict = decision.verdict;
-        attempt.reason = decision.reason;
-        attempt.value = decision.value;
-        attempt.lambda = decision.lambda;
-        attempt.cause = decision.cause;
-        if (decision.reason == Reason::solver) attempt.cause = explain(result, equilibrium, attempt);
-        if (decision.pair >= 0) name_node(model_.pairs[decision.pair]->slaves().node[decision.slave], attempt);
+        const Attempt attempt = diary(decision, result, equilibrium, time, dt, iterations);
         if (decision.verdict == Verdict::accept) {
             equilibrium.commit();
             state_ = std::move(next);
@@ -269,8 +280,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
             refresh_patches();
             repeats = 0;
-            if (to_end && to_corner) ++corner;
-            if (to_end && !to_corner) ++k;
+            reached += fit.on_target ? 1 : 0;
             dt = std::max(decision.dt, proposed); // a step that was short of a target alone keeps its size for the next
             continue;
         }

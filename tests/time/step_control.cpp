@@ -348,10 +348,10 @@ TEST(FitTo, LeavesNoSliverAndTakesNoLongerStep) {
 }
 
 TEST(FitTo, HalvesTheLastTwoSteps) {
-    const FittedStep first = fit_to(0.5, 0.4, {1});
+    const FittedStep first = fit_to(0.5, 0.4, std::vector<double>{1});
     EXPECT_FALSE(first.on_target);
     EXPECT_DOUBLE_EQ(first.dt, 0.25);
-    const FittedStep second = fit_to(first.time, 0.4, {1});
+    const FittedStep second = fit_to(first.time, 0.4, std::vector<double>{1});
     EXPECT_TRUE(second.on_target);
     EXPECT_EQ(second.time, 1);
     EXPECT_DOUBLE_EQ(second.dt, 0.25);
@@ -364,13 +364,13 @@ TEST(FitTo, EqualStepsStayEqualInSpiteOfRoundOff) {
 TEST(FitTo, TargetsEqualButForRoundOffAreOne) {
     const double sum = 0.1 + 0.2;
     ASSERT_GT(sum, 0.3);
-    const FittedStep step = fit_to(0, 1, {0.3, sum, 2});
+    const FittedStep step = fit_to(0, 1, std::vector<double>{0.3, sum, 2});
     EXPECT_EQ(step.time, sum);
-    EXPECT_EQ(fit_to(0.3, 1, {0.3, sum, 1}).time, 1);
+    EXPECT_EQ(fit_to(0.3, 1, std::vector<double>{0.3, sum, 1}).time, 1);
 }
 
 TEST(FitTo, RunsFreelyBeyondTheLastTarget) {
-    const FittedStep step = fit_to(3, 0.25, {1, 2});
+    const FittedStep step = fit_to(3, 0.25, std::vector<double>{1, 2});
     EXPECT_EQ(step.time, 3.25);
     EXPECT_EQ(step.dt, 0.25);
     EXPECT_FALSE(step.on_target);

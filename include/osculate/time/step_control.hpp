@@ -5,6 +5,7 @@
 #include "osculate/time/attempt.hpp"
 
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -84,7 +85,7 @@ struct FittedStep {
 /// leave less than itself is halved with what it leaves. Never longer than dt, but for round-off. Whoever takes a shorter
 /// step keeps dt for after the target, since judge() lets grow the step it was given.
 /// @param targets  ascending, s; those reached are passed over, those equal but for round-off count as one, the last
-[[nodiscard]] FittedStep fit_to(double t, double dt, const std::vector<double>& targets);
+[[nodiscard]] FittedStep fit_to(double t, double dt, std::span<const double> targets);
 
 /// Times at which the steps of a stage must end on top of the ends of its equal steps.
 /// @param corners  since the stage's start, s, in any order

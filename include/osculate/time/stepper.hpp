@@ -71,6 +71,11 @@ private:
     /// M a = f - K u - C v + contact forces of the state, a = 0 along held directions.
     void find_initial_acceleration(const Stage& stage, const model::Constraints& constraints,
                                    const std::vector<Vec3>& force);
+    /// Velocities, accelerations and ledger at the start of the first dynamic stage after statics, or at all.
+    void start_motion(const Stage& stage, const model::Constraints& constraints, StepLoad load);
+    /// The attempt's row of the diary.
+    Attempt diary(const Decision& decision, const LadderResult& result, const Equilibrium& equilibrium, double time,
+                  double dt, int iterations);
     [[nodiscard]] std::string explain(const LadderResult& result, const Equilibrium& equilibrium,
                                       Attempt& attempt) const;
 

@@ -5,6 +5,7 @@
 #include "app/fault.hpp"
 #include "app/gaps.hpp"
 #include "app/overloaded.hpp"
+#include "app/plan_items.hpp"
 #include "app/supports.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
@@ -51,7 +52,7 @@ public:
             add_gravity();
         }
         plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0, scene_.solver.predictor, threads_};
-        add_items();
+        plan_.items = plan_items(scene_, plan_);
         return std::move(plan_);
     }
 
@@ -392,8 +393,6 @@ private:
         }
     }
 
-    void add_items();
-
     const scene::Scene& scene_;
     int threads_;
     Timings& timings_;
@@ -401,57 +400,6 @@ private:
     std::vector<std::vector<mesh::Facet>> exterior_;
     std::vector<Fault> faults_;
 };
-
-void Compiler::add_items() {
-    const auto say = [&](std::string part, bool present, std::string reason) {
-        plan_.items.push_back({std::move(part), present, std::move(reason)});
-    };
-    const bool contact = !plan_.model.pairs.empty();
-    bool friction = false, smooth = false;
-    for (const auto& [name, pair] : scene_.contact) {
-        friction = friction || pair.friction > 0;
-        smooth = smooth || !std::holds_alternative<scene::FacetsSurface>(pair.master.surface);
-    }
-    const bool finite = plan_.model.finite_strain != nullptr;
-    say("stiffness", true, finite ? "of the bodies at small strain, assembled once" : "assembled once: constant");
-    say("finite strain", finite, finite ? "forces and tangent anew at every iterate" : "every body is linear");
-    const auto dynamic = std::count_if(plan_.stages.begin(), plan_.stages.end(),
-                                       [](const time::Stage& s) { return s.dynamics.has_value(); });
-    say("inertia, damping", dynamic > 0,
-        dynamic > 0 ? std::to_string(dynamic) + " dynamic stage(s)" : "every stage is static");
-    const auto courses = std::accumulate(plan_.stages.begin(), plan_.stages.end(), std::size_t{0},
-                                         [](std::size_t sum, const time::Stage& s) { return sum + s.courses.size(); });
-    const bool follows = std::any_of(plan_.stages.begin(), plan_.stages.end(),
-                                     [](const time::Stage& s) { return !s.follower_pressures.empty(); });
-    say("follower pressure", follows, follows ? "forces and tangent anew at every iterate" : "no pressure follows");
-    say("courses over time", courses > 0,
-        courses > 0 ? std::to_string(courses) + " load(s) and motion(s) by tables or expressions"
-                    : "every load and motion ramps or jumps to its value");
-    say("contact", contact, contact ? std::to_string(scene_.contact.size()) + " pair(s)" : "the scene has no pair");
-    double finest = std::numeric_limits<double>::infinity();
-    for (const auto& pair : plan_.model.pairs) finest = std::min(finest, pair->finest());
-    const bool paths = std::ranges::any_of(plan_.stages, &time::Stage::follow_paths);
-    say("collision check", paths,
-        paths ? fmt::format(
-                    "paths of open nodes, in steps that move them by {:.3g} m or more against a master, or in which "
-                    "they lose it",
-                    time::CollisionCheck::reach * finest)
-              : (contact ? "every stage is static" : "the scene has no pair"));
-    say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
-    say("smooth master surface", smooth,
-        smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
-    say("Cholesky factorisation", true,
-        contact ? "of the stiffness with softened contact, to precondition GMRES"
-                : "the tangent is symmetric positive definite");
-    say("GMRES", contact, contact ? "unsymmetric tangent with contact" : "not needed without contact");
-    const scene::Output& out = scene_.output;
-    say("nodal stresses",
-        std::any_of(out.body_fields.begin(), out.body_fields.end(),
-                    [](const std::string& f) { return f == "stress" || f == "von_mises"; }),
-        "output template '" + out.template_name + "'");
-    say("frames", out.frame_every > 0, "every " + std::to_string(out.frame_every) + " accepted step(s)");
-    say("iterations.csv", out.iterations, out.iterations ? "asked for" : "not asked for");
-}
 
 } // namespace
 

@@ -51,9 +51,9 @@ void FiniteStrain::for_each(const Block& block, int threads, Compute&& compute, 
     }
 }
 
-Eigen::Matrix3Xd FiniteStrain::gather(const Block& block, Index element, const std::vector<Vec3>& values) {
+FiniteStrain::ElementValues FiniteStrain::gather(const Block& block, Index element, const std::vector<Vec3>& values) {
     const Index n = block.kernel->nodes();
-    Eigen::Matrix3Xd local(3, n);
+    ElementValues local(3, n);
     for (Index i = 0; i < n; ++i) local.col(i) = values[static_cast<std::size_t>(block.node[element * n + i])];
     return local;
 }

@@ -34,6 +34,7 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     const ScopedTimer timer(timings_, Part::assembly);
     matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), std::move(couplings));
     if (model_.finite_strain) matrix_->expect_buckling();
+    if (!bodies_.symmetric()) matrix_->expect_unsymmetric();
     kept_couplings_ = matrix_->couplings();
     size_ = matrix_->size();
     if (!model.pairs.empty() || !bodies_.symmetric())

@@ -202,7 +202,7 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
     double farthest = 0;
     for (const Vec3& u : state_.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
     const double round_off =
-        sum * std::numeric_limits<double>::epsilon() / options_.tolerance * model::largest_stiffness(model_) * farthest;
+        sum * std::numeric_limits<double>::epsilon() / options_.tolerance * largest_stiffness_ * farthest;
     if (carried > round_off) return carried;
     // driven nodes that move ahead of their bodies; by a small part of it, as elements may not bear the whole
     constexpr double part = 1e-3;

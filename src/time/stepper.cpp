@@ -54,6 +54,7 @@ Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions 
         high = high.cwiseMax(X);
     }
     characteristic_length_ = (high - low).norm();
+    largest_stiffness_ = model::largest_stiffness(model);
 }
 
 double Stepper::end_time() const {

@@ -121,6 +121,21 @@ TEST(Transaction, RejectedAttemptsOfASlideLeaveNoTrace) {
     }
 }
 
+TEST(Transaction, RejectedAttemptsAtFiniteStrainLeaveNoTrace) {
+    std::vector<scene::Override> rubber = thrown;
+    rubber.push_back({"bodies.block.material", "{neo_hookean: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}"});
+    rubber.push_back({"stages.fall.analysis.dynamic.stiffness_damping", "0.1 ms"});
+    rubber.push_back({"stages.fall.follower_pressure", "{underside: 100 Pa}"});
+    const Diary straight = run("validation/falling_block.yaml", rubber, 0);
+    EXPECT_GT(straight.count(time::Reason::interpenetration), 3);
+    for (const int every : {2, 7}) {
+        const Diary rejected = run("validation/falling_block.yaml", rubber, every);
+        EXPECT_GT(rejected.count(time::Reason::forced), 5);
+        expect_same_bits(straight, rejected);
+    }
+    expect_same_bits(straight, run("validation/falling_block.yaml", rubber, 0, 3));
+}
+
 TEST(Transaction, ThreadsDoNotChangeABit) {
     expect_same_bits(run("validation/bouncing_rod.yaml", impact, 0, 1),
                      run("validation/bouncing_rod.yaml", impact, 0, 3));

@@ -54,8 +54,10 @@ private:
     /// order.
     template <class Compute, class Use>
     static void for_each(const Block& block, int threads, Compute&& compute, Use&& use);
-    /// Values (3 x n) of the nodes of an element.
-    static Eigen::Matrix3Xd gather(const Block& block, Index element, const std::vector<Vec3>& values);
+    /// (3 x n), on the stack: an element has ten nodes at the most.
+    using ElementValues = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 10>;
+    /// Values of the nodes of an element.
+    static ElementValues gather(const Block& block, Index element, const std::vector<Vec3>& values);
     template <class Kernel> WorstElement add_forces(std::vector<Vec3>& f, int threads, Kernel&& kernel) const;
     template <class Kernel> void add_tangents(BlockMatrix& K, int threads, Kernel&& kernel) const;
 

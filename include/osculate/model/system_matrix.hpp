@@ -41,6 +41,8 @@ public:
 
     /// Says that K may lose its positive definiteness.
     void expect_buckling() { matrix_.may_turn_indefinite = true; }
+    /// Says that K is not symmetric.
+    void expect_unsymmetric() { matrix_.symmetric_positive_definite = false; }
     /// Takes over new values of K.
     void stiffness_changed();
     /// Sets the values to the stiffness and the unit columns of the contact forces.

@@ -89,6 +89,7 @@ private:
     int attempts_ = 0;
     long factorisations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;
+    double largest_stiffness_ = 0; ///< model::largest_stiffness
 };
 
 } // namespace osculate::time

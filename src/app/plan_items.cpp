@@ -1,0 +1,71 @@
+#include "app/plan_items.hpp"
+
+#include "osculate/time/collision_check.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+#include <numeric>
+
+namespace osculate::app {
+
+std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
+    std::vector<PlanItem> items;
+    const auto say = [&](std::string part, bool present, std::string reason) {
+        items.push_back({std::move(part), present, std::move(reason)});
+    };
+    const bool contact = !plan.model.pairs.empty();
+    bool friction = false, smooth = false;
+    for (const auto& [name, pair] : scene.contact) {
+        friction = friction || pair.friction > 0;
+        smooth = smooth || !std::holds_alternative<scene::FacetsSurface>(pair.master.surface);
+    }
+    const bool finite = plan.model.finite_strain != nullptr;
+    say("stiffness", true, finite ? "of the bodies at small strain, assembled once" : "assembled once: constant");
+    say("finite strain", finite, finite ? "forces and tangent anew at every iterate" : "every body is linear");
+    const auto dynamic = std::count_if(plan.stages.begin(), plan.stages.end(),
+                                       [](const time::Stage& s) { return s.dynamics.has_value(); });
+    say("inertia, damping", dynamic > 0,
+        dynamic > 0 ? std::to_string(dynamic) + " dynamic stage(s)" : "every stage is static");
+    const auto courses = std::accumulate(plan.stages.begin(), plan.stages.end(), std::size_t{0},
+                                         [](std::size_t sum, const time::Stage& s) { return sum + s.courses.size(); });
+    const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
+                                     [](const time::Stage& s) { return !s.follower_pressures.empty(); });
+    say("follower pressure", follows, follows ? "forces and tangent anew at every iterate" : "no pressure follows");
+    say("courses over time", courses > 0,
+        courses > 0 ? std::to_string(courses) + " load(s) and motion(s) by tables or expressions"
+                    : "every load and motion ramps or jumps to its value");
+    say("contact", contact, contact ? std::to_string(scene.contact.size()) + " pair(s)" : "the scene has no pair");
+    double finest = std::numeric_limits<double>::infinity();
+    for (const auto& pair : plan.model.pairs) finest = std::min(finest, pair->finest());
+    const bool paths = std::ranges::any_of(plan.stages, &time::Stage::follow_paths);
+    say("collision check", paths,
+        paths ? fmt::format(
+                    "paths of open nodes, in steps that move them by {:.3g} m or more against a master, or in which "
+                    "they lose it",
+                    time::CollisionCheck::reach * finest)
+              : (contact ? "every stage is static" : "the scene has no pair"));
+    say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
+    say("smooth master surface", smooth,
+        smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
+    const bool unsymmetric = contact || follows || (finite && dynamic > 0);
+    say("Cholesky factorisation", true,
+        contact       ? "of the stiffness with softened contact, to precondition GMRES"
+        : unsymmetric ? "of a triangle of the tangent, to precondition GMRES"
+                      : "the tangent is symmetric positive definite");
+    say("GMRES", unsymmetric,
+        contact       ? "unsymmetric tangent with contact"
+        : follows     ? "unsymmetric tangent of follower pressures"
+        : unsymmetric ? "unsymmetric tangent of finite strain in dynamics"
+                      : "the tangent is symmetric");
+    const scene::Output& out = scene.output;
+    say("nodal stresses",
+        std::any_of(out.body_fields.begin(), out.body_fields.end(),
+                    [](const std::string& f) { return f == "stress" || f == "von_mises"; }),
+        "output template '" + out.template_name + "'");
+    say("frames", out.frame_every > 0, "every " + std::to_string(out.frame_every) + " accepted step(s)");
+    say("iterations.csv", out.iterations, out.iterations ? "asked for" : "not asked for");
+    return items;
+}
+
+} // namespace osculate::app

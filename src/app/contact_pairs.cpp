@@ -15,6 +15,26 @@ namespace osculate::app {
 
 namespace {
 
+/// Projectors of the slave nodes on the symmetry planes they lie on; empty where there is no such node.
+std::vector<Mat3> in_symmetry_planes(const scene::Scene& scene, const model::Model& model, const model::Set& slave,
+                                     const std::vector<Index>& nodes) {
+    std::map<Index, Mat3> kept;
+    for (const auto& [name, support] : scene.supports) {
+        if (!support.symmetry) continue;
+        const Vec3 normal = support.axes.col(0);
+        for (const model::Set& held : model.sets)
+            if (held.name == name && held.body == slave.body)
+                for (const Index node : held.nodes) {
+                    Mat3& P = kept.try_emplace(node, Mat3::Identity()).first->second;
+                    P = P * (Mat3::Identity() - normal * normal.transpose());
+                }
+    }
+    if (std::ranges::none_of(nodes, [&](Index node) { return kept.contains(node); })) return {};
+    std::vector<Mat3> in_plane;
+    for (const Index node : nodes) in_plane.push_back(kept.contains(node) ? kept.at(node) : Mat3::Identity());
+    return in_plane;
+}
+
 /// The master surface with its images beyond the symmetry planes that its body is held at. A patch cut off at such a
 /// plane would be one-sided and wrong there.
 contact::MirroredSurface mirror_at_symmetry(const scene::Scene& scene, const model::Model& model,
@@ -118,6 +138,9 @@ std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene,
         slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
     }
 
+    if (spec.discretisation == scene::Discretisation::mortar)
+        slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
+
     model::MasterNodes master_nodes;
     const std::vector<double> behind =
         exterior != nullptr ? thickness(model, master, *exterior) : std::vector<double>{};
@@ -130,6 +153,8 @@ std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene,
     }
     master_nodes.images = mirrored.images;
     model::ContactOptions options;
+    options.discretisation = spec.discretisation == scene::Discretisation::mortar ? model::Discretisation::mortar
+                                                                                  : model::Discretisation::node;
     options.friction = spec.friction;
     options.closing_tolerance = spec.closing_tolerance;
     auto shape = make_master(spec.master, *surface, vertices, options);

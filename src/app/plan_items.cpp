@@ -46,6 +46,10 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
                     time::CollisionCheck::reach * finest)
               : (contact ? "every stage is static" : "the scene has no pair"));
     say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
+    const bool mortar = std::ranges::any_of(
+        scene.contact, [](const auto& pair) { return pair.second.discretisation == scene::Discretisation::mortar; });
+    say("mortar weighting", mortar,
+        mortar ? "a pair averages gaps over its slave facets" : "no pair asks for discretisation: mortar");
     say("smooth master surface", smooth,
         smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
     const bool unsymmetric = contact || follows || (finite && dynamic > 0);

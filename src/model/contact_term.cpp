@@ -32,6 +32,18 @@ ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNode
     finest_ = std::numeric_limits<double>::infinity();
     for (Index f = 0; f < surface_->facet_count(); ++f)
         finest_ = std::min({finest_, surface_->facet_size(f), thickness(f)});
+    if (options_.discretisation == Discretisation::mortar) {
+        std::map<Index, Index> number;
+        for (Index j = 0; j < size(); ++j) number[slaves_.node[j]] = j;
+        std::vector<contact::SlaveFacet> facets;
+        for (const mesh::Facet& facet : slaves_.facets) {
+            contact::SlaveFacet& own = facets.emplace_back();
+            own.count = facet.count;
+            for (std::size_t c = 0; c < static_cast<std::size_t>(facet.count); ++c)
+                own.node[c] = number.at(facet.nodes[c]);
+        }
+        mortar_ = std::make_unique<contact::Mortar>(*surface_, *master_, facets, slave_positions(X), slaves_.in_plane);
+    }
     if (master_nodes_.image.empty()) return;
     std::map<Index, Index> own; // node -> vertex
     for (std::size_t v = 0; v < master_nodes_.node.size(); ++v)
@@ -56,8 +68,15 @@ std::vector<Vec3> ContactTerm::vertices(const std::vector<Vec3>& x) const {
 }
 
 const Mat3& ContactTerm::image(Index j, Index i) const {
-    const Index at = master_nodes_.image.empty() ? 0 : master_nodes_.image[points_[j].nodes[i]];
-    return master_nodes_.images[at].M;
+    const Index vertex = points_[j].nodes[i];
+    const bool own = master_nodes_.image.empty() || vertex >= surface_->vertex_count();
+    return master_nodes_.images[own ? 0 : master_nodes_.image[vertex]].M;
+}
+
+std::vector<Vec3> ContactTerm::slave_positions(const std::vector<Vec3>& x) const {
+    std::vector<Vec3> s;
+    for (const Index node : slaves_.node) s.push_back(x[node]);
+    return s;
 }
 
 ContactHistory ContactTerm::initial_history() const {
@@ -79,6 +98,7 @@ void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& h
             if (facet_[j] < 0 || !contact::is_closed(history.status[j]))
                 facet_[j] = search_.global(x[slaves_.node[j]], vertices_).facet;
     });
+    if (mortar_) mortar_->begin(facet_);
 }
 
 void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int threads) {
@@ -102,15 +122,24 @@ void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int thr
             }
     }
     const ScopedTimer timer(timings, Part::contact);
+    if (mortar_)
+        facet_changes_ += mortar_->evaluate(slave_positions(x), vertices_, search_, options_.hysteresis,
+                                            options_.changes_before_latch, facet_, points_, threads);
+    else
+        evaluate_nodes(x, threads);
+    for (Index j = 0; j < size(); ++j) {
+        point_nodes_[j].clear();
+        if (!points_[j].found) continue;
+        for (const Index v : points_[j].nodes)
+            point_nodes_[j].push_back(v < surface_->vertex_count() ? master_nodes_.node[v]
+                                                                   : slaves_.node[v - surface_->vertex_count()]);
+    }
+}
+
+void ContactTerm::evaluate_nodes(const std::vector<Vec3>& x, int threads) {
     master_->prepare(hits_, vertices_, threads);
     parallel_for(threads, size(), [&](Index begin, Index end) {
-        for (Index j = begin; j < end; ++j) {
-            contact::ContactPoint& point = points_[j];
-            master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, point);
-            point_nodes_[j].clear();
-            if (!point.found) continue;
-            for (const Index v : point.nodes) point_nodes_[j].push_back(master_nodes_.node[v]);
-        }
+        for (Index j = begin; j < end; ++j) master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, points_[j]);
     });
 }
 
@@ -134,6 +163,8 @@ Vec3 ContactTerm::drift(Index j, const std::vector<Vec3>& from, const std::vecto
         drift -=
             points_[j].weights(static_cast<Index>(i)) * (image(j, static_cast<Index>(i)) * (to[node] - from[node]));
     }
+    // averages over half of a node's facets, those on this side of a symmetry plane, lack what the others would cancel
+    if (!slaves_.in_plane.empty()) drift = slaves_.in_plane[j] * drift;
     return drift;
 }
 
@@ -141,7 +172,16 @@ contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, co
     return {lambda, points_[j].gap, points_[j].normal, drift(j, x_start_, x)};
 }
 
+Index ContactTerm::carriers(Index j) const {
+    return mortar_ ? mortar_->carriers(j) : static_cast<Index>(point_nodes_[j].size());
+}
+
+void ContactTerm::prepare_variations(const std::vector<Vec3>& x, std::span<const char> wanted, int threads) {
+    if (mortar_) mortar_->prepare_variations(slave_positions(x), vertices_, wanted, threads);
+}
+
 void ContactTerm::vary(Index j, const std::vector<Vec3>& x, contact::ContactVariation& variation) const {
+    if (mortar_) return mortar_->vary(j, points_[j], variation);
     contact::ContactPoint again;
     master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, again, &variation);
 }
@@ -151,11 +191,13 @@ void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, const con
     // dd = ds - Phi_i dx_i - (x_i - x_i,start) dPhi_i
     const contact::ContactPoint& point = points_[j];
     const auto n = static_cast<Index>(point_nodes_[j].size());
-    Eigen::Matrix3Xd moved(3, n);
-    for (Index i = 0; i < n; ++i) moved.col(i) = image(j, i) * (x[point_nodes_[j][i]] - x_start_[point_nodes_[j][i]]);
+    Eigen::Matrix3Xd moved(3, carriers(j));
+    for (Index i = 0; i < moved.cols(); ++i)
+        moved.col(i) = image(j, i) * (x[point_nodes_[j][i]] - x_start_[point_nodes_[j][i]]);
     dd.noalias() = -moved * variation.dweights;
     dd.leftCols<3>() += Mat3::Identity();
     for (Index i = 0; i < n; ++i) dd.middleCols<3>(3 + 3 * i) -= point.weights(i) * Mat3::Identity();
+    if (!slaves_.in_plane.empty()) dd = (slaves_.in_plane[j] * dd).eval();
 }
 
 Vec3 ContactTerm::master_force(Index j, Index i, const Vec3& lambda) const {
@@ -170,7 +212,16 @@ void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const cont
     // d f_i = dp_i L + p_i dL - dPhi_i lambda_T + Phi_i (n dL + L dn),   L = lambda . n,  lambda_T = lambda - L n
     const contact::ContactPoint& point = points_[j];
     const Vec3& n = point.normal;
-    const auto count = static_cast<Index>(point_nodes_[j].size());
+    const Index count = carriers(j);
+    if (mortar_) { // p_i = -W_i n: what is left is f_i = -W_i lambda
+        by_lambda.resize(3 * count, 3);
+        by_y.resize(3 * count, variation.dweights.cols());
+        for (Index i = 0; i < count; ++i) {
+            by_lambda.middleRows<3>(3 * i) = -point.weights(i) * Mat3::Identity();
+            by_y.middleRows<3>(3 * i).noalias() = -lambda * variation.dweights.row(i);
+        }
+        return;
+    }
     const double L = lambda.dot(n);
     const Vec3 lambda_T = lambda - L * n;
     const Eigen::Matrix<double, 1, Eigen::Dynamic> dL = lambda.transpose() * variation.dn;
@@ -194,7 +245,13 @@ void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const cont
     }
 }
 
-void ContactTerm::follow_facet(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const {
+void ContactTerm::follow_master(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const {
+    if (mortar_) {
+        nodes.assign(point_nodes_[j].begin(), point_nodes_[j].begin() + carriers(j));
+        follow.clear();
+        for (Index i = 0; i < carriers(j); ++i) follow.emplace_back(points_[j].weights(i) * image(j, i));
+        return;
+    }
     const auto vertices = surface_->facet_vertices(hits_[j].facet);
     const contact::FacetPatch facet(static_cast<int>(vertices.size()));
     Vector weights(facet.size());
@@ -215,6 +272,7 @@ void ContactTerm::fold(Index j, Matrix& A, MatrixX3& E, Matrix& G) const {
         const Mat3& M = image(j, i); // dx_vertex = M dx_node, f_node = M^T f_vertex
         A.middleCols<3>(3 + 3 * i) = (A.middleCols<3>(3 + 3 * i) * M).eval();
         G.middleCols<3>(3 + 3 * i) = (G.middleCols<3>(3 + 3 * i) * M).eval();
+        if (i >= carriers(j)) continue;
         E.middleRows<3>(3 * i) = (M.transpose() * E.middleRows<3>(3 * i)).eval();
         G.middleRows<3>(3 * i) = (M.transpose() * G.middleRows<3>(3 * i)).eval();
     }

@@ -261,8 +261,8 @@ void SystemMatrix::add_contact(Index j, std::span<const Index> masters, const Ei
         add_law(stride - 1, block, turn(coupling.slave, D, coupling.slave));
     }
 
-    // master forces
-    for (Index i = 0; i < n; ++i) {
+    // master forces, on the first of the nodes
+    for (Index i = 0; i < E.rows() / 3; ++i) {
         if (!lane.owns(masters[i])) continue;
         const auto master_rows = equilibrium_rows(masters[i]);
         const Index* slot = slots_[j].data() + (1 + place[i]) * stride;

@@ -112,9 +112,8 @@ Values master_contact_force(const Snapshot& snapshot, Index pair) {
     for (Index j = 0; j < term.size(); ++j) {
         const contact::ContactPoint& point = term.point(j);
         if (!point.found) continue;
-        for (std::size_t i = 0; i < point.nodes.size(); ++i)
-            force[term.own_vertex(point.nodes[i])] +=
-                term.master_force(j, static_cast<Index>(i), snapshot.state().contact[pair].lambda[j]);
+        for (Index i = 0; i < term.carriers(j); ++i)
+            force[term.own_vertex(point.nodes[i])] += term.master_force(j, i, snapshot.state().contact[pair].lambda[j]);
     }
     Values values;
     for (const Vec3& f : force) append(values, f);

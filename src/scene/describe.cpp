@@ -74,6 +74,12 @@ void describe(Visitor& v, Pair& pair) {
             .names = Names::set},
            pair.slave);
     v.group({.name = "master", .meaning = "Master side.", .required = true}, [&] { describe(v, pair.master); });
+    static const Words discretisations{"node", "mortar"};
+    word(v,
+         {.name = "discretisation",
+          .meaning = "Where contact is enforced: at the slave nodes, or on averages over the slave facets with dual "
+                     "shape functions, which pass the patch test on any meshes."},
+         discretisations, pair.discretisation);
     v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
     v.number({.name = "closing_tolerance",
               .meaning = "Of the facet size: a first solve closes nodes with a smaller gap.",

@@ -206,8 +206,8 @@ void Equilibrium::fill(double* F) {
             unbalanced_[slave] -= lambda;
             const contact::ContactPoint& point = pair.point(j);
             if (point.found)
-                for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i)
-                    unbalanced_[pair.point_nodes(j)[i]] -= pair.master_force(j, static_cast<Index>(i), lambda);
+                for (Index i = 0; i < pair.carriers(j); ++i)
+                    unbalanced_[pair.point_nodes(j)[i]] -= pair.master_force(j, i, lambda);
             const auto law = pair.law(j).residual(pair.state(j, x_, lambda), statuses_[p][j]);
             const Mat3 mirrored = symmetry_directions(slave);
             const Vec3 value = constraints_.to_local(slave, Vec3(law.value - mirrored * law.value + mirrored * lambda));
@@ -269,12 +269,12 @@ bool Equilibrium::cycles(double residual) {
     return round;
 }
 
+bool Equilibrium::reaches(std::size_t p, Index j) const {
+    return model_.pairs[p]->point(j).found && (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0));
+}
+
 void Equilibrium::cover_patches() {
     bool covered = true;
-    const auto reaches = [&](std::size_t p, Index j) {
-        const model::ContactTerm& pair = *model_.pairs[p];
-        return pair.point(j).found && (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0));
-    };
     for (std::size_t p = 0; p < model_.pairs.size() && covered; ++p)
         for (Index j = 0; j < model_.pairs[p]->size() && covered; ++j)
             covered = !reaches(p, j) || matrix_->covers(first_coupling_[p] + j, model_.pairs[p]->point_nodes(j));
@@ -303,7 +303,7 @@ void Equilibrium::linearise(std::size_t p, Index j, ContactTangent& tangent) con
     const auto law = pair.law(j).residual(pair.state(j, x_, lambda), status);
     const Mat3 mirrored = symmetry_directions(pair.slaves().node[j]), kept = Mat3::Identity() - mirrored;
     tangent.D = kept * law.by_lambda + mirrored;
-    tangent.reaches = pair.point(j).found && (status != Status::open || !lambda.isZero(0));
+    tangent.reaches = reaches(p, j);
     if (!tangent.reaches) return;
     pair.vary(j, x_, tangent.variation);
     pair.drift_variation(j, x_, tangent.variation, tangent.dd);
@@ -334,7 +334,7 @@ solve::FactorStatus Equilibrium::factorise() {
             if (!pair.point(j).found || !contact::is_closed(statuses_[p][j])) continue;
             soft.normal = pair.point(j).normal;
             soft.B = kept * (law.by_gap * soft.normal.transpose() + law.by_drift);
-            pair.follow_facet(j, soft.where.masters, soft.where.follow);
+            pair.follow_master(j, soft.where.masters, soft.where.follow);
         }
     }
     return preconditioner_->factorise(std::move(contacts));
@@ -358,7 +358,13 @@ const solve::SparseMatrix& Equilibrium::jacobian() {
     constexpr Index batch = 64; // tangents held at a time: each takes some 100 kB on a smooth master
     tangents_.resize(batch);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
+        model::ContactTerm& pair = *model_.pairs[p];
+        {
+            const ScopedTimer timer(timings_, Part::contact);
+            std::vector<char> reached;
+            for (Index j = 0; j < pair.size(); ++j) reached.push_back(reaches(p, j));
+            pair.prepare_variations(x_, reached, threads_);
+        }
         for (Index first = 0; first < pair.size(); first += batch) {
             const Index count = std::min(batch, pair.size() - first);
             {

@@ -1,15 +1,17 @@
 #pragma once
-/// One contact pair: slave nodes against a master surface, node to surface, constraints exact.
+/// One contact pair: slave nodes, or the slave facets around them, against a master surface; constraints exact.
 
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/coulomb.hpp"
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/contact/mirror.hpp"
+#include "osculate/contact/mortar.hpp"
 #include "osculate/contact/search.hpp"
 #include "osculate/core/timing.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,7 @@ struct SlaveNodes {
     std::vector<double> area;        ///< tributary area in the reference configuration, m^2
     std::vector<double> stiffness;   ///< c of the complementarity function, N/m
     std::vector<mesh::Facet> facets; ///< slave surface, global nodes
+    std::vector<Mat3> in_plane{};    ///< projectors on the symmetry planes a node lies on; empty: there are none
 };
 
 /// What the vertices of a master surface are: nodes, or mirror images of nodes.
@@ -38,7 +41,10 @@ struct MasterNodes {
     std::vector<double> thickness{}; ///< (vertices) of the body behind, m; empty: not asked for
 };
 
+enum class Discretisation { node, mortar };
+
 struct ContactOptions {
+    Discretisation discretisation = Discretisation::node;
     double friction = 0;      ///< Coulomb's mu
     double hysteresis = 0.03; ///< of the facet size, see contact::FacetSearch::track
     int changes_before_latch =
@@ -99,6 +105,8 @@ public:
     /// Declares which slave nodes are held or driven along some direction: their stick is elastic, see contact::Coulomb.
     void hold(std::vector<char> held) { held_ = std::move(held); }
     [[nodiscard]] contact::Coulomb law(Index j) const;
+    /// Opens a round of vary() at the positions x of the last evaluate(), for the slave nodes that are `wanted`.
+    void prepare_variations(const std::vector<Vec3>& x, std::span<const char> wanted, int threads);
     /// Variations of point j, evaluated anew at the positions of the last evaluate().
     void vary(Index j, const std::vector<Vec3>& x, contact::ContactVariation& variation) const;
     /// Derivative of the drift d of state() with respect to y = (slave, masters), 3 x 3+3n.
@@ -106,14 +114,17 @@ public:
                          Matrix& dd) const;
     /// Force on master node i of the patch of slave j: p_i (lambda . n) - Phi_i (lambda - n n . lambda).
     [[nodiscard]] Vec3 master_force(Index j, Index i, const Vec3& lambda) const;
-    /// Its derivatives over all masters: (3n x 3) by lambda, (3n x 3+3n) by y.
+    /// How many of point_nodes(j) carry force: the first ones. The others only bear on the gap.
+    [[nodiscard]] Index carriers(Index j) const;
+    /// Its derivatives over the m masters that carry force: (3m x 3) by lambda, (3m x 3+3n) by y.
     void master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
                                 MatrixX3& by_lambda, Matrix& by_y) const;
 
-    /// How the closest point on the closest facet of slave j follows that facet's nodes: shape function times image.
-    void follow_facet(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const;
-    /// Turns derivatives by the vertices of the patch into derivatives by their nodes: A (3 x 3+3n), E (3n x 3) and G
-    /// (3n x 3+3n) as master_force_variation() gives them. Nothing changes but for mirror images.
+    /// How the master moves below slave j: with mortar by its weights, else as the closest point of the closest facet.
+    /// Shape function times image for each node.
+    void follow_master(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const;
+    /// Turns derivatives by the vertices of the patch into derivatives by their nodes: A (3 x 3+3n), E (3m x 3) and G
+    /// (3m x 3+3n) as master_force_variation() gives them. Nothing changes but for mirror images.
     void fold(Index j, Matrix& A, MatrixX3& E, Matrix& G) const;
 
     [[nodiscard]] const std::vector<Index>& facets() const { return facet_; }
@@ -123,6 +134,9 @@ public:
 private:
     /// Linear part of the image that vertex i of the patch of slave j is.
     [[nodiscard]] const Mat3& image(Index j, Index i) const;
+    /// Positions of the slave nodes.
+    [[nodiscard]] std::vector<Vec3> slave_positions(const std::vector<Vec3>& x) const;
+    void evaluate_nodes(const std::vector<Vec3>& x, int threads);
 
     std::string name_;
     SlaveNodes slaves_;
@@ -130,6 +144,7 @@ private:
     MasterNodes master_nodes_;
     std::vector<Index> own_vertex_; ///< (vertices) empty without images
     std::unique_ptr<contact::MasterSurface> master_;
+    std::unique_ptr<contact::Mortar> mortar_; ///< null: contact at the slave nodes
     contact::FacetSearch search_;
     ContactOptions options_;
     double finest_ = 0;

@@ -48,8 +48,8 @@ public:
     /// Sets the values to the stiffness and the unit columns of the contact forces.
     void reset();
     /// Contact tangent of coupling j in global components: contact rows, derivatives A (3 x 3+3n) by (slave, masters) and
-    /// D (3 x 3) by the contact force; equilibrium rows of the masters, derivatives E (3n x 3) by the contact force and
-    /// G (3n x 3+3n) by (slave, masters). Only rows of nodes that `lane` owns are written.
+    /// D (3 x 3) by the contact force; equilibrium rows of the first m masters, derivatives E (3m x 3) by the contact
+    /// force and G (3m x 3+3n) by (slave, masters). Only rows of nodes that `lane` owns are written.
     void add_contact(Index j, std::span<const Index> masters, const Eigen::Ref<const Matrix>& A, const Mat3& D,
                      const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
                      const Eigen::Ref<const Matrix>& G, Lane lane = {});

@@ -208,9 +208,12 @@ struct MasterSpec {
     bool operator==(const MasterSpec&) const = default;
 };
 
+enum class Discretisation { node, mortar };
+
 struct Pair {
     std::string slave; ///< set
     MasterSpec master;
+    Discretisation discretisation = Discretisation::node;
     double friction = 0;                ///< Coulomb's coefficient mu
     double closing_tolerance = 0.02;    ///< of the facet size: a first solve closes nodes with a smaller gap
     double initial_overlap_limit = 0.1; ///< of the facet size: a deeper initial overlap is a fault

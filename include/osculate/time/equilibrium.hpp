@@ -102,6 +102,8 @@ private:
     void fill(double* F);
     void record(const double* F, int status_changes);
     [[nodiscard]] bool cycles(double residual);
+    /// Whether slave j of pair p has a contact partner and bears on it.
+    [[nodiscard]] bool reaches(std::size_t p, Index j) const;
     void cover_patches();
     [[nodiscard]] Mat3 symmetry_directions(Index node) const;
 

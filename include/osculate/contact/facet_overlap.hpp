@@ -1,0 +1,44 @@
+#pragma once
+/// Where a slave facet and a master facet lie over each other, as points to integrate at.
+
+#include "osculate/core/types.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace osculate::contact {
+
+/// One point of an overlap: on the slave facet, and where the line through it along the slave plane's normal meets the
+/// master facet.
+struct OverlapPoint {
+    Vec2 xi = Vec2::Zero(); ///< natural coordinates on the slave facet, as in FacetPatch
+    Vec2 u = Vec2::Zero();  ///< natural coordinates on the master facet
+    double area = 0;        ///< weight: area in the slave plane, m^2
+};
+
+/// The plane of a slave facet: through its centre, normal to its vector area.
+class SlavePlane {
+public:
+    /// @param corners (3 or 4) positions, counter-clockwise seen from outside
+    explicit SlavePlane(std::span<const Vec3> corners);
+
+    [[nodiscard]] const Vec3& normal() const { return normal_; } ///< unit, out of the slave
+    [[nodiscard]] double area() const { return area_; }          ///< of the facet seen along the normal, m^2
+    [[nodiscard]] Vec2 operator()(const Vec3& x) const { return {e1_.dot(x - centre_), e2_.dot(x - centre_)}; }
+
+    /// Points that integrate over the overlap of the two facets, projected along the normal: exactly for polynomials of
+    /// degree 4. Nothing where they do not overlap, or where the master facet does not face the slave.
+    /// @param master (3 or 4) corners of the master facet
+    [[nodiscard]] std::vector<OverlapPoint> overlap(std::span<const Vec3> master) const;
+
+private:
+    std::vector<Vec2> polygon_; ///< the slave facet in its plane
+    Vec3 centre_, normal_, e1_, e2_;
+    double area_ = 0;
+};
+
+/// Natural coordinates of point p in a plane triangle or quadrilateral; nothing where the iteration fails.
+[[nodiscard]] std::optional<Vec2> natural_coordinates(std::span<const Vec2> corners, const Vec2& p);
+
+} // namespace osculate::contact

@@ -1,0 +1,125 @@
+#pragma once
+/// Contact averaged over the slave facets with dual shape functions, in place of contact at the slave nodes.
+
+#include "osculate/contact/contact_point.hpp"
+#include "osculate/contact/facet_overlap.hpp"
+#include "osculate/contact/master_surface.hpp"
+#include "osculate/contact/search.hpp"
+#include "osculate/mesh/half_edge_surface.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace osculate::contact {
+
+/// A facet of the slave surface; corners in the numbering of the slave nodes.
+struct SlaveFacet {
+    int count = 0;
+    std::array<Index, 4> node{};
+    [[nodiscard]] const Index* begin() const { return node.data(); }
+    [[nodiscard]] const Index* end() const { return node.data() + count; }
+};
+
+/// Mortar weighting: every slave node j has the dual shape functions psi_j of its facets,
+///     psi = A N,  A = D M^-1,  M = int N N^T dA,  D = diag(int N dA),  so that  int psi_j N_k dA = delta_jk D_j,
+/// and its contact point is an average with them over the reference area of those facets,
+///     gap      g_j = int psi_j g dA / D_j                     normal  n_j = N_j / |N_j|,  N_j = int psi_j n dA / D_j
+///     weights  W_ji = int psi_j N_i dA / D_j                  a force lambda on node j loads master node i with -W_ji lambda.
+/// Gap and normal are those of the master surface, from one evaluation at each point of a rule on the slave facet. The
+/// weights are the shape functions N_i of the master's facets, so that a constant pressure meets the master as the
+/// loads that its elements take for constant: the patch test. They have kinks, and are integrated over the
+/// overlaps of slave and master facets.
+///
+/// Facets that lie over the master in part are averaged over that part, with dual functions made for it.
+/// In ContactPoint::nodes, numbers from surface.vertex_count() on are slave nodes, counted from there: the other nodes of
+/// the facets of j, which its gap depends on. The nodes that carry force come first, carriers(j) of them.
+/// After Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012; Popp et al., Int. J. Numer. Meth. Eng. 83 (2010) 1428-1465.
+class Mortar {
+public:
+    /// @param surface  topology of the master
+    /// @param facets   slave facets            @param S  (slaves) reference positions of the slave nodes
+    /// @param in_plane (slaves) projectors on the symmetry planes that slave nodes lie on; empty: there are none
+    Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, const std::vector<SlaveFacet>& facets,
+           const std::vector<Vec3>& S, std::vector<Mat3> in_plane);
+
+    /// Opens an attempt: from which master facet the points of every slave facet set out, (slaves) facets of the nodes.
+    void begin(std::span<const Index> facet_of_node);
+    /// Contact points of all slave nodes, slaves at s and master vertices at x. `node_facet` (slaves) becomes point.facet.
+    /// @returns how many points of slave facets have changed their master facet
+    int evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search, double hysteresis,
+                 int changes_before_latch, std::span<const Index> node_facet, std::vector<ContactPoint>& points,
+                 int threads);
+    /// Makes ready what vary() needs at the positions of the last evaluate(), for the slave nodes that are `wanted`.
+    void prepare_variations(const std::vector<Vec3>& s, const std::vector<Vec3>& x, std::span<const char> wanted,
+                            int threads);
+    /// First variations of point j with respect to (s_j, point.nodes). dweights has the rows of the carriers; dpressing
+    /// is left alone, as all of a force goes by the weights.
+    void vary(Index j, const ContactPoint& point, ContactVariation& variation) const;
+    /// How many of the nodes of point j carry force: the first ones.
+    [[nodiscard]] Index carriers(Index j) const { return carriers_[static_cast<std::size_t>(j)]; }
+
+private:
+    using Row4 = Eigen::Matrix<double, 4, 1>;
+    using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
+
+    /// A point that the gap is averaged from.
+    struct GapPoint {
+        Vec2 xi = Vec2::Zero();
+        Row4 N = Row4::Zero();
+        double weight = 0; ///< reference area
+        Index facet = -1;
+        int changes = 0;
+        FacetHit hit;
+        ContactPoint point;
+    };
+    struct Overlap {
+        Index facet = -1; ///< of the master
+        std::vector<OverlapPoint> points;
+    };
+    /// Linear map of shape functions to dual ones, and what they integrate to.
+    struct Dual {
+        bool usable = false;
+        Square A;
+        Row4 D = Row4::Zero();
+    };
+    struct Facet {
+        SlaveFacet corners;
+        std::vector<Vec3> X; ///< (corners) reference
+        double area = 0;     ///< reference
+        std::vector<GapPoint> gap_points;
+        std::vector<Overlap> overlaps;
+        Dual gap_dual, weight_dual;
+        // variations, in the order of y: corners, then vertices
+        std::vector<Index> gap_vertices, weight_vertices;
+        Matrix dgap;     ///< (corners x 3y)
+        Matrix dnormal;  ///< (3 corners x 3y)
+        Matrix dweights; ///< (corners * weight_vertices x 3y), corner by corner
+    };
+    struct Incidence {
+        Index facet;
+        int corner;
+    };
+
+    [[nodiscard]] std::vector<Vec3> corners(const Facet& facet, const std::vector<Vec3>& s) const;
+    void find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
+    void make_duals(Facet& facet) const;
+    void gather(Index j, const std::vector<Vec3>& x, ContactPoint& point);
+    void vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
+    void vary_weights(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
+    /// Sum of D_j over the facets whose gaps, or whose weights, count.
+    [[nodiscard]] double gap_area(Index j) const;
+    [[nodiscard]] double weight_area(Index j) const;
+    /// Area of the reference facet for a unit of natural coordinates, m^2.
+    [[nodiscard]] static double reference_area(const Facet& facet, const Vec2& xi);
+
+    const mesh::HalfEdgeSurface& surface_;
+    MasterSurface& master_;
+    std::vector<Facet> facets_;
+    std::vector<std::vector<Incidence>> incident_; ///< (slaves)
+    std::vector<Mat3> in_plane_;
+    std::vector<Index> carriers_;
+    std::vector<double> normal_length_; ///< (slaves) |N_j| of the last evaluation
+};
+
+} // namespace osculate::contact

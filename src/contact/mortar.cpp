@@ -1,0 +1,516 @@
+#include "osculate/contact/mortar.hpp"
+
+#include "osculate/contact/facet_patch.hpp"
+#include "osculate/core/parallel.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace osculate::contact {
+
+namespace {
+
+/// Facets that lie over the master with less than this part of their area do not count: the dual functions of a sliver
+/// are huge.
+constexpr double least_cover = 0.05;
+
+struct Shape {
+    Eigen::Matrix<double, 4, 1> N = Eigen::Matrix<double, 4, 1>::Zero();
+    Eigen::Matrix<double, 4, 2> N_a = Eigen::Matrix<double, 4, 2>::Zero();
+};
+
+Shape shape(int corners, const Vec2& u) {
+    Shape result;
+    if (corners == 3) {
+        result.N.head<3>() << 1 - u.x() - u.y(), u.x(), u.y();
+        result.N_a.topRows<3>() << -1, -1, 1, 0, 0, 1;
+        return result;
+    }
+    Vector N(4);
+    MatrixX2 N_a(4, 2);
+    FacetPatch(4).weights(u, N, N_a);
+    result.N = N;
+    result.N_a = N_a;
+    return result;
+}
+
+struct RulePoint {
+    Vec2 xi;
+    double weight;
+};
+
+/// Square: n x n Gauss points. Triangle: cut into n^2 equal ones with three points each. Both keep the facet's symmetries.
+std::vector<RulePoint> facet_rule(int corners, int n) {
+    std::vector<RulePoint> rule;
+    if (corners == 3) {
+        const double h = 1.0 / n;
+        const auto add = [&](const Vec2& a, const Vec2& b, const Vec2& c) {
+            for (int k = 0; k < 3; ++k) {
+                const Vec2 x = (a + b + c) / 6 + (k == 0 ? a : k == 1 ? b : c) / 2;
+                rule.push_back({x, h * h / 6});
+            }
+        };
+        for (int i = 0; i < n; ++i)
+            for (int k = 0; k < n - i; ++k) {
+                const Vec2 a(i * h, k * h);
+                add(a, a + Vec2(h, 0), a + Vec2(0, h));
+                if (i + k < n - 1) add(a + Vec2(h, h), a + Vec2(0, h), a + Vec2(h, 0));
+            }
+        return rule;
+    }
+    // Gauss points from the eigenvalues of the Jacobi matrix (Golub and Welsch 1969)
+    Matrix J = Matrix::Zero(n, n);
+    for (int i = 1; i < n; ++i) J(i, i - 1) = J(i - 1, i) = i / std::sqrt(4.0 * i * i - 1);
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(J);
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const auto w = [&](int at) { return 2 * eigen.eigenvectors()(0, at) * eigen.eigenvectors()(0, at); };
+            rule.push_back({Vec2(eigen.eigenvalues()(i), eigen.eigenvalues()(k)), w(i) * w(k)});
+        }
+    return rule;
+}
+
+/// Position of a vertex in an ascending list that has it.
+Index place_in(const std::vector<Index>& list, Index vertex) {
+    return static_cast<Index>(std::lower_bound(list.begin(), list.end(), vertex) - list.begin());
+}
+
+void sort_unique(std::vector<Index>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+} // namespace
+
+Mortar::Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, const std::vector<SlaveFacet>& facets,
+               const std::vector<Vec3>& S, std::vector<Mat3> in_plane)
+    : surface_(surface), master_(master), incident_(S.size()), in_plane_(std::move(in_plane)), carriers_(S.size(), 0),
+      normal_length_(S.size(), 0.0) {
+    // master facets near the slave's size need few points; smaller ones must not slip through between the points
+    double size = 0;
+    for (Index f = 0; f < surface.facet_count(); ++f) size += surface.facet_size(f) / surface.facet_count();
+    for (const SlaveFacet& corners : facets) {
+        Facet& facet = facets_.emplace_back();
+        facet.corners = corners;
+        for (int c = 0; c < corners.count; ++c) {
+            facet.X.push_back(S[static_cast<std::size_t>(corners.node[static_cast<std::size_t>(c)])]);
+            incident_[static_cast<std::size_t>(corners.node[static_cast<std::size_t>(c)])].push_back(
+                {static_cast<Index>(facets_.size()) - 1, c});
+        }
+        const double ratio = std::sqrt(SlavePlane(facet.X).area()) / size;
+        constexpr int fewest = 3, most = 8;
+        const int n = std::clamp(static_cast<int>(std::ceil(2 * ratio - 1e-6)) + 1, fewest, most);
+        for (const RulePoint& q : facet_rule(corners.count, corners.count == 3 ? n - 1 : n)) {
+            GapPoint& point = facet.gap_points.emplace_back();
+            point.xi = q.xi;
+            point.N = shape(corners.count, q.xi).N;
+            point.weight = q.weight * reference_area(facet, q.xi);
+            facet.area += point.weight;
+        }
+    }
+}
+
+double Mortar::reference_area(const Facet& facet, const Vec2& xi) {
+    const Shape N = shape(facet.corners.count, xi);
+    Vec3 a = Vec3::Zero(), b = Vec3::Zero();
+    for (std::size_t c = 0; c < facet.X.size(); ++c) {
+        a += N.N_a(static_cast<Index>(c), 0) * facet.X[c];
+        b += N.N_a(static_cast<Index>(c), 1) * facet.X[c];
+    }
+    return a.cross(b).norm();
+}
+
+std::vector<Vec3> Mortar::corners(const Facet& facet, const std::vector<Vec3>& s) const {
+    std::vector<Vec3> x;
+    for (const Index node : facet.corners) x.push_back(s[static_cast<std::size_t>(node)]);
+    return x;
+}
+
+void Mortar::begin(std::span<const Index> facet_of_node) {
+    for (Facet& facet : facets_)
+        for (GapPoint& q : facet.gap_points) {
+            int nearest = 0;
+            for (int c = 1; c < facet.corners.count; ++c)
+                if (q.N(c) > q.N(nearest) + 1e-12) nearest = c;
+            q.facet = facet_of_node[static_cast<std::size_t>(facet.corners.node[static_cast<std::size_t>(nearest)])];
+            q.changes = 0;
+        }
+}
+
+int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search,
+                     double hysteresis, int changes_before_latch, std::span<const Index> node_facet,
+                     std::vector<ContactPoint>& points, int threads) {
+    const auto count = static_cast<Index>(facets_.size());
+    const auto position = [&](const Facet& facet, const GapPoint& q) {
+        Vec3 at = Vec3::Zero();
+        for (int c = 0; c < facet.corners.count; ++c)
+            at += q.N(c) * s[static_cast<std::size_t>(facet.corners.node[static_cast<std::size_t>(c)])];
+        return at;
+    };
+    parallel_for(threads, count, [&](Index begin, Index end) {
+        for (Index f = begin; f < end; ++f)
+            for (GapPoint& q : facets_[static_cast<std::size_t>(f)].gap_points) {
+                const Vec3 at = position(facets_[static_cast<std::size_t>(f)], q);
+                q.hit = q.changes < changes_before_latch ? search.track(at, q.facet, x, hysteresis)
+                                                         : search.closest_on(q.facet, at, x);
+            }
+    });
+    int changed = 0;
+    std::vector<FacetHit> hits;
+    for (Facet& facet : facets_)
+        for (GapPoint& q : facet.gap_points) {
+            if (q.hit.facet != q.facet) {
+                q.facet = q.hit.facet;
+                ++q.changes;
+                ++changed;
+            }
+            hits.push_back(q.hit);
+        }
+    master_.prepare(hits, x, threads);
+    parallel_for(threads, count, [&](Index begin, Index end) {
+        for (Index f = begin; f < end; ++f) {
+            Facet& facet = facets_[static_cast<std::size_t>(f)];
+            for (GapPoint& q : facet.gap_points) master_.evaluate(position(facet, q), q.hit, x, q.point);
+            find_overlaps(facet, s, x);
+            make_duals(facet);
+        }
+    });
+    parallel_for(threads, static_cast<Index>(points.size()), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j) {
+            points[static_cast<std::size_t>(j)].facet = node_facet[static_cast<std::size_t>(j)];
+            gather(j, x, points[static_cast<std::size_t>(j)]);
+        }
+    });
+    return changed;
+}
+
+void Mortar::find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
+    facet.overlaps.clear();
+    const std::vector<Vec3> corner = corners(facet, s);
+    const SlavePlane plane(corner);
+    // from the facets below its points on to their neighbours, as long as they overlap
+    std::vector<Index> waiting, seen;
+    for (const GapPoint& q : facet.gap_points)
+        if (q.facet >= 0) waiting.push_back(q.facet);
+    sort_unique(waiting);
+    seen = waiting;
+    while (!waiting.empty()) {
+        const Index candidate = waiting.back();
+        waiting.pop_back();
+        std::vector<Vec3> master;
+        for (const Index v : surface_.facet_vertices(candidate)) master.push_back(x[static_cast<std::size_t>(v)]);
+        auto points = plane.overlap(master);
+        if (points.empty()) continue;
+        for (OverlapPoint& q : points) { // from the area in the plane to that of the reference facet
+            const Shape N = shape(facet.corners.count, q.xi);
+            Vec3 a = Vec3::Zero(), b = Vec3::Zero();
+            for (std::size_t c = 0; c < corner.size(); ++c) {
+                a += N.N_a(static_cast<Index>(c), 0) * corner[c];
+                b += N.N_a(static_cast<Index>(c), 1) * corner[c];
+            }
+            q.area *= reference_area(facet, q.xi) / plane.normal().dot(a.cross(b));
+        }
+        facet.overlaps.push_back({candidate, std::move(points)});
+        for (const Index v : surface_.facet_vertices(candidate))
+            for (const Index next : surface_.vertex_facets(v)) {
+                const auto at = std::lower_bound(seen.begin(), seen.end(), next);
+                if (at != seen.end() && *at == next) continue;
+                seen.insert(at, next);
+                waiting.push_back(next);
+            }
+    }
+    std::sort(facet.overlaps.begin(), facet.overlaps.end(),
+              [](const Overlap& a, const Overlap& b) { return a.facet < b.facet; });
+}
+
+void Mortar::make_duals(Facet& facet) const {
+    const int corners = facet.corners.count;
+    double covered = 0;
+    Square M;
+    const auto clear = [&] {
+        M = Square::Zero(corners, corners);
+        covered = 0;
+    };
+    const auto add = [&](const Row4& N, double weight) {
+        M += weight * N.head(corners) * N.head(corners).transpose();
+        covered += weight;
+    };
+    const auto finish = [&](Dual& dual) {
+        dual.usable = covered > least_cover * facet.area;
+        dual.D.setZero();
+        if (!dual.usable) return;
+        dual.D.head(corners) = M.rowwise().sum();
+        dual.A = dual.D.head(corners).asDiagonal() * M.inverse().eval();
+        // too few points, or points in a row
+        dual.usable = dual.A.allFinite() && dual.A.cwiseAbs().maxCoeff() * least_cover * least_cover < 1;
+    };
+    clear();
+    for (const GapPoint& q : facet.gap_points)
+        if (q.point.found) add(q.N, q.weight);
+    finish(facet.gap_dual);
+    clear();
+    for (Overlap& overlap : facet.overlaps)
+        for (const OverlapPoint& q : overlap.points) add(shape(corners, q.xi).N, q.area);
+    finish(facet.weight_dual);
+}
+
+double Mortar::gap_area(Index j) const {
+    double sum = 0;
+    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+        const Facet& facet = facets_[static_cast<std::size_t>(f)];
+        if (facet.gap_dual.usable) sum += facet.gap_dual.D(c);
+    }
+    return sum;
+}
+
+double Mortar::weight_area(Index j) const {
+    double sum = 0;
+    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+        const Facet& facet = facets_[static_cast<std::size_t>(f)];
+        if (facet.weight_dual.usable) sum += facet.weight_dual.D(c);
+    }
+    return sum;
+}
+
+void Mortar::gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
+    point.found = point.behind = false;
+    point.nodes.clear();
+    carriers_[static_cast<std::size_t>(j)] = 0;
+    const double by_gap = gap_area(j), by_weight = weight_area(j);
+    double deepest_gap = 0;
+    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)])
+        for (const GapPoint& q : facets_[static_cast<std::size_t>(f)].gap_points)
+            if (q.point.behind) {
+                point.behind = true;
+                deepest_gap = std::min(deepest_gap, q.point.gap);
+            }
+    if (!(by_gap > 0) || !(by_weight > 0)) {
+        if (point.behind) point.gap = deepest_gap;
+        return;
+    }
+    point.behind = false;
+
+    // gap and normal
+    double g = 0;
+    Vec3 N = Vec3::Zero();
+    std::vector<Index> carrying, sensing, slaves;
+    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+        const Facet& facet = facets_[static_cast<std::size_t>(f)];
+        for (const Index k : facet.corners)
+            if (k != j) slaves.push_back(surface_.vertex_count() + k);
+        if (facet.weight_dual.usable)
+            for (const Overlap& overlap : facet.overlaps) {
+                const auto v = surface_.facet_vertices(overlap.facet);
+                carrying.insert(carrying.end(), v.begin(), v.end());
+            }
+        if (!facet.gap_dual.usable) continue;
+        const int n = facet.corners.count;
+        for (const GapPoint& q : facet.gap_points) {
+            if (!q.point.found) continue;
+            const double psi = q.weight * facet.gap_dual.A.row(c).dot(q.N.head(n));
+            g += psi * q.point.gap;
+            N += psi * q.point.normal;
+            sensing.insert(sensing.end(), q.point.nodes.begin(), q.point.nodes.end());
+        }
+    }
+    if (!in_plane_.empty()) N = in_plane_[static_cast<std::size_t>(j)] * N;
+    N /= by_gap;
+    const double length = N.norm();
+    if (!(length > 0.1)) return; // normals that cancel
+    point.found = true;
+    point.gap = g / by_gap;
+    point.normal = N / length;
+    normal_length_[static_cast<std::size_t>(j)] = length;
+
+    // who takes part: carriers of force first
+    sort_unique(carrying);
+    sort_unique(sensing);
+    sort_unique(slaves);
+    point.nodes = carrying;
+    std::set_difference(sensing.begin(), sensing.end(), carrying.begin(), carrying.end(),
+                        std::back_inserter(point.nodes));
+    point.nodes.insert(point.nodes.end(), slaves.begin(), slaves.end());
+    carriers_[static_cast<std::size_t>(j)] = static_cast<Index>(carrying.size());
+
+    point.weights = Vector::Zero(static_cast<Index>(point.nodes.size()));
+    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+        const Facet& facet = facets_[static_cast<std::size_t>(f)];
+        if (!facet.weight_dual.usable) continue;
+        const int n = facet.corners.count;
+        for (const Overlap& overlap : facet.overlaps) {
+            const auto vertices = surface_.facet_vertices(overlap.facet);
+            Row4 sum = Row4::Zero();
+            for (const OverlapPoint& q : overlap.points)
+                sum += q.area * facet.weight_dual.A.row(c).dot(shape(n, q.xi).N.head(n)) *
+                       shape(static_cast<int>(vertices.size()), q.u).N;
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                point.weights(place_in(carrying, vertices[i])) += sum(static_cast<Index>(i)) / by_weight;
+        }
+    }
+    point.pressing = -point.weights * point.normal.transpose();
+    point.foot.setZero();
+    for (std::size_t i = 0; i < carrying.size(); ++i)
+        point.foot += point.weights(static_cast<Index>(i)) * x[static_cast<std::size_t>(carrying[i])];
+}
+
+void Mortar::prepare_variations(const std::vector<Vec3>& s, const std::vector<Vec3>& x, std::span<const char> wanted,
+                                int threads) {
+    parallel_for(threads, static_cast<Index>(facets_.size()), [&](Index begin, Index end) {
+        for (Index f = begin; f < end; ++f) {
+            Facet& facet = facets_[static_cast<std::size_t>(f)];
+            if (std::none_of(facet.corners.begin(), facet.corners.end(),
+                             [&](Index j) { return wanted[static_cast<std::size_t>(j)] != 0; }))
+                continue;
+            if (facet.gap_dual.usable) vary_gap(facet, s, x);
+            if (facet.weight_dual.usable) vary_weights(facet, s, x);
+        }
+    });
+}
+
+void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
+    const int n = facet.corners.count;
+    facet.gap_vertices.clear();
+    for (const GapPoint& q : facet.gap_points)
+        if (q.point.found)
+            facet.gap_vertices.insert(facet.gap_vertices.end(), q.point.nodes.begin(), q.point.nodes.end());
+    sort_unique(facet.gap_vertices);
+    const Index columns = 3 * (n + static_cast<Index>(facet.gap_vertices.size()));
+    facet.dgap.setZero(n, columns);
+    facet.dnormal.setZero(3 * n, columns);
+    static thread_local ContactVariation variation;
+    static thread_local ContactPoint again;
+    const std::vector<Vec3> corner = corners(facet, s);
+    for (const GapPoint& q : facet.gap_points) {
+        if (!q.point.found) continue;
+        Vec3 at = Vec3::Zero();
+        for (int c = 0; c < n; ++c) at += q.N(c) * corner[static_cast<std::size_t>(c)];
+        master_.evaluate(at, q.hit, x, again, &variation);
+        const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1> psi = q.weight * (facet.gap_dual.A * q.N.head(n));
+        const auto add = [&](Index to, Index from, double factor) {
+            for (int c = 0; c < n; ++c) {
+                facet.dgap.block<1, 3>(c, to) += (factor * psi(c)) * variation.dg.middleCols<3>(from);
+                facet.dnormal.block<3, 3>(3 * c, to) += (factor * psi(c)) * variation.dn.middleCols<3>(from);
+            }
+        };
+        for (int k = 0; k < n; ++k) add(3 * k, 0, q.N(k));
+        for (std::size_t i = 0; i < again.nodes.size(); ++i)
+            add(3 * (n + place_in(facet.gap_vertices, again.nodes[i])), 3 + 3 * static_cast<Index>(i), 1);
+    }
+}
+
+void Mortar::vary_weights(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
+    // at fixed xi, along the slave plane's normal d:  X(u) = s + t d
+    //     du_a = b^a . (ds - N_i dx_i + t dd),   b^a . X,b = delta_ab,  b^a . d = 0,   dd = (I - d d^T) dA / |A|
+    // what moves with the borders of the overlaps cancels, since N_i runs on across them
+    const int n = facet.corners.count;
+    facet.weight_vertices.clear();
+    for (const Overlap& overlap : facet.overlaps) {
+        const auto v = surface_.facet_vertices(overlap.facet);
+        facet.weight_vertices.insert(facet.weight_vertices.end(), v.begin(), v.end());
+    }
+    sort_unique(facet.weight_vertices);
+    const auto count = static_cast<Index>(facet.weight_vertices.size());
+    facet.dweights.setZero(n * count, 3 * (n + count));
+    const std::vector<Vec3> corner = corners(facet, s);
+    const SlavePlane plane(corner);
+    const Vec3& d = plane.normal();
+    // d(2A) of each corner, as the vector e of  dA = e x dx
+    std::array<Vec3, 4> edge{};
+    for (int c = 0; c < n; ++c) {
+        const auto at = [&](int k) { return corner[static_cast<std::size_t>((c + k) % n)]; };
+        edge[static_cast<std::size_t>(c)] = (at(n - 1) - at(1)) / 2;
+    }
+    for (const Overlap& overlap : facet.overlaps) {
+        const auto vertices = surface_.facet_vertices(overlap.facet);
+        const auto m = static_cast<Index>(vertices.size());
+        std::array<Index, 4> place{};
+        for (Index i = 0; i < m; ++i)
+            place[static_cast<std::size_t>(i)] = place_in(facet.weight_vertices, vertices[static_cast<std::size_t>(i)]);
+        for (const OverlapPoint& q : overlap.points) {
+            const Shape slave = shape(n, q.xi), master = shape(static_cast<int>(m), q.u);
+            Vec3 X = Vec3::Zero(), at = Vec3::Zero();
+            Mat3 frame; // X,1  X,2  d
+            frame.setZero();
+            frame.col(2) = d;
+            for (Index i = 0; i < m; ++i) {
+                const Vec3& xi = x[static_cast<std::size_t>(vertices[static_cast<std::size_t>(i)])];
+                X += master.N(i) * xi;
+                frame.leftCols<2>() += xi * master.N_a.row(i);
+            }
+            for (int c = 0; c < n; ++c) at += slave.N(c) * corner[static_cast<std::size_t>(c)];
+            const double t = d.dot(X - at);
+            const Eigen::Matrix<double, 2, 3> b = frame.inverse().topRows<2>();
+            const Eigen::Matrix<double, 4, 3> by_s = master.N_a * b; // dN_i / ds
+            const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1> psi =
+                q.area * (facet.weight_dual.A * slave.N.head(n));
+            for (Index i = 0; i < m; ++i) {
+                const Eigen::RowVector3d row = by_s.row(i);
+                const auto add = [&](Index column, const Eigen::RowVector3d& value) {
+                    for (int c = 0; c < n; ++c)
+                        facet.dweights.block<1, 3>(c * count + place[static_cast<std::size_t>(i)], column) +=
+                            psi(c) * value;
+                };
+                for (int c = 0; c < n; ++c) {
+                    // row . t (e x dx) / |A|
+                    const Vec3 turn = t / plane.area() * Vec3(row.transpose()).cross(edge[static_cast<std::size_t>(c)]);
+                    add(3 * c, slave.N(c) * row + turn.transpose());
+                }
+                for (Index k = 0; k < m; ++k) add(3 * (n + place[static_cast<std::size_t>(k)]), -master.N(k) * row);
+            }
+        }
+    }
+}
+
+void Mortar::vary(Index j, const ContactPoint& point, ContactVariation& variation) const {
+    const Index carried = carriers(j);
+    const auto columns = 3 + 3 * static_cast<Index>(point.nodes.size());
+    variation.dg.setZero(columns);
+    variation.dn.setZero(3, columns);
+    variation.dweights.setZero(carried, columns);
+    const double by_gap = gap_area(j), by_weight = weight_area(j);
+    // nodes: carriers ascending, then the rest of the vertices ascending, then slaves ascending
+    const auto first = point.nodes.begin(), last_carrier = first + carried;
+    const auto column = [&](Index node) -> Index {
+        const auto early = std::lower_bound(first, last_carrier, node);
+        if (early != last_carrier && *early == node) return 3 + 3 * static_cast<Index>(early - first);
+        return 3 + 3 * static_cast<Index>(std::lower_bound(last_carrier, point.nodes.end(), node) - first);
+    };
+    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+        const Facet& facet = facets_[static_cast<std::size_t>(f)];
+        const int n = facet.corners.count;
+        std::array<Index, 4> corner_column{};
+        for (int k = 0; k < n; ++k) {
+            const Index node = facet.corners.node[static_cast<std::size_t>(k)];
+            corner_column[static_cast<std::size_t>(k)] = node == j ? 0 : column(surface_.vertex_count() + node);
+        }
+        const auto each = [&](const std::vector<Index>& vertices, auto&& add) {
+            for (int k = 0; k < n; ++k) add(corner_column[static_cast<std::size_t>(k)], 3 * k);
+            for (std::size_t i = 0; i < vertices.size(); ++i) add(column(vertices[i]), 3 * (n + static_cast<Index>(i)));
+        };
+        const int corner = c;
+        if (facet.gap_dual.usable)
+            each(facet.gap_vertices, [&](Index to, Index from) {
+                variation.dg.middleCols<3>(to) += facet.dgap.block<1, 3>(corner, from) / by_gap;
+                variation.dn.middleCols<3>(to) += facet.dnormal.block<3, 3>(3 * corner, from) / by_gap;
+            });
+        if (!facet.weight_dual.usable) continue;
+        const auto count = static_cast<Index>(facet.weight_vertices.size());
+        std::vector<Index> row;
+        for (const Index v : facet.weight_vertices) row.push_back((column(v) - 3) / 3);
+        each(facet.weight_vertices, [&](Index to, Index from) {
+            for (Index i = 0; i < count; ++i)
+                variation.dweights.block<1, 3>(row[static_cast<std::size_t>(i)], to) +=
+                    facet.dweights.block<1, 3>(corner * count + i, from) / by_weight;
+        });
+    }
+    const Vec3& normal = point.normal;
+    Mat3 turn = (Mat3::Identity() - normal * normal.transpose()) / normal_length_[static_cast<std::size_t>(j)];
+    if (!in_plane_.empty()) turn = turn * in_plane_[static_cast<std::size_t>(j)];
+    variation.dn = (turn * variation.dn).eval();
+}
+
+} // namespace osculate::contact

@@ -102,9 +102,9 @@ Mortar::Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, cons
                 {static_cast<Index>(facets_.size()) - 1, c});
         }
         const double ratio = std::sqrt(SlavePlane(facet.X).area()) / size;
-        constexpr int fewest = 3, most = 8;
-        const int n = std::clamp(static_cast<int>(std::ceil(2 * ratio - 1e-6)) + 1, fewest, most);
-        for (const RulePoint& q : facet_rule(corners.count, corners.count == 3 ? n - 1 : n)) {
+        const int fewest = getenv("OSC_N") ? atoi(getenv("OSC_N")) : 2, most = 8;
+        const int n = std::clamp(static_cast<int>(std::ceil(ratio - 1e-6)) + 1, fewest, most);
+        for (const RulePoint& q : facet_rule(corners.count, n)) {
             GapPoint& point = facet.gap_points.emplace_back();
             point.xi = q.xi;
             point.N = shape(corners.count, q.xi).N;
@@ -383,6 +383,7 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
     facet.dnormal.setZero(3 * n, columns);
     static thread_local ContactVariation variation;
     static thread_local ContactPoint again;
+    variation.of_forces = false;
     const std::vector<Vec3> corner = corners(facet, s);
     for (const GapPoint& q : facet.gap_points) {
         if (!q.point.found) continue;

@@ -24,6 +24,7 @@ struct ContactPoint {
 
 /// First variations of a ContactPoint with respect to y = (s, x_1 .. x_n), the slave point and the n master nodes.
 struct ContactVariation {
+    bool of_forces = true; ///< asked for; false: dweights and dpressing are left alone where they cost something
     Eigen::Matrix<double, 1, Eigen::Dynamic> dg; ///< (3+3n) of the gap
     Eigen::Matrix<double, 3, Eigen::Dynamic> dn; ///< (3 x 3+3n) of the normal
     Matrix dweights;                             ///< (n x 3+3n)

@@ -102,7 +102,7 @@ Mortar::Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, cons
                 {static_cast<Index>(facets_.size()) - 1, c});
         }
         const double ratio = std::sqrt(SlavePlane(facet.X).area()) / size;
-        const int fewest = getenv("OSC_N") ? atoi(getenv("OSC_N")) : 2, most = 8;
+        constexpr int fewest = 2, most = 8;
         const int n = std::clamp(static_cast<int>(std::ceil(ratio - 1e-6)) + 1, fewest, most);
         for (const RulePoint& q : facet_rule(corners.count, n)) {
             GapPoint& point = facet.gap_points.emplace_back();
@@ -130,31 +130,35 @@ std::vector<Vec3> Mortar::corners(const Facet& facet, const std::vector<Vec3>& s
     return x;
 }
 
-void Mortar::begin(std::span<const Index> facet_of_node) {
-    for (Facet& facet : facets_)
-        for (GapPoint& q : facet.gap_points) {
-            int nearest = 0;
-            for (int c = 1; c < facet.corners.count; ++c)
-                if (q.N(c) > q.N(nearest) + 1e-12) nearest = c;
-            q.facet = facet_of_node[static_cast<std::size_t>(facet.corners.node[static_cast<std::size_t>(nearest)])];
-            q.changes = 0;
+Vec3 Mortar::position(const Facet& facet, const GapPoint& q, const std::vector<Vec3>& s) {
+    Vec3 at = Vec3::Zero();
+    for (int c = 0; c < facet.corners.count; ++c)
+        at += q.N(c) * s[static_cast<std::size_t>(facet.corners.node[static_cast<std::size_t>(c)])];
+    return at;
+}
+
+void Mortar::begin(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search,
+                   std::span<const Index> facet_of_node, int threads) {
+    parallel_for(threads, static_cast<Index>(facets_.size()), [&](Index begin, Index end) {
+        for (Index f = begin; f < end; ++f) {
+            Facet& facet = facets_[static_cast<std::size_t>(f)];
+            for (GapPoint& q : facet.gap_points) {
+                const Index from = facet_of_node[static_cast<std::size_t>(facet.corners.node[0])];
+                q.facet = search.track(position(facet, q, s), from, x, 0).facet;
+                q.changes = 0;
+            }
         }
+    });
 }
 
 int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search,
                      double hysteresis, int changes_before_latch, std::span<const Index> node_facet,
                      std::vector<ContactPoint>& points, int threads) {
     const auto count = static_cast<Index>(facets_.size());
-    const auto position = [&](const Facet& facet, const GapPoint& q) {
-        Vec3 at = Vec3::Zero();
-        for (int c = 0; c < facet.corners.count; ++c)
-            at += q.N(c) * s[static_cast<std::size_t>(facet.corners.node[static_cast<std::size_t>(c)])];
-        return at;
-    };
     parallel_for(threads, count, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f)
             for (GapPoint& q : facets_[static_cast<std::size_t>(f)].gap_points) {
-                const Vec3 at = position(facets_[static_cast<std::size_t>(f)], q);
+                const Vec3 at = position(facets_[static_cast<std::size_t>(f)], q, s);
                 q.hit = q.changes < changes_before_latch ? search.track(at, q.facet, x, hysteresis)
                                                          : search.closest_on(q.facet, at, x);
             }
@@ -174,7 +178,7 @@ int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, con
     parallel_for(threads, count, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             Facet& facet = facets_[static_cast<std::size_t>(f)];
-            for (GapPoint& q : facet.gap_points) master_.evaluate(position(facet, q), q.hit, x, q.point);
+            for (GapPoint& q : facet.gap_points) master_.evaluate(position(facet, q, s), q.hit, x, q.point);
             find_overlaps(facet, s, x);
             make_duals(facet);
         }
@@ -384,12 +388,9 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
     static thread_local ContactVariation variation;
     static thread_local ContactPoint again;
     variation.of_forces = false;
-    const std::vector<Vec3> corner = corners(facet, s);
     for (const GapPoint& q : facet.gap_points) {
         if (!q.point.found) continue;
-        Vec3 at = Vec3::Zero();
-        for (int c = 0; c < n; ++c) at += q.N(c) * corner[static_cast<std::size_t>(c)];
-        master_.evaluate(at, q.hit, x, again, &variation);
+        master_.evaluate(position(facet, q, s), q.hit, x, again, &variation);
         const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1> psi = q.weight * (facet.gap_dual.A * q.N.head(n));
         const auto add = [&](Index to, Index from, double factor) {
             for (int c = 0; c < n; ++c) {

@@ -98,7 +98,7 @@ void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& h
             if (facet_[j] < 0 || !contact::is_closed(history.status[j]))
                 facet_[j] = search_.global(x[slaves_.node[j]], vertices_).facet;
     });
-    if (mortar_) mortar_->begin(facet_);
+    if (mortar_) mortar_->begin(slave_positions(x), vertices_, search_, facet_, threads);
 }
 
 void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int threads) {

@@ -13,14 +13,23 @@ namespace {
 /// The solver's tolerance is 1e-10 here; what is left is round-off times the conditioning of the problem.
 constexpr double same = 1e-8;
 
-std::vector<scene::Override> base(const char* surface) {
-    return {{"contact.sliding.surface", surface},
+struct Pairing {
+    const char* surface;
+    const char* discretisation;
+};
+std::ostream& operator<<(std::ostream& out, const Pairing& p) {
+    return out << p.surface << ", " << p.discretisation;
+}
+
+std::vector<scene::Override> base(const Pairing& pairing) {
+    return {{"contact.sliding.surface", pairing.surface},
+            {"contact.sliding.discretisation", pairing.discretisation},
             {"stages.slide.steps", "3"},
             {"stages.slide.displacement.rear.y", "0.3 m"},
             {"solver.tolerance", "1e-10"}};
 }
 
-class Invariance : public testing::TestWithParam<const char*> {
+class Invariance : public testing::TestWithParam<Pairing> {
 protected:
     using Meshes = std::vector<mesh::Mesh>;
     static void leave(Meshes&) {}
@@ -153,7 +162,9 @@ TEST_P(Invariance, UnderTheComplementarityParameter) {
                   elastic_stick * one.steps[k].pairs[0].normal);
 }
 
-INSTANTIATE_TEST_SUITE_P(Masters, Invariance, testing::Values("facets", "rpim", "blend"));
+INSTANTIATE_TEST_SUITE_P(Masters, Invariance,
+                         testing::Values(Pairing{"facets", "node"}, Pairing{"rpim", "node"}, Pairing{"blend", "node"},
+                                         Pairing{"facets", "mortar"}, Pairing{"blend", "mortar"}));
 
 } // namespace
 } // namespace osculate

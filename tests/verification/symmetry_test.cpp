@@ -55,10 +55,20 @@ solver: {tolerance: 1.0e-10}
 
 using Displacements = std::map<std::array<long, 4>, Vec3>; // by body and position in micrometres
 
-Displacements solve(const std::string& surface, bool half_x, bool half_y) {
+struct Pairing {
+    const char* surface;
+    const char* discretisation;
+};
+std::ostream& operator<<(std::ostream& out, const Pairing& p) {
+    return out << p.surface << ", " << p.discretisation;
+}
+
+Displacements solve(const Pairing& pairing, bool half_x, bool half_y) {
     const std::string path = support::scene_file("symmetry.yaml", scene(half_x, half_y));
     support::SceneRun run;
-    support::run_scene(run, path, {{"contact.base.surface", surface}});
+    support::run_scene(
+        run, path,
+        {{"contact.base.surface", pairing.surface}, {"contact.base.discretisation", pairing.discretisation}});
     Displacements u;
     for (std::size_t b = 0; b < run.plan.model.bodies.size(); ++b) {
         const model::Body& body = run.plan.model.bodies[b];
@@ -71,7 +81,7 @@ Displacements solve(const std::string& surface, bool half_x, bool half_y) {
     return u;
 }
 
-class Symmetry : public testing::TestWithParam<const char*> {};
+class Symmetry : public testing::TestWithParam<Pairing> {};
 
 TEST_P(Symmetry, HalfAndQuarterModelsGiveTheFullAnswer) {
     const Displacements full = solve(GetParam(), false, false);
@@ -85,8 +95,10 @@ TEST_P(Symmetry, HalfAndQuarterModelsGiveTheFullAnswer) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Masters, Symmetry,
-                         testing::Values("facets", "blend")); // rpim takes sides where a node lies on a mesh line
+INSTANTIATE_TEST_SUITE_P(
+    Masters, Symmetry,
+    testing::Values(Pairing{"facets", "node"}, Pairing{"blend", "node"}, Pairing{"facets", "mortar"},
+                    Pairing{"blend", "mortar"})); // rpim takes sides where a node lies on a mesh line
 
 } // namespace
 } // namespace osculate

@@ -21,6 +21,7 @@ struct Case {
     const char* material = "linear_elastic";
     bool dynamic = false;
     const char* follower = "{}";
+    const char* discretisation = "node";
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -35,6 +36,9 @@ class Tangent : public testing::TestWithParam<Case> {};
 /// Truncation h^2 and round-off eps/h balance near h = 1e-5 of the scale, at 1e-9 to 1e-8 for residuals of order one.
 constexpr double difference_step = 1e-5;
 constexpr double tolerance = 1e-6;
+/// The borders of overlaps move with the facets. On warped quadrilaterals the weights are integrated to some 1e-5 of their
+/// variation only, and so far they depend on where those borders run, which the tangent does not follow.
+constexpr double moving_borders = 1e-5;
 
 TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     const Case& c = GetParam();
@@ -47,6 +51,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         {"bodies.contactor.hex_formulation", c.formulation},
         {"contact.sliding.surface", c.surface},
         {"contact.sliding.friction", "0.3"},
+        {"contact.sliding.discretisation", c.discretisation},
         {"supports.rear", c.support},
         {"bodies.tube.material", "{" + std::string(c.material) + ": {E: 30 MPa, nu: 0.2, density: 2000 kg/m^3}}"},
         {"bodies.contactor.material", "{" + std::string(c.material) + ": {E: 10 MPa, nu: 0.2, density: 2000 kg/m^3}}"},
@@ -117,7 +122,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         const double largest = std::max(dense.col(k).cwiseAbs().maxCoeff(), 1e-3 * 1e6 / scale);
         worst = std::max(worst, (difference - dense.col(k)).cwiseAbs().maxCoeff() / largest);
     }
-    EXPECT_LT(worst, tolerance);
+    EXPECT_LT(worst, std::string(c.discretisation) == "mortar" ? moving_borders : tolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -142,6 +147,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"follower_pressure", "hex8", "full", "facets", "{fix: [x]}", "linear_elastic", false, "{top: 3 MPa}"},
         Case{"dynamic_follower_pressure", "wedge6", "full", "facets", "{fix: [x]}", "neo_hookean", true,
              "{top: 3 MPa}"},
+        Case{"mortar_facets", "hex8", "full", "facets", "{fix: [x]}", "linear_elastic", false, "{}", "mortar"},
+        Case{"mortar_rpim_tet4", "tet4", "full", "{rpim: {ring: 1}}", "{fix: [x]}", "linear_elastic", false, "{}",
+             "mortar"},
+        Case{"mortar_blend", "hex8", "full", "blend", "{symmetry: [0.6, 0, 0.8]}", "linear_elastic", false, "{}",
+             "mortar"},
         Case{"dynamic_neo_hookean", "hex8", "full", "blend", "{fix: [x]}", "neo_hookean", true}),
     [](const auto& tested) { return tested.param.name; });
 

@@ -43,8 +43,10 @@ public:
     Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, const std::vector<SlaveFacet>& facets,
            const std::vector<Vec3>& S, std::vector<Mat3> in_plane);
 
-    /// Opens an attempt: from which master facet the points of every slave facet set out, (slaves) facets of the nodes.
-    void begin(std::span<const Index> facet_of_node);
+    /// Opens an attempt at the positions of its start: puts the points of every slave facet over their closest master
+    /// facets, found from those of the nodes, `facet_of_node` (slaves).
+    void begin(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search,
+               std::span<const Index> facet_of_node, int threads);
     /// Contact points of all slave nodes, slaves at s and master vertices at x. `node_facet` (slaves) becomes point.facet.
     /// @returns how many points of slave facets have changed their master facet
     int evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search, double hysteresis,
@@ -101,6 +103,7 @@ private:
         int corner;
     };
 
+    [[nodiscard]] static Vec3 position(const Facet& facet, const GapPoint& q, const std::vector<Vec3>& s);
     [[nodiscard]] std::vector<Vec3> corners(const Facet& facet, const std::vector<Vec3>& s) const;
     void find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
     void make_duals(Facet& facet) const;

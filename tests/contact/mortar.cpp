@@ -1,0 +1,188 @@
+/// Mortar weighting of a flat and of a curved interface, without bodies around them.
+
+#include "osculate/contact/mortar.hpp"
+
+#include "contact/surfaces.hpp"
+#include "support/random.hpp"
+
+#include <gtest/gtest.h>
+#include <map>
+
+namespace osculate::contact {
+namespace {
+
+using osculate::testing::Random;
+using testing::Surface;
+
+/// Underside of a block above z = 0, as slave facets with their own numbering.
+struct Slave {
+    std::vector<SlaveFacet> facets;
+    std::vector<Vec3> X;
+    std::vector<double> area; ///< consistent forces of a unit pressure
+
+    Slave(const Vec3& origin, const Vec3& size, std::array<int, 2> n, mesh::BlockPattern pattern) {
+        const mesh::Mesh mesh = mesh::make_block(origin, size, {n[0], n[1], 1}, mesh::CellType::hex8, pattern);
+        std::map<Index, Index> number;
+        for (const mesh::Facet& facet : mesh.surfaces.at("z_min")) {
+            SlaveFacet& own = facets.emplace_back();
+            own.count = facet.count;
+            for (int c = 0; c < facet.count; ++c) {
+                const auto [at, fresh] = number.try_emplace(facet.nodes[c], static_cast<Index>(X.size()));
+                if (fresh) X.push_back(mesh.nodes[facet.nodes[c]]);
+                own.node[c] = at->second;
+            }
+        }
+        area.assign(X.size(), 0.0);
+        for (const SlaveFacet& facet : facets) { // parallelograms and triangles: equal shares
+            std::vector<Vec3> corner;
+            for (const Index k : facet) corner.push_back(X[k]);
+            for (const Index k : facet) area[k] += SlavePlane(corner).area() / facet.count;
+        }
+    }
+};
+
+/// A mortar pairing evaluated at its reference positions, or at others.
+struct Pairing {
+    const Surface& master;
+    std::unique_ptr<MasterSurface> shape;
+    Slave slave;
+    Mortar mortar;
+    FacetSearch search;
+    std::vector<ContactPoint> points;
+    std::vector<Index> facet_of_node;
+
+    Pairing(const Surface& surface, std::unique_ptr<MasterSurface> geometry, Slave above)
+        : master(surface), shape(std::move(geometry)), slave(std::move(above)),
+          mortar(surface.topology, *shape, slave.facets, slave.X, {}), search(surface.topology),
+          points(slave.X.size()) {
+        search.build(master.x);
+        for (const Vec3& s : slave.X) facet_of_node.push_back(search.global(s, master.x).facet);
+        evaluate(slave.X, master.x);
+    }
+    void evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x) {
+        mortar.begin(s, x, search, facet_of_node, 1);
+        (void)mortar.evaluate(s, x, search, 0, 4, facet_of_node, points, 1);
+    }
+};
+
+constexpr double round_off = 1e-12;
+
+struct Case {
+    mesh::BlockPattern master, slave;
+};
+class FlatMortar : public ::testing::TestWithParam<Case> {
+protected:
+    Surface master = testing::block_top(GetParam().master); // [0, 5] x [0, 4], 0.5 m
+    static Slave slave(const Vec3& origin, const Vec3& size) { return {origin, size, {7, 3}, GetParam().slave}; }
+};
+
+TEST_P(FlatMortar, HandsAConstantPressureToTheMasterAsItsElementsTakeIt) {
+    // both surfaces end together: every master node must get int N_i dA
+    const Pairing pairing(master, make_blend_surface(master.topology, master.x, {}), slave({0, 0, 0}, {5, 4, 1}));
+    Vector got = Vector::Zero(master.topology.vertex_count());
+    for (std::size_t j = 0; j < pairing.points.size(); ++j) {
+        const ContactPoint& point = pairing.points[j];
+        ASSERT_TRUE(point.found);
+        EXPECT_NEAR(point.weights.sum(), 1, round_off);
+        for (Index i = 0; i < pairing.mortar.carriers(static_cast<Index>(j)); ++i)
+            got(point.nodes[i]) += pairing.slave.area[j] * point.weights(i);
+    }
+    Vector exact = Vector::Zero(got.size());
+    for (Index f = 0; f < master.topology.facet_count(); ++f) {
+        std::vector<Vec3> corner;
+        for (const Index v : master.topology.facet_vertices(f)) corner.push_back(master.x[v]);
+        for (const Index v : master.topology.facet_vertices(f))
+            exact(v) += SlavePlane(corner).area() / static_cast<double>(corner.size());
+    }
+    EXPECT_LT((got - exact).cwiseAbs().maxCoeff(), round_off);
+}
+
+TEST_P(FlatMortar, ReproducesLinearGapsAtTheNodes) {
+    const auto linear = [](const Vec3& X) { return 0.01 + 0.002 * X.x() - 0.003 * X.y(); };
+    Slave tilted = slave({0.6, 0.3, 0}, {4, 3, 1});
+    std::vector<Vec3> s = tilted.X;
+    for (Vec3& x : s) x.z() = linear(x);
+    Pairing pairing(master, make_facets_surface(master.topology), tilted);
+    pairing.evaluate(s, master.x);
+    for (std::size_t j = 0; j < s.size(); ++j) {
+        ASSERT_TRUE(pairing.points[j].found);
+        EXPECT_NEAR(pairing.points[j].gap, s[j].z(), round_off);
+        EXPECT_LT((pairing.points[j].normal - Vec3::UnitZ()).norm(), round_off);
+    }
+}
+
+TEST_P(FlatMortar, ActsOnOneLine) {
+    // sum_i W_ji x_i lies below slave node j, so that the forces on both sides have no moment
+    const Pairing pairing(master, make_facets_surface(master.topology), slave({0.6, 0.3, 0.1}, {4, 3, 1}));
+    for (std::size_t j = 0; j < pairing.points.size(); ++j)
+        EXPECT_LT((pairing.points[j].foot + Vec3(0, 0, 0.1) - pairing.slave.X[j]).norm(), round_off);
+}
+
+TEST_P(FlatMortar, KeepsToThePartThatLiesOverTheMaster) {
+    // a fifth of the slave overhangs; nodes whose facets still touch the master keep exact gaps and balanced forces
+    const Pairing pairing(master, make_facets_surface(master.topology), slave({1.2, 0.4, 0.2}, {4.75, 3, 1}));
+    int found = 0, lost = 0;
+    for (std::size_t j = 0; j < pairing.points.size(); ++j) {
+        if (!pairing.points[j].found) {
+            EXPECT_GT(pairing.slave.X[j].x(), 5.0);
+            ++lost;
+            continue;
+        }
+        ++found;
+        EXPECT_NEAR(pairing.points[j].gap, 0.2, round_off);
+        EXPECT_NEAR(pairing.points[j].weights.sum(), 1, round_off);
+        EXPECT_LT((pairing.points[j].foot + Vec3(0, 0, 0.2) - pairing.slave.X[j]).norm(), 1e-10); // small facets left
+    }
+    EXPECT_GT(found, 20);
+    EXPECT_GT(lost, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Patterns, FlatMortar,
+                         ::testing::Values(Case{mesh::BlockPattern::quad, mesh::BlockPattern::quad},
+                                           Case{mesh::BlockPattern::triangle, mesh::BlockPattern::quad},
+                                           Case{mesh::BlockPattern::hybrid, mesh::BlockPattern::triangle},
+                                           Case{mesh::BlockPattern::quad, mesh::BlockPattern::hybrid}));
+
+TEST(Mortar, VariesAsItsDifferencesSay) {
+    // a shaken block of triangles above a shaken plane of triangles: the weights are integrated exactly there
+    Surface master = testing::block_top(mesh::BlockPattern::triangle);
+    Random random(11);
+    for (Vec3& x : master.x) x += 0.03 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    Pairing pairing(master, make_blend_surface(master.topology, master.x, {}),
+                    Slave({1.1, 0.9, 0.02}, {2, 2, 1}, {3, 4}, mesh::BlockPattern::triangle));
+    std::vector<Vec3> s = pairing.slave.X;
+    for (Vec3& at : s) at += 0.02 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    pairing.evaluate(s, master.x);
+    pairing.mortar.prepare_variations(s, master.x, std::vector<char>(s.size(), 1), 1);
+    const Index V = master.topology.vertex_count(), j = 7;
+    ContactVariation variation;
+    const ContactPoint point = pairing.points[j];
+    ASSERT_TRUE(point.found);
+    pairing.mortar.vary(j, point, variation);
+    std::vector<Index> nodes{V + j};
+    nodes.insert(nodes.end(), point.nodes.begin(), point.nodes.end());
+    const Index carried = pairing.mortar.carriers(j);
+    constexpr double h = 1e-5, truncation = 1e-7;     // h^2 over the facets' size, round-off / h
+    for (std::size_t k = 0; k < nodes.size(); k += 5) // evaluating the whole pairing takes its time
+        for (int c = 0; c < 3; ++c) {
+            std::array<ContactPoint, 2> moved;
+            for (const int side : {0, 1}) {
+                auto moved_s = s, moved_x = master.x;
+                (nodes[k] < V ? moved_x[nodes[k]] : moved_s[nodes[k] - V])(c) += side == 0 ? h : -h;
+                pairing.evaluate(moved_s, moved_x);
+                moved[static_cast<std::size_t>(side)] = pairing.points[j];
+            }
+            const auto column = 3 * static_cast<Index>(k) + c;
+            EXPECT_NEAR((moved[0].gap - moved[1].gap) / (2 * h), variation.dg(column), truncation);
+            EXPECT_LT(((moved[0].normal - moved[1].normal) / (2 * h) - variation.dn.col(column)).norm(),
+                      truncation * 100); // curvatures of shaken patches are large
+            ASSERT_EQ(pairing.mortar.carriers(j), carried);
+            EXPECT_LT(((moved[0].weights - moved[1].weights).head(carried) / (2 * h) - variation.dweights.col(column))
+                          .cwiseAbs()
+                          .maxCoeff(),
+                      truncation * 10);
+        }
+}
+
+} // namespace
+} // namespace osculate::contact

@@ -1,0 +1,110 @@
+/// Taylor's patch test: a constant pressure crosses an interface of meshes that do not match.
+
+#include "support/scene_file.hpp"
+#include "support/scene_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace osculate {
+namespace {
+
+const std::string two_blocks = R"(
+bodies:
+  lower:
+    mesh: {block: {size: [2 m, 2 m, 1 m], divisions: [4, 5, 2]}}
+    material: {linear_elastic: {E: 1 GPa, nu: 0.3}}
+  upper:
+    mesh: {block: {origin: [0, 0, 1 m], size: [2 m, 2 m, 1 m], divisions: [3, 7, 2]}}
+    material: {linear_elastic: {E: 1 GPa, nu: 0.3}}
+sets:
+  bed: {body: lower, surface: z_min}
+  ground: {body: lower, surface: z_max}
+  under: {body: upper, surface: z_min}
+  top: {body: upper, surface: z_max}
+  lower_x: {body: lower, surface: x_min}
+  lower_y: {body: lower, surface: y_min}
+  upper_x: {body: upper, surface: x_min}
+  upper_y: {body: upper, surface: y_min}
+supports:
+  bed: {fix: [z]}
+  lower_x: {fix: [x]}
+  lower_y: {fix: [y]}
+  upper_x: {fix: [x]}
+  upper_y: {fix: [y]}
+contact:
+  touch: {slave: under, master: {set: ground}}
+stages:
+  press: {pressure: {top: 1 MPa}}
+solver: {tolerance: 1.0e-11}
+)";
+
+struct Case {
+    const char* name;
+    const char* lower; ///< patterns of the blocks
+    const char* upper;
+    const char* surface;
+    bool swapped = false; ///< the lower block is the slave
+    const char* friction = "0";
+};
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << c.name;
+}
+
+/// Largest deviation of the pressure on a slave node, and of a displacement, from those of the uniform state, relative.
+std::pair<double, double> deviation(const Case& c, const std::string& discretisation) {
+    std::vector<scene::Override> overrides{{"bodies.lower.mesh.block.pattern", c.lower},
+                                           {"bodies.upper.mesh.block.pattern", c.upper},
+                                           {"contact.touch.surface", c.surface},
+                                           {"contact.touch.friction", c.friction},
+                                           {"contact.touch.discretisation", discretisation}};
+    if (c.swapped) {
+        overrides.push_back({"contact.touch.slave", "ground"});
+        overrides.push_back({"contact.touch.master.set", "under"});
+    }
+    support::SceneRun run;
+    support::run_scene(run, support::scene_file("patch.yaml", two_blocks), overrides);
+    const model::ContactTerm& pair = *run.plan.model.pairs[0];
+    const double p = 1e6, strain = p / 1e9;
+    double worst_p = 0, worst_u = 0;
+    const model::State& state = run.steps.back().state;
+    for (Index j = 0; j < pair.size(); ++j)
+        worst_p = std::max(worst_p, std::abs(state.contact[0].lambda[j].norm() / (p * pair.slaves().area[j]) - 1));
+    for (std::size_t i = 0; i < run.plan.model.X.size(); ++i) {
+        const Vec3 X = run.plan.model.X[i];
+        const Vec3 exact(0.3 * strain * X.x(), 0.3 * strain * X.y(), -strain * X.z());
+        worst_u = std::max(worst_u, (state.u[i] - exact).norm() / (2 * strain));
+    }
+    return {worst_p, worst_u};
+}
+
+class Patch : public testing::TestWithParam<Case> {};
+
+TEST_P(Patch, IsPassedByMortarToRoundOff) {
+    constexpr double round_off = 1e-10;
+    const auto [pressure, displacement] = deviation(GetParam(), "mortar");
+    EXPECT_LT(pressure, round_off);
+    EXPECT_LT(displacement, round_off);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Meshes, Patch,
+    testing::Values(Case{"quad_facets", "quad", "quad", "facets"}, Case{"quad_rpim", "quad", "quad", "rpim"},
+                    Case{"quad_blend", "quad", "quad", "blend"}, Case{"triangle_facets", "triangle", "quad", "facets"},
+                    Case{"triangle_rpim", "triangle", "triangle", "rpim"},
+                    Case{"triangle_blend", "triangle", "hybrid", "blend"},
+                    Case{"hybrid_facets", "hybrid", "triangle", "facets"},
+                    Case{"hybrid_rpim", "hybrid", "hybrid", "rpim"}, Case{"hybrid_blend", "hybrid", "quad", "blend"},
+                    Case{"swapped", "hybrid", "triangle", "blend", true},
+                    Case{"friction", "quad", "triangle", "blend", false, "0.3"}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(NodeToSurface, DoesNotPassThePatchTest) {
+    // a limit of the method that README states; measured 0.16 to 0.38
+    for (const char* surface : {"facets", "rpim", "blend"})
+        EXPECT_GT(deviation({"quad", "quad", "quad", surface}, "node").first, 0.1) << surface;
+}
+
+} // namespace
+} // namespace osculate

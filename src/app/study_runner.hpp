@@ -1,0 +1,24 @@
+#pragma once
+/// Runs the cases of a study as processes of this program.
+
+#include "app/study_case.hpp"
+
+#include <functional>
+
+namespace osculate::app {
+
+struct StudyRunOptions {
+    int jobs = 1, threads = 1, repeats = 1;
+    bool quiet = false;
+};
+
+/// Compiles the scene of every case that is still to be run, in processes of their own, so that no memory of theirs counts
+/// for the runs.
+/// @throws SceneError with all faults, each once
+void check_cases(const scene::Study& study, const std::vector<StudyCase>& cases, const StudyRunOptions& options);
+
+/// Runs what is not finished; `finished` is called after every run, whose record is on disk by then. Processes end with
+/// this one, however it ends; SIGINT and SIGTERM end it after them.
+void run_cases(std::vector<StudyCase>& cases, const StudyRunOptions& options, const std::function<void()>& finished);
+
+} // namespace osculate::app

@@ -134,7 +134,7 @@ std::string ratio_table(const std::vector<StudySeries>& series, std::size_t k) {
     for (std::size_t i = 0; i < series.size(); ++i) {
         Words cells{series[i].name};
         for (std::size_t j = 0; j < shown; ++j) {
-            const auto ratio = study::cost_ratio(work_points(series[i], k), work_points(series[j], k));
+            const auto ratio = series[i].problem != series[j].problem ? std::nullopt : study::cost_ratio(work_points(series[i], k), work_points(series[j], k));
             any = any || (ratio && i != j);
             cells.push_back(i == j ? "1" : ratio ? fmt::format("{:.3g} (at {:.2g})", ratio->ratio, ratio->error) : "-");
         }
@@ -153,7 +153,7 @@ std::string quantity_section(const scene::Study& study, const std::vector<StudyC
                              const std::vector<StudySeries>& series, std::size_t k) {
     const scene::StudyQuantity& q = study.quantities[k];
     std::string text = "## " + q.label + "\n\n";
-    const auto front = q.has_error() ? pareto_cases(cases, k) : std::vector<const StudyCase*>{};
+    const auto front = q.has_error() ? pareto_cases(study, cases, k) : std::vector<const StudyCase*>{};
     text += quantity_table(study, cases, k, front) + "\n";
     if (!q.has_error()) return text;
     if (!front.empty()) {

@@ -99,7 +99,7 @@ std::string plots_of(const scene::Study& study, const std::vector<StudyCase>& ca
     Plot work(q.name + "_work");
     for (const StudySeries& s : series) work.add(s, work_points(s, k));
     std::vector<study::CostPoint> front;
-    for (const StudyCase* c : pareto_cases(cases, k))
+    for (const StudyCase* c : pareto_cases(study, cases, k))
         front.push_back({c->record.median(&StudyRepeat::cpu), c->results[k].error});
     work.add_front(front);
     std::string text = work.script(study.title + ": slopes in brackets", "CPU seconds", error);

@@ -43,6 +43,7 @@ std::vector<StudySeries> make_series(const scene::Study& study, const std::vecto
                            {},
                            colours.emplace(colour, next_colour).first->second,
                            styles.emplace(style, next_style).first->second});
+            all.back().problem = study.problem_of(c.combination);
         }
         if (!c.results.empty()) all[at->second].cases.push_back(&c);
     }
@@ -73,15 +74,22 @@ std::vector<study::CostPoint> convergence_points(const scene::Study& study, cons
     return points;
 }
 
-std::vector<const StudyCase*> pareto_cases(const std::vector<StudyCase>& cases, std::size_t quantity) {
-    std::vector<const StudyCase*> measured, front;
-    std::vector<study::CostPoint> points;
+std::vector<const StudyCase*> pareto_cases(const scene::Study& study, const std::vector<StudyCase>& cases,
+                                           std::size_t quantity) {
+    struct Problem {
+        std::vector<const StudyCase*> cases;
+        std::vector<study::CostPoint> points;
+    };
+    std::map<scene::Combination, Problem> problems;
     for (const StudyCase& c : cases) {
         if (c.results.empty()) continue;
-        measured.push_back(&c);
-        points.push_back({c.record.median(&StudyRepeat::cpu), c.results[quantity].error});
+        Problem& problem = problems[study.problem_of(c.combination)];
+        problem.cases.push_back(&c);
+        problem.points.push_back({c.record.median(&StudyRepeat::cpu), c.results[quantity].error});
     }
-    for (const std::size_t i : study::pareto_front(points)) front.push_back(measured[i]);
+    std::vector<const StudyCase*> front;
+    for (const auto& [key, problem] : problems)
+        for (const std::size_t i : study::pareto_front(problem.points)) front.push_back(problem.cases[i]);
     return front;
 }
 

@@ -15,6 +15,7 @@ struct StudySeries {
     std::string name;                    ///< values of the other axes
     std::vector<const StudyCase*> cases; ///< finished ones
     int colour = 0, style = 0;           ///< numbers of the values of the axes that colour and of the others
+    scene::Combination problem{};        ///< values of the study's `problems`
 };
 
 [[nodiscard]] std::vector<StudySeries> make_series(const scene::Study& study, const std::vector<StudyCase>& cases);
@@ -28,7 +29,8 @@ struct StudySeries {
 [[nodiscard]] std::vector<study::CostPoint> convergence_points(const scene::Study& study, const StudySeries& series,
                                                                std::size_t quantity);
 
-/// Cases on the Pareto front of a quantity, all series together, by cost.
-[[nodiscard]] std::vector<const StudyCase*> pareto_cases(const std::vector<StudyCase>& cases, std::size_t quantity);
+/// Cases on the Pareto front of a quantity, all series of one problem together, problem by problem, by cost.
+[[nodiscard]] std::vector<const StudyCase*> pareto_cases(const scene::Study& study, const std::vector<StudyCase>& cases,
+                                                         std::size_t quantity);
 
 } // namespace osculate::app

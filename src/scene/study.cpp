@@ -72,6 +72,12 @@ std::vector<Override> Study::overrides_of(const Combination& combination,
     return list;
 }
 
+Combination Study::problem_of(const Combination& combination) const {
+    Combination values;
+    for (const std::size_t a : problems) values.push_back(combination[a]);
+    return values;
+}
+
 Named<double> Study::parameters_of(const Combination& combination) const {
     Named<double> numbers;
     for (std::size_t a = 0; a < axes.size(); ++a) {

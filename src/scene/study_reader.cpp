@@ -68,7 +68,7 @@ private:
     void compare_parameters(const Tree& at, const StudyAxis& axis);
     void leave_out(const Tree& list);
     void quantity(StudyQuantity& q);
-    void plots();
+    void axis_list(const char* name, std::vector<std::size_t>& axes);
 
     void text(const char* name, const char* what, StudyText& value);
     void settings(const Tree* map, std::vector<StudySetting>& list);
@@ -308,14 +308,14 @@ void StudyReader::quantity(StudyQuantity& q) {
         reader_.fault(here, key, "order_by for " + q.reduce + " of nodes, or another reduce", "none");
 }
 
-void StudyReader::plots() {
-    const Key key{.name = "colour_by"};
+void StudyReader::axis_list(const char* name, std::vector<std::size_t>& axes) {
+    const Key key{.name = name};
     const Tree* list = reader_.take(key, "a list of axes");
     if (!list) return;
     if (list->kind != Tree::Kind::list) return reader_.fault(*list, key, "a list of axes");
-    study_.colour_by.clear();
+    axes.clear();
     for (const Tree& item : list->children)
-        if (const int a = axis_named(item, key); a >= 0) study_.colour_by.push_back(static_cast<std::size_t>(a));
+        if (const int a = axis_named(item, key); a >= 0) axes.push_back(static_cast<std::size_t>(a));
 }
 
 void StudyReader::document() {
@@ -344,7 +344,12 @@ void StudyReader::document() {
     reader_.text({.name = "abscissa_label"}, study_.abscissa_label);
     for (std::size_t a = 0; a < study_.axes.size() && study_.colour_by.empty(); ++a)
         if (static_cast<int>(a) != study_.refine) study_.colour_by.push_back(a);
-    reader_.group({.name = "plots"}, [&] { plots(); });
+    axis_list("problems", study_.problems);
+    if (const auto both = std::ranges::find(study_.problems, static_cast<std::size_t>(study_.refine));
+        study_.refine >= 0 && both != study_.problems.end())
+        reader_.fault(*tree_.find("problems"), {.name = "problems"}, "axes other than that of refine",
+                      "'" + study_.axes[*both].name + "'");
+    reader_.group({.name = "plots"}, [&] { axis_list("colour_by", study_.colour_by); });
     reader_.integer({.name = "repeats", .range = {.low = 1, .high = 100}}, study_.repeats);
 }
 

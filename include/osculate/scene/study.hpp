@@ -73,6 +73,7 @@ struct Study {
     StudyText abscissa;
     std::string abscissa_label;
     std::vector<std::size_t> colour_by; ///< axes
+    std::vector<std::size_t> problems;  ///< axes whose values are other problems, not other ways to solve one
     int repeats = 1;
 
     /// Everything that is to be run, the last axis fastest.
@@ -85,6 +86,8 @@ struct Study {
     /// The same and what the study needs to see of a run, which comes last.
     [[nodiscard]] std::vector<Override> overrides_of(const Combination& combination,
                                                      const std::vector<Override>& command_line) const;
+    /// Values of the axes `problems`: errors are compared where they are the same.
+    [[nodiscard]] Combination problem_of(const Combination& combination) const;
     /// Parameters and <axis>_index of a combination, in an order that is that of every other.
     [[nodiscard]] Named<double> parameters_of(const Combination& combination) const;
 };

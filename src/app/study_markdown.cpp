@@ -15,7 +15,11 @@ namespace {
 using Words = std::vector<std::string>;
 
 std::string number(double value) {
-    return std::isnan(value) ? "-" : fmt::format("{:.4g}", value);
+    return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
+}
+
+std::string measure(double value) {
+    return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
 }
 
 std::string count(double value) {
@@ -93,8 +97,8 @@ std::string quantity_table(const scene::Study& study, const std::vector<StudyCas
     for (const StudyCase& c : cases) {
         const QuantityResult result = c.results.empty() ? QuantityResult{} : c.results[k];
         Words cells = axis_values(study, c);
-        if (value) cells.push_back(number(result.value));
-        if (value && error) cells.push_back(number(result.reference));
+        if (value) cells.push_back(measure(result.value));
+        if (value && error) cells.push_back(measure(result.reference));
         if (error) cells.push_back(number(result.error));
         cells.push_back(seconds(c.record.median(&StudyRepeat::cpu)));
         if (error) cells.emplace_back(std::ranges::count(front, &c) > 0 ? "\\*" : "");
@@ -134,7 +138,9 @@ std::string ratio_table(const std::vector<StudySeries>& series, std::size_t k) {
     for (std::size_t i = 0; i < series.size(); ++i) {
         Words cells{series[i].name};
         for (std::size_t j = 0; j < shown; ++j) {
-            const auto ratio = series[i].problem != series[j].problem ? std::nullopt : study::cost_ratio(work_points(series[i], k), work_points(series[j], k));
+            const auto ratio = series[i].problem != series[j].problem
+                                   ? std::nullopt
+                                   : study::cost_ratio(work_points(series[i], k), work_points(series[j], k));
             any = any || (ratio && i != j);
             cells.push_back(i == j ? "1" : ratio ? fmt::format("{:.3g} (at {:.2g})", ratio->ratio, ratio->error) : "-");
         }

@@ -5,7 +5,7 @@
 #include "scene/tree.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 namespace osculate::scene {
 
@@ -136,6 +136,14 @@ void check_study(const Study& study, const NamedFunctions& functions, const std:
                  std::vector<Fault>& faults) {
     if (study.axes.empty() || std::ranges::any_of(study.axes, [](const StudyAxis& a) { return a.values.empty(); }))
         return; // a fault already
+    const auto names = [](const AxisValue& value) {
+        std::set<std::string> set;
+        for (const auto& [name, number] : value.parameters) set.insert(name);
+        return set;
+    };
+    for (const StudyAxis& axis : study.axes)
+        for (const AxisValue& value : axis.values)
+            if (names(value) != names(axis.values.front())) return; // another
     StudyChecker checker(study, functions, faults);
     if (!checker.constants()) return;
     const std::vector<Combination> combinations = study.combinations();

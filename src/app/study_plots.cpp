@@ -2,10 +2,12 @@
 #include "app/study_files.hpp"
 #include "app/study_series.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 
 namespace osculate::app {
@@ -41,9 +43,7 @@ public:
     explicit Plot(std::string name) : name_(std::move(name)) {}
 
     void add(const StudySeries& series, const std::vector<study::CostPoint>& data) {
-        std::string rows;
-        for (const study::CostPoint& p : data)
-            if (drawable(p)) rows += fmt::format("{:.6g} {:.6g}\n", p.cost, p.error);
+        std::string rows = rows_of(data);
         if (rows.empty()) return;
         const auto law = study::fit_power_law(data);
         const char* colour = colours[static_cast<std::size_t>(series.colour) % colours.size()];
@@ -58,17 +58,16 @@ public:
     }
 
     void add_front(const std::vector<study::CostPoint>& front) {
-        std::string rows;
-        for (const study::CostPoint& p : front)
-            if (drawable(p)) rows += fmt::format("{:.6g} {:.6g}\n", p.cost, p.error);
-        if (!rows.empty()) add_line(block(rows), "with points pt 6 ps 2 lw 1.5 lc rgb '#e41a1c' title 'Pareto front'");
+        if (const std::string rows = rows_of(front); !rows.empty())
+            add_line(block(rows), "with points pt 6 ps 2 lw 1.5 lc rgb '#e41a1c' title 'Pareto front'");
     }
 
     /// Draws both files; nothing where there is no point.
     [[nodiscard]] std::string script(const std::string& title, const std::string& x, const std::string& y) const {
         if (lines_.empty()) return {};
         std::string text =
-            data_ + fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(title), quoted(x), quoted(y));
+            data_ + fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange {}\nset yrange {}\n",
+                                quoted(title), quoted(x), quoted(y), x_.range(), y_.range());
         for (const auto& [terminal, ending] :
              {std::pair{"svg size 1000,600 font 'sans,14' background 'white'", "svg"},
               std::pair{"pngcairo size 1000,600 font 'sans,12' background 'white'", "png"}})
@@ -78,6 +77,16 @@ public:
     }
 
 private:
+    std::string rows_of(const std::vector<study::CostPoint>& data) {
+        std::string rows;
+        for (const study::CostPoint& p : data) {
+            if (!drawable(p)) continue;
+            rows += fmt::format("{:.6g} {:.6g}\n", p.cost, p.error);
+            x_.add(p.cost);
+            y_.add(p.error);
+        }
+        return rows;
+    }
     std::string block(const std::string& rows) {
         const std::string name = fmt::format("${}_{}", identifier(name_), ++blocks_);
         data_ += name + " << END\n" + rows + "END\n";
@@ -87,7 +96,21 @@ private:
         lines_ += (lines_.empty() ? "" : ", \\\n     ") + block + " " + style;
     }
 
+    struct Extent {
+        double least = std::numeric_limits<double>::infinity(), largest = 0;
+        void add(double value) {
+            least = std::min(least, value);
+            largest = std::max(largest, value);
+        }
+        /// gnuplot cannot scale an axis to a single value.
+        [[nodiscard]] std::string range() const {
+            constexpr double apart = 1.0001;
+            return largest > apart * least ? "[*:*]" : fmt::format("[{:.6g}:{:.6g}]", least / 2, largest * 2);
+        }
+    };
+
     std::string name_, data_, lines_;
+    Extent x_, y_;
     int blocks_ = 0;
 };
 

@@ -31,6 +31,7 @@ struct Arguments {
     bool quiet = false;
     SurfaceOptions surface;
     StudyOptions study;
+    bool formulas = false;
 
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> list;
@@ -44,7 +45,7 @@ struct Arguments {
 
 std::string assignment(const std::string& text) {
     const std::size_t equals = text.find('=');
-    return equals != std::string::npos && equals > 0 ? "" : "expected key.path=value, found '" + text + "'";
+    return equals != std::string::npos && equals > 0 ? "" : "expected name=value, found '" + text + "'";
 }
 
 void add_changes(CLI::App* command, Arguments& arguments) {
@@ -67,7 +68,8 @@ CLI::App* add_scene_command(CLI::App& program, const std::string& name, const st
 CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
     CLI::App* command = program.add_subcommand("study", "Measure error against run time over combinations of settings");
     command->alias("surface-study");
-    command->add_option("STUDY", arguments.scene, "Study file")->required();
+    command->add_option("STUDY", arguments.scene, "Study file");
+    command->add_flag("--formulas", arguments.formulas, "List the formulas that studies may call");
     command->add_option("-o,--output", arguments.output, "Folder of the tables and plots [out/<study name>]")
         ->type_name("DIR");
     const CLI::Range positive(1, 1024);
@@ -78,6 +80,12 @@ CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
     command->add_option("--repeats", arguments.study.repeats, "Times every run is done [the study's]")
         ->type_name("N")
         ->check(positive);
+    command
+        ->add_option("--only", arguments.study.only,
+                     "Run only these values of an axis: --only axis=value,value, any number of them")
+        ->type_name("AXIS=VALUES")
+        ->check(assignment)
+        ->allow_extra_args(false);
     command->add_flag("--report-only", arguments.study.report_only, "Run nothing; write tables and plots anew");
     command->add_flag("--quiet", arguments.study.quiet, "Show no progress");
     add_changes(command, arguments);
@@ -99,6 +107,14 @@ void run_scene(const Arguments& arguments) {
 }
 
 void run_study(Arguments arguments) {
+    if (arguments.formulas) return print(formula_table());
+    if (arguments.scene.empty()) {
+        Fault fault;
+        fault.file = "study";
+        fault.expected = "a study file";
+        fault.found = "none";
+        throw SceneError({fault});
+    }
     if (scene::is_run_study(arguments.scene)) {
         arguments.study.directory = arguments.output;
         arguments.study.overrides = arguments.overrides();

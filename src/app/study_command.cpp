@@ -3,9 +3,12 @@
 #include "app/study_files.hpp"
 #include "app/study_runner.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/scene/nearest.hpp"
+#include "osculate/study/formulas.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sstream>
 
 namespace osculate::app {
 
@@ -22,6 +25,32 @@ std::string command_of(const std::string& path, const StudyOptions& options) {
     if (options.repeats > 0) text += fmt::format(" --repeats {}", options.repeats);
     if (options.threads > 1) text += fmt::format(" --threads {}", options.threads);
     return text;
+}
+
+/// Values of every axis that --only names.
+std::vector<std::vector<std::size_t>> chosen(const scene::Study& study, const std::vector<std::string>& only) {
+    std::vector<std::vector<std::size_t>> values(study.axes.size());
+    std::vector<Fault> faults;
+    const auto index = [&](const std::string& name, const std::vector<std::string>& known, const char* what) {
+        const auto at = std::ranges::find(known, name);
+        if (at == known.end())
+            faults.push_back({"--only", 0, 0, "", fmt::format("{}: {}", what, fmt::join(known, ", ")), "'" + name + "'",
+                              scene::nearest(name, known)});
+        return static_cast<std::size_t>(at - known.begin());
+    };
+    std::vector<std::string> axes;
+    for (const scene::StudyAxis& axis : study.axes) axes.push_back(axis.name);
+    for (const std::string& text : only) {
+        const std::size_t equals = text.find('=');
+        const std::size_t a = index(text.substr(0, equals), axes, "an axis");
+        if (a == axes.size()) continue;
+        std::vector<std::string> names;
+        for (const scene::AxisValue& value : study.axes[a].values) names.push_back(value.name);
+        std::istringstream list(text.substr(equals + 1));
+        for (std::string name; std::getline(list, name, ',');) values[a].push_back(index(name, names, "a value"));
+    }
+    if (!faults.empty()) throw SceneError(std::move(faults));
+    return values;
 }
 
 long count(const std::vector<StudyCase>& cases, const char* status) {
@@ -42,7 +71,7 @@ std::string run_study(const std::string& path, const StudyOptions& options) {
     update();
     if (!options.report_only) {
         const StudyRunOptions run{options.jobs, options.threads, options.repeats > 0 ? options.repeats : study.repeats,
-                                  options.quiet};
+                                  chosen(study, options.only), options.quiet};
         check_cases(study, cases, run);
         run_cases(cases, run, update);
     }
@@ -57,6 +86,13 @@ std::string run_study(const std::string& path, const StudyOptions& options) {
     for (const StudyCase& c : cases)
         if (c.record.status == "bug") bugs += fmt::format("{}{}: {}", bugs.empty() ? "" : "; ", c.id, c.record.reason);
     require(bugs.empty(), bugs.c_str());
+    return text;
+}
+
+std::string formula_table() {
+    std::string text = "| formula | value | source |\n|---|---|---|\n";
+    for (const study::NamedSolution& f : study::formulas())
+        text += fmt::format("| `{}({})` | {} | {} |\n", f.name, f.parameters, f.meaning, f.source);
     return text;
 }
 

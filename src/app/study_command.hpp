@@ -13,7 +13,8 @@ struct StudyOptions {
     std::filesystem::path directory; ///< out/<study name> when empty
     std::vector<scene::Override> overrides;
     int jobs = 1, threads = 1;
-    int repeats = 0; ///< 0: those of the study
+    int repeats = 0;               ///< 0: those of the study
+    std::vector<std::string> only; ///< "axis=value,value": runs nothing else
     bool report_only = false, quiet = false;
 };
 
@@ -22,5 +23,8 @@ struct StudyOptions {
 /// @throws SceneError with all faults of the study and its scenes before anything is run; InternalError when a run met a
 ///         bug, after everything else is done
 [[nodiscard]] std::string run_study(const std::string& path, const StudyOptions& options);
+
+/// The formulas that studies may call, as a table in Markdown.
+[[nodiscard]] std::string formula_table();
 
 } // namespace osculate::app

@@ -84,7 +84,7 @@ private:
 
 bool Runner::wants(const StudyCase& c, std::size_t repeat) const {
     const StudyRecord& r = c.record;
-    if (failed_.contains(&c) || r.repeats.size() > repeat) return false;
+    if (failed_.contains(&c) || r.repeats.size() > repeat || !is_chosen(c, options_)) return false;
     return r.status.empty() || (r.status == "done" && repeat < static_cast<std::size_t>(options_.repeats));
 }
 
@@ -212,10 +212,16 @@ Json faults_of(const scene::Study& study, const std::vector<const StudyCase*>& c
 
 } // namespace
 
+bool is_chosen(const StudyCase& c, const StudyRunOptions& options) {
+    for (std::size_t a = 0; a < options.only.size(); ++a)
+        if (!options.only[a].empty() && std::ranges::count(options.only[a], c.combination[a]) == 0) return false;
+    return true;
+}
+
 void check_cases(const scene::Study& study, const std::vector<StudyCase>& cases, const StudyRunOptions& options) {
     std::vector<const StudyCase*> waiting;
     for (const StudyCase& c : cases)
-        if (c.record.status.empty()) waiting.push_back(&c);
+        if (c.record.status.empty() && is_chosen(c, options)) waiting.push_back(&c);
     std::vector<std::pair<pid_t, std::FILE*>> children;
     const auto stride = static_cast<std::size_t>(options.jobs);
     for (std::size_t k = 0; k < stride && k < waiting.size(); ++k) {

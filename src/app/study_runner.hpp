@@ -9,8 +9,12 @@ namespace osculate::app {
 
 struct StudyRunOptions {
     int jobs = 1, threads = 1, repeats = 1;
+    std::vector<std::vector<std::size_t>> only; ///< by axis: values to run; empty stands for all
     bool quiet = false;
 };
+
+/// Whether a case is among those to be run.
+[[nodiscard]] bool is_chosen(const StudyCase& study_case, const StudyRunOptions& options);
 
 /// Compiles the scene of every case that is still to be run, in processes of their own, so that no memory of theirs counts
 /// for the runs.

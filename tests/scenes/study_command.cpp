@@ -158,6 +158,22 @@ TEST_F(Study, MeasuresAnewWithoutRunning) {
     EXPECT_NEAR(table(folder / "s/study.csv").number(0, "weight.value"), 2, 1e-12); // m^2
 }
 
+TEST_F(Study, RunsOnlyWhatItIsToldTo) {
+    const std::string file = write(small_study);
+    const Outcome some = study({file, "-o", "s", "--only", "mesh=coarse"});
+    EXPECT_EQ(some.code, 0) << some.err;
+    EXPECT_THAT(some.err, AllOf(HasSubstr("run 2/2"), Not(HasSubstr("mesh=fine"))));
+    EXPECT_EQ(table(folder / "s/study.csv").text(1, "status"), "waiting");
+    const Outcome bad = study({file, "-o", "s", "--only", "mesh=corase", "--only", "msh=fine"});
+    EXPECT_EQ(bad.code, 2);
+    EXPECT_THAT(bad.err, AllOf(HasSubstr("did you mean 'coarse'?"), HasSubstr("did you mean 'mesh'?")));
+}
+
+TEST_F(Study, ListsItsFormulas) {
+    EXPECT_THAT(study({"--formulas"}).out, HasSubstr("| `rod_reaction(t)` |"));
+    EXPECT_EQ(study({}).code, 2);
+}
+
 TEST_F(Study, LosesNothingFinishedWhenItIsKilled) {
     std::string slow = small_study; // a tenth of a second a run and more
     slow.replace(slow.find("axes:"), 0, "set: {stages.pull.steps: 40}\n");

@@ -2,9 +2,12 @@
 
 #include "osculate/study/formulas.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,6 +29,18 @@ constexpr double round_off = 1e-12;
 
 void expect_digits(double value, double expected, double tolerance) {
     EXPECT_NEAR(value, expected, tolerance * std::abs(expected));
+}
+
+TEST(Formulas, TheirPageListsThem) {
+    std::ifstream file(std::string(OSCULATE_SOURCE_DIR) + "/docs/studies.md");
+    std::stringstream page;
+    page << file.rdbuf();
+    for (const NamedSolution& f : formulas()) {
+        const std::string row =
+            "| `" + std::string(f.name) + "(" + f.parameters + ")` | " + f.meaning + " | " + f.source + " |";
+        EXPECT_NE(page.str().find(row), std::string::npos)
+            << "docs/studies.md lacks what `osculate study --formulas` lists: " << row;
+    }
 }
 
 TEST(Formulas, EveryOneHasItsOwnNameAndAsManyParametersAsItLists) {

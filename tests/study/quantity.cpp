@@ -1,6 +1,9 @@
 #include "osculate/study/quantity.hpp"
 
+#include "osculate/study/formulas.hpp"
+
 #include <cmath>
+#include <filesystem>
 #include <gtest/gtest.h>
 
 namespace osculate::study {
@@ -75,6 +78,22 @@ TEST(Quantity, NormsWeighDifferences) {
     EXPECT_NEAR(value(q), (2 + 0 + 2 * 1 + 3) / 5. / 0.5, round_off);
     q.norm = scene::ErrorNorm::max;
     EXPECT_NEAR(value(q), 4 / 0.5, round_off);
+}
+
+TEST(ShippedStudies, CanBeRead) {
+    scene::NamedFunctions functions;
+    for (const NamedSolution& f : formulas()) functions.push_back({f.name, f.count, f.value});
+    int runs = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(OSCULATE_SOURCE_DIR "/configs/studies")) {
+        const std::string path = entry.path().string();
+        if (entry.path().extension() != ".yaml" || !scene::is_run_study(path)) continue;
+        const scene::Study study = scene::read_study(path, functions);
+        EXPECT_FALSE(study.problem.empty()) << path;
+        EXPECT_FALSE(study.source.empty()) << path;
+        EXPECT_GE(study.refine, 0) << path;
+        ++runs;
+    }
+    EXPECT_GT(runs, 0);
 }
 
 TEST(Quantity, ErrorsAreRelativeWhereTheyCanBe) {

@@ -1,5 +1,6 @@
 #include "osculate/app/command_line.hpp"
 
+#include "app/study_command.hpp"
 #include "app/surface_command.hpp"
 #include "osculate/app/diary.hpp"
 #include "osculate/app/load.hpp"
@@ -9,6 +10,7 @@
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/scene/keys.hpp"
+#include "osculate/scene/study.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -28,6 +30,8 @@ struct Arguments {
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
     SurfaceOptions surface;
+    StudyOptions study;
+    bool formulas = false;
 
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> list;
@@ -41,18 +45,50 @@ struct Arguments {
 
 std::string assignment(const std::string& text) {
     const std::size_t equals = text.find('=');
-    return equals != std::string::npos && equals > 0 ? "" : "expected key.path=value, found '" + text + "'";
+    return equals != std::string::npos && equals > 0 ? "" : "expected name=value, found '" + text + "'";
 }
 
-CLI::App* add_scene_command(CLI::App& program, const std::string& name, const std::string& what, Arguments& arguments) {
-    CLI::App* command = program.add_subcommand(name, what);
-    command->add_option("SCENE", arguments.scene, "Scene file")->required();
+void add_changes(CLI::App* command, Arguments& arguments) {
     command
         ->add_option("--set", arguments.changes,
                      "Change a value of the scene: --set key.path=value, any number of them")
         ->type_name("KEY=VALUE")
         ->check(assignment)
         ->allow_extra_args(false);
+}
+
+CLI::App* add_scene_command(CLI::App& program, const std::string& name, const std::string& what, Arguments& arguments) {
+    CLI::App* command = program.add_subcommand(name, what);
+    command->add_option("SCENE", arguments.scene, "Scene file")->required();
+    add_changes(command, arguments);
+    return command;
+}
+
+/// `surface-study` is an older name for studies of surfaces.
+CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
+    CLI::App* command = program.add_subcommand("study", "Measure error against run time over combinations of settings");
+    command->alias("surface-study");
+    command->add_option("STUDY", arguments.scene, "Study file");
+    command->add_flag("--formulas", arguments.formulas, "List the formulas that studies may call");
+    command->add_option("-o,--output", arguments.output, "Folder of the tables and plots [out/<study name>]")
+        ->type_name("DIR");
+    const CLI::Range positive(1, 1024);
+    command->add_option("--jobs", arguments.study.jobs, "Runs at a time [1]")->type_name("N")->check(positive);
+    command->add_option("--threads", arguments.study.threads, "Threads of every run [1]")
+        ->type_name("N")
+        ->check(positive);
+    command->add_option("--repeats", arguments.study.repeats, "Times every run is done [the study's]")
+        ->type_name("N")
+        ->check(positive);
+    command
+        ->add_option("--only", arguments.study.only,
+                     "Run only these values of an axis: --only axis=value,value, any number of them")
+        ->type_name("AXIS=VALUES")
+        ->check(assignment)
+        ->allow_extra_args(false);
+    command->add_flag("--report-only", arguments.study.report_only, "Run nothing; write tables and plots anew");
+    command->add_flag("--quiet", arguments.study.quiet, "Show no progress");
+    add_changes(command, arguments);
     return command;
 }
 
@@ -70,7 +106,21 @@ void run_scene(const Arguments& arguments) {
                       folder));
 }
 
-void run_study(const Arguments& arguments) {
+void run_study(Arguments arguments) {
+    if (arguments.formulas) return print(formula_table());
+    if (arguments.scene.empty()) {
+        Fault fault;
+        fault.file = "study";
+        fault.expected = "a study file";
+        fault.found = "none";
+        throw SceneError({fault});
+    }
+    if (scene::is_run_study(arguments.scene)) {
+        arguments.study.directory = arguments.output;
+        arguments.study.overrides = arguments.overrides();
+        print(run_study(arguments.scene, arguments.study));
+        return;
+    }
     const scene::SurfaceStudy study = scene::read_surface_study(arguments.scene, study::method_names());
     const std::string folder = arguments.output.empty() ? "out/" + study.name : arguments.output;
     const std::string plots = write_surface_study(study, run_surface_study(study, arguments.threads), folder);
@@ -111,10 +161,7 @@ ExitCode run_command(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
     CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
     keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
-    CLI::App* study = program.add_subcommand("surface-study", "Measure surface approximations against exact surfaces");
-    study->add_option("STUDY", arguments.scene, "Study file")->required();
-    study->add_option("-o,--output", arguments.output, "Folder of the tables and plots [out/<study name>]")
-        ->type_name("DIR");
+    CLI::App* study = add_study_command(program, arguments);
     CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
     steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     try {

@@ -120,6 +120,10 @@ Values master_contact_force(const Snapshot& snapshot, Index pair) {
     return values;
 }
 
+Values area(const Snapshot& snapshot, Index pair) {
+    return snapshot.model().pairs[pair]->slaves().area;
+}
+
 constexpr Field table[] = {
     {"displacement", FieldPlace::body, 3, "m", false, displacement},
     {"stress", FieldPlace::body, 6, "Pa", false, stress},
@@ -131,6 +135,7 @@ constexpr Field table[] = {
     {"slip", FieldPlace::slave, 3, "m", false, slip},                    // of the step; 0 where open
     {"status", FieldPlace::slave, 1, "", true, status},                  // 0 open, 1 stick, 2 slip
     {"normal", FieldPlace::slave, 3, "", false, normal},                 // out of the master; 0 without a partner
+    {"area", FieldPlace::slave, 1, "m^2", false, area}, // tributary to the node, in the reference configuration
     {"contact_force", FieldPlace::master, 3, "N", false, master_contact_force},
 };
 

@@ -43,7 +43,11 @@ Progress::Progress(double start, double end, Style style, std::FILE* stream)
 void Progress::update(const ProgressStep& step) {
     if (style_ == Style::quiet) return;
     const double elapsed = std::chrono::duration<double>(clock::now() - begun_).count();
-    std::string line = progress_line(step, start_, end_, elapsed);
+    show(progress_line(step, start_, end_, elapsed));
+}
+
+void Progress::show(std::string line) {
+    if (style_ == Style::quiet) return;
     if (style_ == Style::live) {
         line.resize(std::min(line.size(), terminal_width(stream_)));
         line = "\r" + line + "\x1b[K"; // erases what a longer line before left behind

@@ -277,7 +277,7 @@ void describe(Visitor& v, Solver& solver) {
 
 void describe_output(Visitor& v, Output& output) {
     static const Words body_fields{"displacement", "stress", "von_mises", "reaction"};
-    static const Words slave_fields{"gap", "contact_force", "normal_stress", "slip", "status", "normal"};
+    static const Words slave_fields{"gap", "contact_force", "normal_stress", "slip", "status", "normal", "area"};
     static const Words master_fields{"contact_force"};
     constexpr const char* from_template = "the template's";
     v.words({.name = "body_fields", .meaning = "Fields of the bodies' frames.", .default_text = from_template},

@@ -24,6 +24,10 @@ public:
     /// Reads a whole document: `body` describes its keys; every other key is a fault.
     void read(const Tree& document, const std::function<void()>& body);
 
+    /// The value under a key of the current map as it stands, or nullptr; a required one that is missing is a fault.
+    const Tree* take(const Key& key, const std::string& expected);
+    void fault(const Tree& at, const Key& key, std::string expected, std::string found = {}, std::string near = {});
+
     void number(const Key& key, double& value) override;
     void optional_number(const Key& key, std::optional<double>& value) override;
     void optional_relative_length(const Key& key, std::optional<RelativeLength>& value) override;
@@ -50,10 +54,7 @@ private:
         Words missing_choice{}; ///< tags of which one is required and none is there
     };
 
-    /// The value under a key of the current map, or nullptr; a required one that is missing is a fault.
-    const Tree* take(const Key& key, const std::string& expected);
     [[nodiscard]] std::string path_of(const std::string& name) const;
-    void fault(const Tree& at, const Key& key, std::string expected, std::string found = {}, std::string near = {});
     void enter(const Tree& map, std::string path, const std::function<void()>& body);
     void leave(const Level& level);
     [[nodiscard]] const Words& referred(Names names) const;

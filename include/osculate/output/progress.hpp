@@ -35,6 +35,8 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     void update(const ProgressStep& step);
+    /// Shows any line in place of the last one.
+    void show(std::string line);
 
     /// Ends the live line, so that other text may follow; the next update starts a new one.
     void finish();

@@ -299,7 +299,7 @@ struct Solver {
 struct Output {
     std::string template_name = "contact";  ///< or the absolute path of a template that is not a shipped one
     std::vector<std::string> body_fields;   ///< displacement stress von_mises reaction
-    std::vector<std::string> slave_fields;  ///< gap contact_force normal_stress slip status normal
+    std::vector<std::string> slave_fields;  ///< gap contact_force normal_stress slip status normal area
     std::vector<std::string> master_fields; ///< contact_force
     bool history_pairs = true;
     bool history_reactions = true;

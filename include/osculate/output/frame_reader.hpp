@@ -1,0 +1,29 @@
+#pragma once
+/// Frames of a run, read back.
+
+#include "osculate/output/vtk_file.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osculate::output {
+
+struct Frame {
+    std::vector<Vec3> points; ///< reference positions, m
+    std::vector<Array> arrays;
+    double time = 0; ///< s
+    /// The array called `name`, or nullptr.
+    [[nodiscard]] const Array* find(const std::string& name) const;
+};
+
+/// Reads a .vtp or .vtu file of this program. @throws std::runtime_error with the path where it is none
+[[nodiscard]] Frame read_frame(const std::filesystem::path& path);
+
+/// The file of the last frame of a part ("PAIR.slave", "BODY") in the folder of a run; none where there is no frame but
+/// the initial one.
+[[nodiscard]] std::optional<std::filesystem::path> last_frame(const std::filesystem::path& folder,
+                                                              const std::string& part);
+
+} // namespace osculate::output

@@ -14,7 +14,7 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory) {
     mesh::Mesh m = std::visit(
         Overloaded{
             [](const scene::BlockMesh& b) {
-                return mesh::make_block(b.origin, b.size, b.divisions, b.element, b.pattern);
+                return mesh::make_block(b.origin, b.size, b.divisions, b.element, b.pattern, b.focus, b.crown);
             },
             [](const scene::HalfTubeMesh& t) {
                 return mesh::make_half_tube(t.inner_radius, t.thickness, t.length, t.divisions, t.element);
@@ -29,7 +29,7 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory) {
                 return mesh::make_cylinder(c.radius, c.length, c.divisions, c.portion, c.grading);
             },
             [](const scene::TubeMesh& t) {
-                return mesh::make_tube(t.inner_radius, t.thickness, t.length, t.divisions);
+                return mesh::make_tube(t.inner_radius, t.thickness, t.length, t.divisions, t.portion);
             },
             [&](const scene::FileMesh& f) {
                 return mesh::read_vtu((std::filesystem::path(directory) / f.path).string());

@@ -62,6 +62,23 @@ Vec3 towards_pole(const Vec3& x, double scale) {
     return ((1 + 2 * ax + xx) * a + (1 - aa) * x) / (1 + 2 * ax + aa * xx);
 }
 
+/// Joins the two ends of a grid that goes around once in its first direction.
+void close_ring(Mesh& mesh, int around) {
+    const Index row = around + 1; // the last of each row of nodes is the first
+    const auto closed = [&](Index node) { return node / row * around + node % row % around; };
+    std::vector<Vec3> nodes(mesh.nodes.size() / static_cast<std::size_t>(row) * static_cast<std::size_t>(around));
+    for (Index i = 0; i < mesh.node_count(); ++i)
+        if (i % row != around) nodes[static_cast<std::size_t>(closed(i))] = mesh.nodes[static_cast<std::size_t>(i)];
+    mesh.nodes = std::move(nodes);
+    for (ElementBlock& block : mesh.blocks)
+        for (Index& node : block.connectivity) node = closed(node);
+    mesh.surfaces.erase("x_min");
+    mesh.surfaces.erase("y_min");
+    for (auto& [name, facets] : mesh.surfaces)
+        for (Facet& facet : facets)
+            for (int c = 0; c < facet.count; ++c) facet.nodes[c] = closed(facet.nodes[c]);
+}
+
 } // namespace
 
 Mesh make_ball(double radius, const std::array<int, 3>& divisions, Portion portion, double grading,
@@ -115,33 +132,30 @@ Mesh make_cylinder(double radius, double length, const std::array<int, 3>& divis
     return mesh_o_grid(grid);
 }
 
-Mesh make_tube(double inner_radius, double thickness, double length, const std::array<int, 3>& divisions) {
+Mesh make_tube(double inner_radius, double thickness, double length, const std::array<int, 3>& divisions,
+               Portion portion) {
     require_positive("inner_radius", inner_radius);
     require_positive("thickness", thickness);
     require_positive("length", length);
     const auto [around, along, through] = divisions;
     if (around < 3) throw std::invalid_argument("elements around must be 3 or more, not " + std::to_string(around));
+    if (portion != Portion::full && around % 4 != 0)
+        throw std::invalid_argument("elements around a tube that is cut must be a multiple of 4, not " +
+                                    std::to_string(around));
+    const int first = portion == Portion::half ? -around / 4 : 0;
+    const int count = portion == Portion::full ? around : portion == Portion::half ? around / 2 : around / 4;
     // around, along z and outward are right-handed
     const auto position = [&, around = around, along = along, through = through](int i, int j, int k) -> Vec3 {
-        const double angle = 2 * std::numbers::pi * i / around, r = inner_radius + thickness * k / through;
-        return {r * std::cos(angle), r * std::sin(angle), length * j / along};
+        const int step = first + i;
+        const double angle = 2 * std::numbers::pi * step / around, r = inner_radius + thickness * k / through;
+        // cos(pi/2) is not quite zero: cuts lie in their planes exactly
+        const double cosine = 4 * std::abs(step) == around ? 0.0 : std::cos(angle);
+        return {r * cosine, r * std::sin(angle), length * j / along};
     };
-    Mesh mesh = mesh_grid({divisions, {"first", "last", "z_min", "z_max", "inner", "outer"}, position}, CellType::hex8,
-                          BlockPattern::quad);
-    // the last row of nodes around is the first
-    const Index row = around + 1;
-    const auto closed = [&, around = around](Index node) { return node / row * around + node % row % around; };
-    std::vector<Vec3> nodes(mesh.nodes.size() / static_cast<std::size_t>(row) * static_cast<std::size_t>(around));
-    for (Index i = 0; i < mesh.node_count(); ++i)
-        if (i % row != around) nodes[static_cast<std::size_t>(closed(i))] = mesh.nodes[static_cast<std::size_t>(i)];
-    mesh.nodes = std::move(nodes);
-    for (ElementBlock& block : mesh.blocks)
-        for (Index& node : block.connectivity) node = closed(node);
-    mesh.surfaces.erase("first");
-    mesh.surfaces.erase("last");
-    for (auto& [name, facets] : mesh.surfaces)
-        for (Facet& facet : facets)
-            for (int c = 0; c < facet.count; ++c) facet.nodes[c] = closed(facet.nodes[c]);
+    const std::array<const char*, 6> sides{
+        portion == Portion::half ? "x_min" : "y_min", "x_min", "z_min", "z_max", "inner", "outer"};
+    Mesh mesh = mesh_grid({{count, along, through}, sides, position}, CellType::hex8, BlockPattern::quad);
+    if (portion == Portion::full) close_ring(mesh, around);
     return mesh;
 }
 

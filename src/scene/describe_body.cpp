@@ -13,6 +13,47 @@ constexpr double most_elements = 2e7;
 
 const Words cell_words{"tet4", "wedge6", "hex8", "tet10"};
 
+void describe(Visitor& v, mesh::Focus& f) {
+    v.vector({.name = "point",
+              .meaning = "Where elements are smallest; nodes stand on its coordinates.",
+              .unit = dimension::length,
+              .range = range::position},
+             f.point);
+    v.number({.name = "size",
+              .meaning = "Edge length of the elements there, in place of divisions.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9},
+              .default_text = "0, which divides into equal parts"},
+             f.size);
+    v.number({.name = "extent",
+              .meaning = "How far from the point, along each axis, elements keep that size.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9}},
+             f.extent);
+    v.number({.name = "growth",
+              .meaning = "Each element beyond is at most so many times longer than the one before.",
+              .range = {.low = 1, .high = 10}},
+             f.growth);
+    std::vector<std::string> axes;
+    for (std::size_t d = 0; d < 3; ++d)
+        if (f.axes[d]) axes.push_back(axis_words[d]);
+    v.words(
+        {.name = "axes", .meaning = "Axes it acts on; the others keep their divisions.", .default_text = "[x, y, z]"},
+        axis_words, axes);
+    for (std::size_t d = 0; d < 3; ++d) f.axes[d] = std::ranges::count(axes, axis_words[d]) > 0;
+}
+
+void describe(Visitor& v, mesh::Crown& c) {
+    v.number({.name = "radius",
+              .meaning = "Radius of the underside.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9},
+              .default_text = "0, which is flat"},
+             c.radius);
+    static const Words along{"none", "x", "y"};
+    word(v, {.name = "along", .meaning = "Axis of the cylinder it is part of; none: part of a ball."}, along, c.along);
+}
+
 void describe(Visitor& v, BlockMesh& m) {
     v.vector({.name = "origin", .meaning = "Lower corner.", .unit = dimension::length, .range = range::position},
              m.origin);
@@ -29,6 +70,12 @@ void describe(Visitor& v, BlockMesh& m) {
           .meaning = "How the top and every layer below is divided: triangle cuts the hexahedra into wedges, hybrid "
                      "half of them."},
          patterns, m.pattern);
+    v.group({.name = "focus", .meaning = "Small elements around a point, growing away from it along each axis."},
+            [&] { describe(v, m.focus); });
+    v.group({.name = "crown",
+             .meaning = "Round underside with its lowest point below the point of focus; the columns of elements above "
+                        "are shortened in proportion."},
+            [&] { describe(v, m.crown); });
 }
 
 void describe(Visitor& v, HalfTubeMesh& m) {
@@ -131,10 +178,12 @@ void describe(Visitor& v, TubeMesh& m) {
         {.name = "length", .meaning = "Length along z, from z = 0.", .unit = dimension::length, .range = range::size},
         m.length);
     v.divisions({.name = "divisions",
-                 .meaning = "Elements around (3 or more), along z, through the wall.",
+                 .meaning = "Elements around the whole circle (3 or more, a multiple of 4 where it is cut), along z, "
+                            "through the wall.",
                  .range = divisions_range,
                  .largest_product = most_elements},
                 m.divisions);
+    describe_portion(v, m.portion);
 }
 
 void describe(Visitor& v, FileMesh& m) {

@@ -30,8 +30,9 @@ struct MirroredSurface {
     std::vector<Image> images{Image{}};
 };
 
-/// Mirrors the facets within `depth` (m) of each plane, one plane after the other, so that corners between planes are
-/// filled too. Nodes on a plane are their own image. Facets that lie in a plane are not mirrored.
+/// Mirrors the facets at the planes, again and again between parallel ones, six rings of facets far and no farther than
+/// `depth` (m) from the nearest plane; corners between planes are filled too. Nodes on a plane are their own image. Facets
+/// that lie in a plane are not mirrored.
 [[nodiscard]] MirroredSurface mirror(const std::vector<mesh::Facet>& facets, const std::vector<Vec3>& X,
                                      const std::vector<SymmetryPlane>& planes, double depth);
 

@@ -3,6 +3,7 @@
 /// Every generator throws std::invalid_argument for impossible arguments.
 
 #include "osculate/mesh/block_pattern.hpp"
+#include "osculate/mesh/focus.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/mesh/portion.hpp"
 
@@ -17,8 +18,12 @@ namespace osculate::mesh {
 /// @param origin     lower corner, metres
 /// @param size       edge lengths, metres
 /// @param divisions  elements along x, y, z
+/// @param focus      places the mesh lines of its axes in place of divisions
+/// @param crown      bends the underside up, from its lowest point or line below focus.point, and shortens the columns
+///                   above it in proportion; it touches z = origin.z() there
 [[nodiscard]] Mesh make_block(const Vec3& origin, const Vec3& size, const std::array<int, 3>& divisions,
-                              CellType element = CellType::hex8, BlockPattern pattern = BlockPattern::quad);
+                              CellType element = CellType::hex8, BlockPattern pattern = BlockPattern::quad,
+                              const Focus& focus = {}, const Crown& crown = {});
 
 /// Lower half (z <= 0) of a tube with its axis along y, from y = 0 to `length`; equal angles around.
 /// Surfaces inner outer y_min y_max rim_left (x < 0) rim_right (x > 0).
@@ -52,9 +57,11 @@ namespace osculate::mesh {
                                  Portion portion = Portion::full, double grading = 1);
 
 /// Tube of hex8 with its axis along z, from z = 0 to `length`; equal angles around, the first nodes at y = 0, x > 0.
-/// Surfaces inner outer z_min z_max.
-/// @param divisions  elements around, 3 or more, along z, through the thickness
-[[nodiscard]] Mesh make_tube(double inner_radius, double thickness, double length, const std::array<int, 3>& divisions);
+/// Surfaces inner outer z_min z_max, and those of the cuts.
+/// @param divisions  elements around the whole circle, 3 or more, a multiple of 4 where it is cut; along z; through the
+///                   thickness
+[[nodiscard]] Mesh make_tube(double inner_radius, double thickness, double length, const std::array<int, 3>& divisions,
+                             Portion portion = Portion::full);
 
 /// Moves every node to x = scale * (R X) + translation, R the rotation by `angle` (rad) about `axis`.
 /// @pre  scale > 0 and axis is not zero; std::invalid_argument otherwise

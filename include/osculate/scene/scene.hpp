@@ -3,6 +3,7 @@
 
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/block_pattern.hpp"
+#include "osculate/mesh/focus.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/mesh/portion.hpp"
 #include "osculate/scene/course.hpp"
@@ -30,8 +31,12 @@ struct BlockMesh {
     std::array<int, 3> divisions{1, 1, 1};
     mesh::CellType element = mesh::CellType::hex8;
     BlockPattern pattern = BlockPattern::quad; ///< triangle: wedge6; hybrid: hex8 and wedge6 side by side
+    mesh::Focus focus;
+    mesh::Crown crown;
     bool operator==(const BlockMesh&) const = default;
 };
+
+using mesh::Portion;
 
 /// Lower half of a tube with its axis along y, open towards +z; z = -(inner_radius + thickness) is its lowest line.
 struct HalfTubeMesh {
@@ -49,8 +54,6 @@ struct ContactorMesh {
     mesh::CellType element = mesh::CellType::hex8;
     bool operator==(const ContactorMesh&) const = default;
 };
-
-using mesh::Portion;
 
 /// Solid ball about the origin.
 struct BallMesh {
@@ -74,7 +77,8 @@ struct CylinderMesh {
 /// Tube about the z axis, from z = 0 up.
 struct TubeMesh {
     double inner_radius = 1, thickness = 0.1, length = 1; ///< m
-    std::array<int, 3> divisions{24, 2, 1};               ///< around, along, through the thickness
+    std::array<int, 3> divisions{24, 2, 1};               ///< around the whole circle, along, through the thickness
+    Portion portion = Portion::full;
     bool operator==(const TubeMesh&) const = default;
 };
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 
 namespace osculate::app {
 
@@ -89,6 +90,26 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
                       spec.surface);
 }
 
+/// The surface through the slave nodes that mortar takes its gaps from: as smooth as the master's. None where that is its
+/// facets.
+std::optional<contact::SmoothSlave> smooth_slave(const scene::Scene& scene, const scene::MasterSpec& spec,
+                                                 const model::Model& model, const model::Set& slave,
+                                                 const std::vector<Index>& slave_nodes) {
+    if (std::holds_alternative<scene::FacetsSurface>(spec.surface)) return std::nullopt;
+    const contact::MirroredSurface mirrored = mirror_at_symmetry(scene, model, slave);
+    contact::SmoothSlave smooth;
+    smooth.surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
+    for (const Index node : smooth.surface->vertex_nodes()) {
+        smooth.X.push_back(mirrored.positions[node]);
+        const auto at = std::lower_bound(slave_nodes.begin(), slave_nodes.end(), mirrored.original[node]);
+        smooth.node.push_back(static_cast<Index>(at - slave_nodes.begin()));
+        smooth.image.push_back(mirrored.images[mirrored.image[node]]);
+    }
+    model::ContactOptions unused; // rules against flip-flop are of no use to points that stay where they are
+    smooth.shape = make_master(spec, *smooth.surface, smooth.X, unused);
+    return smooth;
+}
+
 /// Thickness of the master's body behind each of its nodes, the least over the facets that meet there; infinite elsewhere.
 std::vector<double> thickness(const model::Model& model, const model::Set& master,
                               const std::vector<mesh::Facet>& exterior) {
@@ -158,8 +179,11 @@ std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene,
     options.friction = spec.friction;
     options.closing_tolerance = spec.closing_tolerance;
     auto shape = make_master(spec.master, *surface, vertices, options);
+    std::optional<contact::SmoothSlave> smooth;
+    if (spec.discretisation == scene::Discretisation::mortar)
+        smooth = smooth_slave(scene, spec.master, model, slave, slaves.node);
     return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface), std::move(master_nodes),
-                                                std::move(shape), options);
+                                                std::move(shape), options, smooth ? &*smooth : nullptr);
 }
 
 } // namespace osculate::app

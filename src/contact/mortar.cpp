@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 namespace osculate::contact {
 
@@ -87,7 +88,7 @@ void sort_unique(std::vector<Index>& list) {
 } // namespace
 
 Mortar::Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, const std::vector<SlaveFacet>& facets,
-               const std::vector<Vec3>& S, std::vector<Mat3> in_plane)
+               const std::vector<Vec3>& S, std::vector<Mat3> in_plane, const SmoothSlave* smooth)
     : surface_(surface), master_(master), incident_(S.size()), in_plane_(std::move(in_plane)), carriers_(S.size(), 0),
       normal_length_(S.size(), 0.0) {
     // master facets near the slave's size need few points; smaller ones must not slip through between the points
@@ -110,7 +111,10 @@ Mortar::Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, cons
             point.N = shape(corners.count, q.xi).N;
             point.weight = q.weight * reference_area(facet, q.xi);
             facet.area += point.weight;
+            lay(point, facet, static_cast<Index>(facets_.size()) - 1, smooth);
+            for (const Share& share : point.shares) facet.gap_slaves.push_back(share.slave);
         }
+        sort_unique(facet.gap_slaves);
     }
 }
 
@@ -130,10 +134,33 @@ std::vector<Vec3> Mortar::corners(const Facet& facet, const std::vector<Vec3>& s
     return x;
 }
 
-Vec3 Mortar::position(const Facet& facet, const GapPoint& q, const std::vector<Vec3>& s) {
-    Vec3 at = Vec3::Zero();
-    for (int c = 0; c < facet.corners.count; ++c)
-        at += q.N(c) * s[static_cast<std::size_t>(facet.corners.node[static_cast<std::size_t>(c)])];
+void Mortar::lay(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth) {
+    Vec3 chord = Vec3::Zero();
+    for (std::size_t c = 0; c < facet.X.size(); ++c) chord += q.N(static_cast<Index>(c)) * facet.X[c];
+    ContactPoint on_surface;
+    if (smooth != nullptr) {
+        FacetHit hit;
+        hit.facet = number;
+        hit.u = q.xi;
+        smooth->shape->evaluate(chord, hit, smooth->X, on_surface);
+    }
+    std::map<Index, Mat3> C;
+    if (!on_surface.found)
+        for (int c = 0; c < facet.corners.count; ++c)
+            C[facet.corners.node[static_cast<std::size_t>(c)]] = q.N(c) * Mat3::Identity();
+    else
+        for (std::size_t i = 0; i < on_surface.nodes.size(); ++i) {
+            const auto v = static_cast<std::size_t>(on_surface.nodes[i]);
+            const double weight = on_surface.weights(static_cast<Index>(i));
+            C.try_emplace(smooth->node[v], Mat3::Zero()).first->second += weight * smooth->image[v].M;
+            q.offset += weight * smooth->image[v].t;
+        }
+    for (const auto& [slave, share] : C) q.shares.push_back({slave, share});
+}
+
+Vec3 Mortar::position(const GapPoint& q, const std::vector<Vec3>& s) {
+    Vec3 at = q.offset;
+    for (const Share& share : q.shares) at += share.C * s[static_cast<std::size_t>(share.slave)];
     return at;
 }
 
@@ -144,7 +171,7 @@ void Mortar::begin(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const
             Facet& facet = facets_[static_cast<std::size_t>(f)];
             for (GapPoint& q : facet.gap_points) {
                 const Index from = facet_of_node[static_cast<std::size_t>(facet.corners.node[0])];
-                q.facet = search.track(position(facet, q, s), from, x, 0).facet;
+                q.facet = search.track(position(q, s), from, x, 0).facet;
                 q.changes = 0;
             }
         }
@@ -158,7 +185,7 @@ int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, con
     parallel_for(threads, count, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f)
             for (GapPoint& q : facets_[static_cast<std::size_t>(f)].gap_points) {
-                const Vec3 at = position(facets_[static_cast<std::size_t>(f)], q, s);
+                const Vec3 at = position(q, s);
                 q.hit = q.changes < changes_before_latch ? search.track(at, q.facet, x, hysteresis)
                                                          : search.closest_on(q.facet, at, x);
             }
@@ -178,7 +205,7 @@ int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, con
     parallel_for(threads, count, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             Facet& facet = facets_[static_cast<std::size_t>(f)];
-            for (GapPoint& q : facet.gap_points) master_.evaluate(position(facet, q, s), q.hit, x, q.point);
+            for (GapPoint& q : facet.gap_points) master_.evaluate(position(q, s), q.hit, x, q.point);
             find_overlaps(facet, s, x);
             make_duals(facet);
         }
@@ -306,6 +333,8 @@ void Mortar::gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
         const Facet& facet = facets_[static_cast<std::size_t>(f)];
         for (const Index k : facet.corners)
             if (k != j) slaves.push_back(surface_.vertex_count() + k);
+        for (const Index k : facet.gap_slaves)
+            if (k != j) slaves.push_back(surface_.vertex_count() + k);
         if (facet.weight_dual.usable)
             for (const Overlap& overlap : facet.overlaps) {
                 const auto v = surface_.facet_vertices(overlap.facet);
@@ -382,7 +411,8 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
         if (q.point.found)
             facet.gap_vertices.insert(facet.gap_vertices.end(), q.point.nodes.begin(), q.point.nodes.end());
     sort_unique(facet.gap_vertices);
-    const Index columns = 3 * (n + static_cast<Index>(facet.gap_vertices.size()));
+    const auto slaves = static_cast<Index>(facet.gap_slaves.size());
+    const Index columns = 3 * (slaves + static_cast<Index>(facet.gap_vertices.size()));
     facet.dgap.setZero(n, columns);
     facet.dnormal.setZero(3 * n, columns);
     static thread_local ContactVariation variation;
@@ -390,17 +420,22 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
     variation.of_forces = false;
     for (const GapPoint& q : facet.gap_points) {
         if (!q.point.found) continue;
-        master_.evaluate(position(facet, q, s), q.hit, x, again, &variation);
+        master_.evaluate(position(q, s), q.hit, x, again, &variation);
         const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1> psi = q.weight * (facet.gap_dual.A * q.N.head(n));
-        const auto add = [&](Index to, Index from, double factor) {
+        const auto add = [&](Index to, const Eigen::RowVector3d& dg, const Mat3& dn) {
             for (int c = 0; c < n; ++c) {
-                facet.dgap.block<1, 3>(c, to) += (factor * psi(c)) * variation.dg.middleCols<3>(from);
-                facet.dnormal.block<3, 3>(3 * c, to) += (factor * psi(c)) * variation.dn.middleCols<3>(from);
+                facet.dgap.block<1, 3>(c, to) += psi(c) * dg;
+                facet.dnormal.block<3, 3>(3 * c, to) += psi(c) * dn;
             }
         };
-        for (int k = 0; k < n; ++k) add(3 * k, 0, q.N(k));
-        for (std::size_t i = 0; i < again.nodes.size(); ++i)
-            add(3 * (n + place_in(facet.gap_vertices, again.nodes[i])), 3 + 3 * static_cast<Index>(i), 1);
+        for (const Share& share : q.shares)
+            add(3 * place_in(facet.gap_slaves, share.slave), variation.dg.leftCols<3>() * share.C,
+                variation.dn.leftCols<3>() * share.C);
+        for (std::size_t i = 0; i < again.nodes.size(); ++i) {
+            const Index from = 3 + 3 * static_cast<Index>(i);
+            add(3 * (slaves + place_in(facet.gap_vertices, again.nodes[i])), variation.dg.middleCols<3>(from),
+                variation.dn.middleCols<3>(from));
+        }
     }
 }
 
@@ -483,19 +518,21 @@ void Mortar::vary(Index j, const ContactPoint& point, ContactVariation& variatio
     };
     for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
         const Facet& facet = facets_[static_cast<std::size_t>(f)];
-        const int n = facet.corners.count;
-        std::array<Index, 4> corner_column{};
-        for (int k = 0; k < n; ++k) {
-            const Index node = facet.corners.node[static_cast<std::size_t>(k)];
-            corner_column[static_cast<std::size_t>(k)] = node == j ? 0 : column(surface_.vertex_count() + node);
-        }
-        const auto each = [&](const std::vector<Index>& vertices, auto&& add) {
-            for (int k = 0; k < n; ++k) add(corner_column[static_cast<std::size_t>(k)], 3 * k);
-            for (std::size_t i = 0; i < vertices.size(); ++i) add(column(vertices[i]), 3 * (n + static_cast<Index>(i)));
+        const auto of_slave = [&](Index slave) { return slave == j ? 0 : column(surface_.vertex_count() + slave); };
+        const auto each = [&](std::span<const Index> slaves, const std::vector<Index>& vertices, auto&& add) {
+            Index from = 0;
+            for (const Index slave : slaves) {
+                add(of_slave(slave), from);
+                from += 3;
+            }
+            for (const Index v : vertices) {
+                add(column(v), from);
+                from += 3;
+            }
         };
         const int corner = c;
         if (facet.gap_dual.usable)
-            each(facet.gap_vertices, [&](Index to, Index from) {
+            each(facet.gap_slaves, facet.gap_vertices, [&](Index to, Index from) {
                 variation.dg.middleCols<3>(to) += facet.dgap.block<1, 3>(corner, from) / by_gap;
                 variation.dn.middleCols<3>(to) += facet.dnormal.block<3, 3>(3 * corner, from) / by_gap;
             });
@@ -503,7 +540,7 @@ void Mortar::vary(Index j, const ContactPoint& point, ContactVariation& variatio
         const auto count = static_cast<Index>(facet.weight_vertices.size());
         std::vector<Index> row;
         for (const Index v : facet.weight_vertices) row.push_back((column(v) - 3) / 3);
-        each(facet.weight_vertices, [&](Index to, Index from) {
+        each({facet.corners.begin(), facet.corners.end()}, facet.weight_vertices, [&](Index to, Index from) {
             for (Index i = 0; i < count; ++i)
                 variation.dweights.block<1, 3>(row[static_cast<std::size_t>(i)], to) +=
                     facet.dweights.block<1, 3>(corner * count + i, from) / by_weight;

@@ -23,7 +23,8 @@ Vec3 centre(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
 
 ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
                          std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
-                         std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options)
+                         std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options,
+                         const contact::SmoothSlave* smooth)
     : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
       master_nodes_(std::move(master_nodes)), master_(std::move(master)),
       search_(*surface_, vertices(X), centre(X, slaves_.node)), options_(options), inertia_(slaves_.node.size(), 0.0),
@@ -42,7 +43,8 @@ ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNode
             for (std::size_t c = 0; c < static_cast<std::size_t>(facet.count); ++c)
                 own.node[c] = number.at(facet.nodes[c]);
         }
-        mortar_ = std::make_unique<contact::Mortar>(*surface_, *master_, facets, slave_positions(X), slaves_.in_plane);
+        mortar_ = std::make_unique<contact::Mortar>(*surface_, *master_, facets, slave_positions(X), slaves_.in_plane,
+                                                    smooth);
     }
     if (master_nodes_.image.empty()) return;
     std::map<Index, Index> own; // node -> vertex

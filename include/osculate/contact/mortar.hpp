@@ -4,10 +4,12 @@
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/facet_overlap.hpp"
 #include "osculate/contact/master_surface.hpp"
+#include "osculate/contact/mirror.hpp"
 #include "osculate/contact/search.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,13 +23,22 @@ struct SlaveFacet {
     [[nodiscard]] const Index* end() const { return node.data() + count; }
 };
 
+/// A smooth surface through the slave nodes, so that a curved slave is not taken for its chords.
+struct SmoothSlave {
+    std::unique_ptr<mesh::HalfEdgeSurface> surface; ///< the slave facets in their order, then mirror images of some
+    std::unique_ptr<MasterSurface> shape;
+    std::vector<Vec3> X;      ///< (vertices) reference positions
+    std::vector<Index> node;  ///< (vertices) slave node
+    std::vector<Image> image; ///< (vertices) image of that node
+};
+
 /// Mortar weighting: every slave node j has the dual shape functions psi_j of its facets,
 ///     psi = A N,  A = D M^-1,  M = int N N^T dA,  D = diag(int N dA),  so that  int psi_j N_k dA = delta_jk D_j,
 /// and its contact point is an average with them over the reference area of those facets,
 ///     gap      g_j = int psi_j g dA / D_j                     normal  n_j = N_j / |N_j|,  N_j = int psi_j n dA / D_j
 ///     weights  W_ji = int psi_j N_i dA / D_j                  a force lambda on node j loads master node i with -W_ji lambda.
-/// Gap and normal are those of the master surface, from one evaluation at each point of a rule on the slave facet. The
-/// weights are the shape functions N_i of the master's facets, so that a constant pressure meets the master as the
+/// Gap and normal are those of the master surface, from one evaluation at each point of a rule on the slave facet, or on
+/// the smooth surface through the slave nodes: positions sum_k C_k s_k with constant C. The weights are the shape functions N_i of the master's facets, so that a constant pressure meets the master as the
 /// loads that its elements take for constant: the patch test. They have kinks, and are integrated over the
 /// overlaps of slave and master facets.
 ///
@@ -40,8 +51,9 @@ public:
     /// @param surface  topology of the master
     /// @param facets   slave facets            @param S  (slaves) reference positions of the slave nodes
     /// @param in_plane (slaves) projectors on the symmetry planes that slave nodes lie on; empty: there are none
+    /// @param smooth   null: the slave facets as they are
     Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, const std::vector<SlaveFacet>& facets,
-           const std::vector<Vec3>& S, std::vector<Mat3> in_plane);
+           const std::vector<Vec3>& S, std::vector<Mat3> in_plane, const SmoothSlave* smooth = nullptr);
 
     /// Opens an attempt at the positions of its start: puts the points of every slave facet over their closest master
     /// facets, found from those of the nodes, `facet_of_node` (slaves).
@@ -65,11 +77,17 @@ private:
     using Row4 = Eigen::Matrix<double, 4, 1>;
     using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
 
-    /// A point that the gap is averaged from.
+    struct Share {
+        Index slave;
+        Mat3 C;
+    };
+    /// A point that the gap is averaged from, at  offset + sum C s.
     struct GapPoint {
         Vec2 xi = Vec2::Zero();
         Row4 N = Row4::Zero();
-        double weight = 0; ///< reference area
+        std::vector<Share> shares;
+        Vec3 offset = Vec3::Zero(); ///< of mirror images
+        double weight = 0;          ///< reference area
         Index facet = -1;
         int changes = 0;
         FacetHit hit;
@@ -92,7 +110,8 @@ private:
         std::vector<GapPoint> gap_points;
         std::vector<Overlap> overlaps;
         Dual gap_dual, weight_dual;
-        // variations, in the order of y: corners, then vertices
+        std::vector<Index> gap_slaves; ///< those that share in its points, ascending
+        // variations by y, slave nodes first, then vertices: of the gap by gap_slaves, of the weights by the corners
         std::vector<Index> gap_vertices, weight_vertices;
         Matrix dgap;     ///< (corners x 3y)
         Matrix dnormal;  ///< (3 corners x 3y)
@@ -103,7 +122,8 @@ private:
         int corner;
     };
 
-    [[nodiscard]] static Vec3 position(const Facet& facet, const GapPoint& q, const std::vector<Vec3>& s);
+    static void lay(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth);
+    [[nodiscard]] static Vec3 position(const GapPoint& q, const std::vector<Vec3>& s);
     [[nodiscard]] std::vector<Vec3> corners(const Facet& facet, const std::vector<Vec3>& s) const;
     void find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
     void make_duals(Facet& facet) const;

@@ -58,9 +58,11 @@ public:
 
     /// @param X            reference positions of all nodes
     /// @param master_nodes what the vertices of `surface` are
+    /// @param smooth       for mortar: surface through the slave nodes, its vertices' nodes among them; null: their facets
     ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
                 std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
-                std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options);
+                std::unique_ptr<contact::MasterSurface> master, const ContactOptions& options,
+                const contact::SmoothSlave* smooth = nullptr);
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] Index size() const { return static_cast<Index>(slaves_.node.size()); }

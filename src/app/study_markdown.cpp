@@ -78,9 +78,9 @@ std::string run_table(const scene::Study& study, const std::vector<StudyCase>& c
     return text;
 }
 
-std::string error_head(const scene::StudyQuantity& q) {
+std::string error_head(const scene::StudyQuantity& q, bool relative) {
     if (!q.exact.empty()) return q.scale.empty() ? "error" : "error / (" + q.scale.text + ")";
-    return q.relative ? "relative error" : "error";
+    return relative ? "relative error" : "error";
 }
 
 std::string quantity_table(const scene::Study& study, const std::vector<StudyCase>& cases, std::size_t k,
@@ -90,7 +90,7 @@ std::string quantity_table(const scene::Study& study, const std::vector<StudyCas
     Words columns = axis_names(study);
     if (value) columns.push_back(q.unit.empty() ? "value" : "value, " + q.unit);
     if (value && error) columns.emplace_back("reference");
-    if (error) columns.push_back(error_head(q));
+    if (error) columns.push_back(error_head(q, is_relative(q, cases, k)));
     columns.emplace_back("CPU s");
     if (error) columns.emplace_back("front");
     std::string text = header(columns);

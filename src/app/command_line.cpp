@@ -74,7 +74,7 @@ CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
         ->type_name("DIR");
     const CLI::Range positive(1, 1024);
     command->add_option("--jobs", arguments.study.jobs, "Runs at a time [1]")->type_name("N")->check(positive);
-    command->add_option("--threads", arguments.study.threads, "Threads of every run [1]")
+    command->add_option("--threads", arguments.study.threads, "Threads of every run [1]; of a study of surfaces [all]")
         ->type_name("N")
         ->check(positive);
     command->add_option("--repeats", arguments.study.repeats, "Times every run is done [the study's]")
@@ -121,9 +121,10 @@ void run_study(Arguments arguments) {
         print(run_study(arguments.scene, arguments.study));
         return;
     }
+    const int threads = arguments.study.threads > 0 ? arguments.study.threads : arguments.threads;
     const scene::SurfaceStudy study = scene::read_surface_study(arguments.scene, study::method_names());
     const std::string folder = arguments.output.empty() ? "out/" + study.name : arguments.output;
-    const std::string plots = write_surface_study(study, run_surface_study(study, arguments.threads), folder);
+    const std::string plots = write_surface_study(study, run_surface_study(study, threads), folder);
     print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
 }
 

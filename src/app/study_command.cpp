@@ -70,8 +70,9 @@ std::string run_study(const std::string& path, const StudyOptions& options) {
     };
     update();
     if (!options.report_only) {
-        const StudyRunOptions run{options.jobs, options.threads, options.repeats > 0 ? options.repeats : study.repeats,
-                                  chosen(study, options.only), options.quiet};
+        const StudyRunOptions run{options.jobs, std::max(1, options.threads),
+                                  options.repeats > 0 ? options.repeats : study.repeats, chosen(study, options.only),
+                                  options.quiet};
         check_cases(study, cases, run);
         run_cases(cases, run, update);
     }

@@ -12,7 +12,8 @@ namespace osculate::app {
 struct StudyOptions {
     std::filesystem::path directory; ///< out/<study name> when empty
     std::vector<scene::Override> overrides;
-    int jobs = 1, threads = 1;
+    int jobs = 1;
+    int threads = 0; ///< of every run; 0: one
     int repeats = 0;               ///< 0: those of the study
     std::vector<std::string> only; ///< "axis=value,value": runs nothing else
     bool report_only = false, quiet = false;

@@ -78,9 +78,9 @@ std::string run_table(const scene::Study& study, const std::vector<StudyCase>& c
     return text;
 }
 
-std::string error_head(const scene::StudyQuantity& q) {
+std::string error_head(const scene::StudyQuantity& q, bool relative) {
     if (!q.exact.empty()) return q.scale.empty() ? "error" : "error / (" + q.scale.text + ")";
-    return q.relative ? "relative error" : "error";
+    return relative ? "relative error" : "error";
 }
 
 std::string quantity_table(const scene::Study& study, const std::vector<StudyCase>& cases, std::size_t k,
@@ -90,7 +90,7 @@ std::string quantity_table(const scene::Study& study, const std::vector<StudyCas
     Words columns = axis_names(study);
     if (value) columns.push_back(q.unit.empty() ? "value" : "value, " + q.unit);
     if (value && error) columns.emplace_back("reference");
-    if (error) columns.push_back(error_head(q));
+    if (error) columns.push_back(error_head(q, is_relative(q, cases, k)));
     columns.emplace_back("CPU s");
     if (error) columns.emplace_back("front");
     std::string text = header(columns);
@@ -126,6 +126,20 @@ std::string slope_table(const scene::Study& study, const std::vector<StudySeries
     return text.empty() ? text : header(columns) + text;
 }
 
+/// What to say of two series of one problem that share no error: whose errors are all the smaller.
+std::string apart(const std::vector<study::CostPoint>& first, const std::vector<study::CostPoint>& second) {
+    const auto errors = [](const std::vector<study::CostPoint>& points) {
+        std::vector<double> list;
+        for (const study::CostPoint& p : points)
+            if (p.error > 0) list.push_back(p.error);
+        return list;
+    };
+    const std::vector<double> a = errors(first), b = errors(second);
+    if (a.empty() || b.empty()) return "-";
+    if (std::ranges::max(a) < std::ranges::min(b)) return "always below";
+    return std::ranges::max(b) < std::ranges::min(a) ? "always above" : "-";
+}
+
 /// How many times the CPU seconds of the column's series the row's takes.
 std::string ratio_table(const std::vector<StudySeries>& series, std::size_t k) {
     constexpr std::size_t most = 8; // columns of a table that can still be read
@@ -138,11 +152,12 @@ std::string ratio_table(const std::vector<StudySeries>& series, std::size_t k) {
     for (std::size_t i = 0; i < series.size(); ++i) {
         Words cells{series[i].name};
         for (std::size_t j = 0; j < shown; ++j) {
-            const auto ratio = series[i].problem != series[j].problem
-                                   ? std::nullopt
-                                   : study::cost_ratio(work_points(series[i], k), work_points(series[j], k));
-            any = any || (ratio && i != j);
-            cells.push_back(i == j ? "1" : ratio ? fmt::format("{:.3g} (at {:.2g})", ratio->ratio, ratio->error) : "-");
+            const auto first = work_points(series[i], k), second = work_points(series[j], k);
+            const bool comparable = i != j && series[i].problem == series[j].problem;
+            const auto ratio = comparable ? study::cost_ratio(first, second) : std::nullopt;
+            const std::string none = i == j ? "1" : comparable ? apart(first, second) : "-";
+            any = any || (none != "1" && none != "-") || ratio;
+            cells.push_back(ratio ? fmt::format("{:.3g} (at {:.2g})", ratio->ratio, ratio->error) : none);
         }
         text += row(cells);
     }
@@ -172,7 +187,9 @@ std::string quantity_section(const scene::Study& study, const std::vector<StudyC
     }
     if (const std::string table = slope_table(study, series, k); !table.empty()) text += table + "\n";
     if (const std::string table = ratio_table(series, k); !table.empty())
-        text += "Times at equal error, that error in brackets:\n\n" + table + "\n";
+        text += "Times at equal error, that error in brackets; *always below*: all its errors are smaller than the "
+                "other's:\n\n" +
+                table + "\n";
     if (!q.plot) return text;
     text += fmt::format("![{0}: error over CPU seconds]({1}_work.png)\n\n", q.label, q.name);
     if (study.refine >= 0) text += fmt::format("![{0}: convergence]({1}_convergence.png)\n\n", q.label, q.name);

@@ -66,8 +66,9 @@ public:
     [[nodiscard]] std::string script(const std::string& title, const std::string& x, const std::string& y) const {
         if (lines_.empty()) return {};
         std::string text =
-            data_ + fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange {}\nset yrange {}\n",
-                                quoted(title), quoted(x), quoted(y), x_.range(), y_.range());
+            data_ + fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange {}\nset yrange {}\n"
+                                "set xtics {}\nset ytics {}\n",
+                                quoted(title), quoted(x), quoted(y), x_.range(), y_.range(), x_.tics(), y_.tics());
         for (const auto& [terminal, ending] :
              {std::pair{"svg size 1000,600 font 'sans,14' background 'white'", "svg"},
               std::pair{"pngcairo size 1000,600 font 'sans,12' background 'white'", "png"}})
@@ -102,10 +103,24 @@ private:
             least = std::min(least, value);
             largest = std::max(largest, value);
         }
-        /// gnuplot cannot scale an axis to a single value.
+        /// "[0.1:2]", with some air.
         [[nodiscard]] std::string range() const {
-            constexpr double apart = 1.0001;
-            return largest > apart * least ? "[*:*]" : fmt::format("[{:.6g}:{:.6g}]", least / 2, largest * 2);
+            constexpr double air = 1.25;
+            return fmt::format("[{:.6g}:{:.6g}]", least / air, largest * air);
+        }
+        /// Where decades are too far apart: "(0.2, 0.5, 1)".
+        [[nodiscard]] std::string tics() const {
+            constexpr double few_decades = 100;
+            if (largest > few_decades * least) return "autofreq";
+            std::string list;
+            for (int decade = static_cast<int>(std::floor(std::log10(least))) - 1; std::pow(10, decade) < 2 * largest;
+                 ++decade)
+                for (const int digit : {1, 2, 3, 5, 7}) {
+                    const double at = digit * std::pow(10, decade);
+                    if (at > least / 2 && at < 2 * largest)
+                        list += fmt::format("{}'{:.3g}' {:.6g}", list.empty() ? "" : ", ", at, at);
+                }
+            return "(" + list + ")";
         }
     };
 
@@ -117,8 +132,9 @@ private:
 std::string plots_of(const scene::Study& study, const std::vector<StudyCase>& cases,
                      const std::vector<StudySeries>& series, std::size_t k) {
     const scene::StudyQuantity& q = study.quantities[k];
-    const std::string error = (q.relative && q.exact.empty() ? "relative error of " : "error of ") + q.label +
-                              (q.relative || q.unit.empty() || !q.scale.empty() ? "" : ", " + q.unit);
+    const bool relative = is_relative(q, cases, k);
+    const std::string error = (relative ? "relative error of " : "error of ") + q.label +
+                              (relative || q.unit.empty() || !q.scale.empty() ? "" : ", " + q.unit);
     Plot work(q.name + "_work");
     for (const StudySeries& s : series) work.add(s, work_points(s, k));
     std::vector<study::CostPoint> front;

@@ -1,6 +1,7 @@
 #include "app/study_series.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace osculate::app {
@@ -72,6 +73,12 @@ std::vector<study::CostPoint> convergence_points(const scene::Study& study, cons
     std::vector<study::CostPoint> points;
     for (const StudyCase* c : series.cases) points.push_back({abscissa(study, *c), c->results[quantity].error});
     return points;
+}
+
+bool is_relative(const scene::StudyQuantity& quantity, const std::vector<StudyCase>& cases, std::size_t index) {
+    return quantity.relative && quantity.exact.empty() && std::ranges::any_of(cases, [&](const StudyCase& c) {
+               return !c.results.empty() && std::abs(c.results[index].reference) > 0;
+           });
 }
 
 std::vector<const StudyCase*> pareto_cases(const scene::Study& study, const std::vector<StudyCase>& cases,

@@ -29,6 +29,10 @@ struct StudySeries {
 [[nodiscard]] std::vector<study::CostPoint> convergence_points(const scene::Study& study, const StudySeries& series,
                                                                std::size_t quantity);
 
+/// Whether any error of a quantity is one over its reference.
+[[nodiscard]] bool is_relative(const scene::StudyQuantity& quantity, const std::vector<StudyCase>& cases,
+                               std::size_t index);
+
 /// Cases on the Pareto front of a quantity, all series of one problem together, problem by problem, by cost.
 [[nodiscard]] std::vector<const StudyCase*> pareto_cases(const scene::Study& study, const std::vector<StudyCase>& cases,
                                                          std::size_t quantity);

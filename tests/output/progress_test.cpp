@@ -55,6 +55,18 @@ TEST_F(ProgressLine, IsALinePerStepWhenPiped) {
     EXPECT_EQ(std::ranges::count(log(), '\n'), 2);
 }
 
+TEST_F(ProgressLine, ShowsAnyLineInPlaceOfTheLast) {
+    const File stream = file();
+    {
+        Progress progress(0, 1, Progress::Style::live, stream.get());
+        progress.show("run 1/2");
+        progress.show("run 2/2");
+    }
+    EXPECT_EQ(log(), "\rrun 1/2\x1b[K\rrun 2/2\x1b[K\n");
+    Progress(0, 1, Progress::Style::quiet, stream.get()).show("nothing");
+    EXPECT_THAT(log(), Not(HasSubstr("nothing")));
+}
+
 TEST_F(ProgressLine, IsOneLineOnATerminal) {
     const File stream = file();
     {

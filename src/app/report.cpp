@@ -1,6 +1,7 @@
 #include "osculate/app/report.hpp"
 
 #include "app/gaps.hpp"
+#include "app/pairing_advice.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -36,6 +37,8 @@ std::string report(const Plan& plan, int threads) {
                            node_name(plan.model, gaps.worst_node), gaps.largest_overlap);
         else
             fmt::format_to(out, "  no overlap\n");
+        for (const std::string& sentence : advice(pairing(*pair, plan.model.X)))
+            fmt::format_to(out, "  advice: {}\n", sentence);
         if (const Index fallbacks = pair->master().fallbacks(); fallbacks > 0)
             fmt::format_to(out, "  {} patches had to be smaller or simpler than asked for\n", fallbacks);
     }

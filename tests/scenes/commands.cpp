@@ -23,6 +23,7 @@ TEST_F(Command, CheckReportsSizesPairsAndGaps) {
               "pair joint: 16 slave nodes, 16 master facets\n"
               "  16 slave nodes above the master, initial gap 0.02 m to 0.02 m\n"
               "  no overlap\n"
+              "  advice: the meshes do not match: discretisation: mortar would even out the pressures at single nodes\n"
               "stage press: 1 step(s) in 1 s\n"
               "stage pull: 3 step(s) in 3 s\n");
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
@@ -35,6 +36,22 @@ TEST_F(Command, CheckReportsOverlapsAndNodesBesideTheMaster) {
     EXPECT_THAT(outcome.out,
                 AllOf(HasSubstr("  8 slave nodes above the master, initial gap -0.02 m to -0.02 m\n"),
                       HasSubstr("  worst overlap 0.02 m at node 0 of body 'cap', 0.04 of the facet size\n")));
+}
+
+TEST_F(Command, CheckAdvisesOnSlaveMasterAndWeighting) {
+    const std::string foundation = scene_file("configs/paper/foundation_tri.yaml"), advice = "advice: ";
+    const auto checked = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"check", foundation});
+        return osculate(arguments).out;
+    };
+    EXPECT_THAT(checked({}),
+                AllOf(HasSubstr(advice + "the meshes do not match"), Not(HasSubstr("times as far apart"))));
+    EXPECT_THAT(checked({"--set", "contact.base.slave=ground", "--set", "contact.base.master.set=underside"}),
+                HasSubstr(advice + "the slave's nodes are 2 times as far apart as the master's"));
+    EXPECT_THAT(checked({"--set", "contact.base.discretisation=mortar"}), Not(HasSubstr(advice)));
+    EXPECT_THAT(checked({"--set", "bodies.soil.mesh.block.divisions=[50, 50, 2]", "--set",
+                         "bodies.soil.mesh.block.pattern=quad"}),
+                Not(HasSubstr(advice))); // node on node
 }
 
 TEST_F(Command, ExplainSaysWhatIsThereAndWhatIsLeftOut) {

@@ -1,0 +1,26 @@
+#pragma once
+/// What a user may want to know about the choice of slave and master.
+
+#include "osculate/model/contact_term.hpp"
+
+#include <string>
+#include <vector>
+
+namespace osculate::app {
+
+/// How the meshes of a pair meet where they are near one another.
+struct Pairing {
+    Index near = 0;            ///< slave nodes closer to the master than its facets are long
+    bool matching = true;      ///< each of them lies over a master node
+    double slave_spacing = 0;  ///< mean distance of neighbouring nodes there, m
+    double master_spacing = 0; ///< the same of the master
+    model::Discretisation discretisation = model::Discretisation::node;
+};
+
+/// @pre the pair has been evaluated at the positions X of all nodes
+[[nodiscard]] Pairing pairing(const model::ContactTerm& pair, const std::vector<Vec3>& X);
+
+/// Sentences; none where there is nothing to say.
+[[nodiscard]] std::vector<std::string> advice(const Pairing& pairing);
+
+} // namespace osculate::app

@@ -121,6 +121,14 @@ TEST(Transaction, RejectedAttemptsOfASlideLeaveNoTrace) {
     }
 }
 
+TEST(Transaction, RejectedAttemptsWithMortarLeaveNoTrace) {
+    auto mortar = slide;
+    mortar.push_back({"contact.sliding.discretisation", "mortar"});
+    const Diary straight = run("paper/half_tube.yaml", mortar, 0);
+    for (const int every : {2, 3}) expect_same_bits(straight, run("paper/half_tube.yaml", mortar, every));
+    expect_same_bits(straight, run("paper/half_tube.yaml", mortar, 0, 3));
+}
+
 TEST(Transaction, RejectedAttemptsAtFiniteStrainLeaveNoTrace) {
     std::vector<scene::Override> rubber = thrown;
     rubber.push_back({"bodies.block.material", "{neo_hookean: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}"});

@@ -44,12 +44,12 @@ struct MasterNodes {
 enum class Discretisation { node, mortar };
 
 struct ContactOptions {
-    Discretisation discretisation = Discretisation::node;
     double friction = 0;      ///< Coulomb's mu
     double hysteresis = 0.03; ///< of the facet size, see contact::FacetSearch::track
     int changes_before_latch =
         4; ///< facet changes of a node within one attempt, after which it stays: it is on an edge
     double closing_tolerance = 0.02; ///< of the facet size: how near counts as touching before anything is in contact
+    Discretisation discretisation = Discretisation::node;
 };
 
 class ContactTerm {

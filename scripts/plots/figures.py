@@ -303,7 +303,7 @@ def main():
     for path, text in results.pages().items():
         path.write_text(text)
     print(results.RESULTS.read_text(), end="")
-    for fault in prose.faults():
+    for fault in prose.faults(json.loads(results.DATA.read_text())):
         print(f"figures: {fault}", file=sys.stderr)
 
 

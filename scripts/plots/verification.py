@@ -257,6 +257,10 @@ def surface_page(name, study, rows):
                 lines.append(["published ratio", *(published[1] if m == "height_1" else "" for m in methods)])
             parts.append(f"## {surface.capitalize()}: {kind}, {unit}\n\nMean errors over the area.\n\n"
                          + table(["facets, size", *methods], lines).rstrip("\n"))
+        if "cpu_seconds" in rows[0]:
+            lines = [[first["facets"], *(seconds(value(of(mesh, method), "cpu_seconds")) for method in methods)]
+                     for mesh in meshes for first in [of(mesh, methods[0])]]
+            parts.append(f"## {surface.capitalize()}: CPU seconds\n\n" + table(["facets", *methods], lines).rstrip("\n"))
         if surface in PLOTS[name]:
             parts.append(f"![{surface}: errors](images/{name}_study_{surface}.png)")
     lost = [f"- {r['method']} on mesh {r['mesh']} of the {r['surface']}: {r['missing']} of {r['points']}" for r in rows

@@ -21,7 +21,7 @@ DATA = DOCS / "data"
 IMAGES = DOCS / "images"
 # columns of study.csv that no page has a use for
 DROPPED = re.compile(r"run|wall_seconds|same_bits|peak_memory_bytes|seconds\..*")
-DIGITS = 9  # full and quarter models are compared to 1e-6
+DIGITS = 12
 
 # plots on the pages: quantities of a study, surfaces of a study of surfaces
 PLOTS = {
@@ -226,7 +226,7 @@ def page(name):
     parts = [head(name, study, rows)]
     parts += [quantity_section(name, study, axes, rows, q).rstrip("\n") for q in study["quantities"]]
     parts.append("## CPU seconds\n\n" + series_table(study, axes, rows, lambda row: seconds(value(row, "cpu_seconds"))).rstrip("\n"))
-    failed = [[*(row[a] for a in axes), row["status"].replace("_", " "), row["reason"].replace("|", "/")]
+    failed = [[*(row[a] for a in axes), row["status"].replace("_", " "), row["reason"]]
               for row in rows if row["status"] != "done"]
     if failed:
         parts.append("## Runs without a result\n\n" + table([*axes, "status", "reason"], failed).rstrip("\n"))
@@ -281,18 +281,24 @@ def take(folder, name):
     """The table and the plots of a study that is finished."""
     with open(folder / "study.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    if any(row.get("status") == "waiting" for row in rows):
-        print(f"verification: {name} is not finished; left out", file=sys.stderr)
+    study = study_file.read(name)
+    axes = list(study.get("axes", ()))
+    needed = [*axes, *(f"{quantity}.value" for quantity in study.get("quantities", ()))]
+    plots = {folder / plot.name.removeprefix(f"{name}_"): plot for plot in images(name)}
+    why = ("is not finished" if any(row.get("status") == "waiting" for row in rows) else
+           "was run from another study file" if any(column not in rows[0] for column in needed) else
+           "has no plots; gnuplot draws them" if not all(plot.is_file() for plot in plots) else "")
+    if why:
+        print(f"verification: {folder} {why}; left out", file=sys.stderr)
         return
     columns = [c for c in rows[0] if not DROPPED.fullmatch(c) and any(row[c] for row in rows)]
     columns += [c for c in ("reason",) if c in rows[0] and c not in columns]
-    axes = set(study_file.read(name).get("axes", ()))
     with open(DATA / f"{name}.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         writer.writerows([row[c] if c in axes else shortened(row[c]) for c in columns] for row in rows)
-    for plot in images(name):
-        shutil.copyfile(folder / plot.name.removeprefix(f"{name}_"), plot)
+    for drawn, plot in plots.items():
+        shutil.copyfile(drawn, plot)
 
 
 def images(name):

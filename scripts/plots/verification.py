@@ -183,7 +183,8 @@ def quantity_section(name, study, axes, rows, quantity):
         if of["reference"] == "finest":
             text += "; the reference is the finest run"
         elif len(references) == 1:
-            text += f"; the reference is {number(float(references[0]), 6)}" + (f" {unit}" if float(references[0]) else "").rstrip()
+            reference = float(references[0])
+            text += f"; the reference is {number(reference, 6)}" + (f" {unit}" if unit and reference else "")
     text += ". *Last*: of the last run of a row.\n\n"
     slopes = [(f"slope over {study.get('abscissa_label', study.get('abscissa', 'h'))}",
                lambda runs: number(slope([(abscissa(study, r), value(r, f"{quantity}.error")) for r in runs]), 2, "f")),
@@ -225,7 +226,8 @@ def page(name):
     axes = list(study["axes"])
     parts = [head(name, study, rows)]
     parts += [quantity_section(name, study, axes, rows, q).rstrip("\n") for q in study["quantities"]]
-    parts.append("## CPU seconds\n\n" + series_table(study, axes, rows, lambda row: seconds(value(row, "cpu_seconds"))).rstrip("\n"))
+    times = series_table(study, axes, rows, lambda row: seconds(value(row, "cpu_seconds")))
+    parts.append("## CPU seconds\n\n" + times.rstrip("\n"))
     failed = [[*(row[a] for a in axes), row["status"].replace("_", " "), row["reason"]]
               for row in rows if row["status"] != "done"]
     if failed:
@@ -241,7 +243,8 @@ def surface_page(name, study, rows):
         for kind, unit in KINDS.items():
             published = re.search(kind + r": ([\d.]+)", study["surfaces"][surface].get("published", ""))
             lines, fits = [], []
-            of = lambda mesh, method: next(r for r in rows if (r["surface"], r["mesh"], r["method"]) == (surface, mesh, method))
+            of = lambda mesh, method: next(r for r in rows
+                                           if (r["surface"], r["mesh"], r["method"]) == (surface, mesh, method))
             meshes = unique(row["mesh"] for row in rows if row["surface"] == surface)
             mean = lambda mesh, method: value(of(mesh, method), f"{kind}.mean")
             for mesh in meshes:
@@ -323,7 +326,8 @@ def check():
     wrong += [f"{name} has no data" for name in study_file.names() if DOCS / f"{name}.md" not in texts]
     wrong += [f"{path} belongs to no study" for path in sorted(DOCS.glob("*.md")) if path not in texts]
     for path, text in texts.items():
-        wrong += [f"{path}: {link} is missing" for link in re.findall(r"\]\(([^)#:]+)\)", text) if not (DOCS / link).exists()]
+        wrong += [f"{path}: {link} is missing" for link in re.findall(r"\]\(([^)#:]+)\)", text)
+                  if not (DOCS / link).exists()]
     for line in wrong:
         print(line)
     return not wrong

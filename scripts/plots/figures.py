@@ -16,7 +16,7 @@ import vtk
 
 import prose
 import results
-from results import INERTIA, LINES as MESH_LINES, MASTERS, OPTIONS, THREADS
+from results import INERTIA, LINES as MESH_LINES, MASTERS, MESHES, OPTIONS, THREADS
 
 RUNS = Path("out/figures")
 IMAGES = Path("docs/images")

@@ -7,7 +7,7 @@ def number(value, digits=3, kind="g"):
 
 
 def seconds(value):
-    return number(value, 2 if value < 10 else 1, "f")
+    return number(value, 2) if value < 0.1 else number(value, 2 if value < 10 else 1, "f")
 
 
 def table(header, rows):

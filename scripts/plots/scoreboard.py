@@ -212,16 +212,20 @@ def half_tube_aims(s):
                      worst(study, "ripple", sliding_step=step, tube=tube, **NODE), aim)
     runs = {m: [(float(r["cpu_seconds"]), float(r["ripple.error"]))
                 for r in study.only(surface=m, weighting="node", sliding_step="0.1m") if r["ripple.error"]]
-            for m in ("facets", "blend")}
+            for m in ("facets", "rpim", "blend")}
     shared = cost_ratio(runs["facets"], runs["blend"])
     yield beside(one, "CPU seconds of facets over those of blend at equal ripple, node",
                  f"{shared[0]:.3g} (at {percent(shared[1])})" if shared else
                  f"no ripple in common: facets {span(runs['facets'])}, blend {span(runs['blend'])}")
     # at the time of each run with blend: its ripple over the least that facets reach by then
     least = lambda m, time: min((e for t, e in runs[m] if t <= time), default=math.inf)
-    ratios = [least("blend", time) / least("facets", time) for time, _ in runs["blend"]]
+    over = lambda other: max(least("blend", time) / least(other, time) for time, _ in runs["blend"])
     yield within(one, "ripple with blend over the least with facets for no more CPU seconds, node, worst run with blend",
-                 max(ratios), 1, lambda v: number(v, 2))
+                 over("facets"), 1, lambda v: number(v, 2))
+    yield beside(one, "the same over the least with rpim", number(over("rpim"), 2))
+    for surface in ("facets", "rpim", "blend"):
+        yield beside(one, f"ripple, {surface}, node, quartered tube",
+                     percent(worst(study, "ripple", surface=surface, weighting="node", tube="quartered")))
 
 
 def slip_aims(s):

@@ -26,11 +26,11 @@ DIGITS = 12
 # plots on the pages: quantities of a study, surfaces of a study of surfaces
 PLOTS = {
     "cattaneo_mindlin": ["stick_half_width"],
-    "falling_block": ["touch"],
+    "falling_block": [],
     "foundation": ["inner_roughness"],
     "half_tube_ripple": ["ripple"],
     "hertz_cylinder": ["profile"],
-    "hertz_impact": ["duration"],
+    "hertz_impact": [],
     "hertz_sphere": ["profile"],
     "incline": [],
     "metal_bar": [],

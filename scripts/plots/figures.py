@@ -1,4 +1,5 @@
-"""Runs the scenes, draws the pictures of docs/images and prints the figures quoted in README.md and docs.
+"""Runs the scenes, draws the pictures of docs/images, stores what it measures as docs/data/figures.json and writes from it
+docs/results.md and the README's table (results.py).
 
     figures.py [--keep] OSCULATE      called by scripts/figures, from the root of the repository
 """
@@ -13,6 +14,10 @@ from pathlib import Path
 
 import vtk
 
+import prose
+import results
+from results import INERTIA, LINES as MESH_LINES, MASTERS, MESHES, OPTIONS, THREADS
+
 RUNS = Path("out/figures")
 IMAGES = Path("docs/images")
 # name of a master: its value of the key `surface`
@@ -20,13 +25,9 @@ SURFACES = {
     "facets": "facets", "rpim": "rpim", "blend": "blend", "blend_ring3": "{blend: {ring: 3}}",
     "blend_r3": "{blend: {basis: r3}}", "blend_r5": "{blend: {basis: r5}}", "blend_q05": "{blend: {q: 0.5}}",
 }
-TITLES = {"blend_ring3": "blend, 3 rings"}
-MASTERS = ("facets", "rpim", "blend", "blend_ring3")
 DRAWN = MASTERS[:3]
 LINES = {"facets": 'lw 1.5 lc rgb "#d95f02" title "facets"', "rpim": 'lw 1.5 lc rgb "#1f78b4" title "rpim"',
          "blend": 'lw 2 lc rgb "#111111" title "blend"'}
-MU = 0.1  # friction of every scene below
-THREADS = 2
 TIMED = ("half_tube", "foundation_quad", "foundation_tri", "foundation_hybrid")
 REPETITIONS = 3  # of these; the fastest is kept
 
@@ -45,20 +46,9 @@ SCENES = {
     "half_tube_line": ("half_tube_line", "sliding", []),
     "half_tube_line_axial": ("half_tube_line_axial", "sliding", []),
 }
-# the half-tube with blend, one thing changed at a time: what, (run, master)
 HEXAHEDRA = "bodies.{}.hex_formulation={}"
 SCENES |= {f"half_tube_{f}": ("half_tube", "sliding", [HEXAHEDRA.format(body, f) for body in ("tube", "contactor")])
            for f in ("b_bar", "incompatible_modes")}
-OPTIONS = {
-    "blend as it is": ("half_tube", "blend"),
-    "basis `r3`": ("half_tube", "blend_r3"),
-    "basis `r5`": ("half_tube", "blend_r5"),
-    "multiquadric with `q: 0.5`": ("half_tube", "blend_q05"),
-    "hexahedra `b_bar`": ("half_tube_b_bar", "blend"),
-    "hexahedra `incompatible_modes`": ("half_tube_incompatible_modes", "blend"),
-}
-# with inertia: name of a run and scene, seconds of the slide
-INERTIA = {"half_tube_dynamic": 30, "half_tube_fast": 0.3}
 SCENES |= {name: (name, "sliding", []) for name in INERTIA}
 RUNS_OF_OPTIONS = set(OPTIONS.values()) | {(name, "blend") for name in INERTIA}
 
@@ -100,7 +90,7 @@ def run_scenes(osculate, keep):
                 last.rename(where)
 
 
-def table(path):
+def read_table(path):
     with open(path, newline="") as file:
         return [{key: float(value) if value else None for key, value in row.items()} for row in csv.DictReader(file)]
 
@@ -120,7 +110,7 @@ def mean(values):
 
 def slides(name, master):
     """Rows of the history after the pressure step."""
-    return table(folder(name, master) / "history.csv")[1:]
+    return read_table(folder(name, master) / "history.csv")[1:]
 
 
 def centre_line(name, master):
@@ -155,54 +145,11 @@ def iterations(name, master):
             len(rows) - len(steps))
 
 
-def seconds(name, master):
-    """Of the whole run: wall, CPU."""
-    of = summary(name, master)["seconds"]
-    return [number(of[kind], 1) for kind in ("total", "cpu")]
-
-
-def title(master):
-    return TITLES.get(master, master)
-
-
-def table_of(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|---" * len(header) + "|"]
-    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
-
-
-def markdown(title, header, rows):
-    return f"## {title}\n{table_of(header, rows)}"
-
-
-def number(value, digits):
-    return "-" if value is None else f"{value:.{digits}f}"
-
-
 def late_forces(name, master):
     """Normal and driving force of the half-tube over the distances of the paper's sliding steps 5 to 30."""
     rows = slides(name, master)
     rows = rows[len(rows) // 6 - 1:]  # 30 steps or 120: from 0.5 m on
     return [row["pair.sliding.normal"] for row in rows], [abs(row["set.rear.reaction_y"]) for row in rows]
-
-
-def ripple(name, master):
-    _, D = late_forces(name, master)
-    return 100 * (max(D) - min(D)) / mean(D)
-
-
-def half_tube_table():
-    rows = []
-    for master in MASTERS:
-        N, D = late_forces("half_tube", master)
-        press, slide, worst, cuts = iterations("half_tube", master)
-        rows.append([title(master), number(mean(N) / 1e6, 3), number(mean(D) / 1e6, 4),
-                     number(mean(D) / (MU * mean(N)), 4), press, number(slide, 2), worst, cuts,
-                     f"{float(attempts('half_tube', master)[0]['value']):.0e}",
-                     *seconds("half_tube", master)])
-    return markdown("Half-tube: pressed, then slid by 3 m",
-                    ["master", "N, MN", "D, MN", "D/(mu N)", "iterations: press", "mean of the slides",
-                     "most of a slide", "cut steps", "last residual of the press", "seconds", "CPU seconds"],
-                    rows)
 
 
 def driven(name):
@@ -213,115 +160,64 @@ def driven(name):
     return [(3 * (s - math.sin(2 * math.pi * s) / (2 * math.pi)), row) for s, row in zip(parts, rows)]
 
 
-def inertia_table():
-    _, D = late_forces("half_tube", "blend")
-    rows = [["static", number(mean(D) / 1e6, 4), *["-"] * 4, attempts("half_tube", "blend")[-1]["attempt"],
-             *seconds("half_tube", "blend")]]
-    for name, duration in INERTIA.items():
-        steps = driven(name)
-        friction = [row["pair.sliding.friction"] for y, row in steps if 0.5 <= y <= 2.9]
-        last = steps[-1][1]
-        energy = last["energy.friction"] + last["energy.kinetic"] + last["energy.strain"]
-        balance = max(abs(row["energy.balance"]) for _, row in steps) / energy
-        rows.append([f"{duration} s", number(mean(friction) / 1e6, 4), number(max(row["energy.kinetic"] for _, row in steps) / 1e6, 4),
-                     number(last["energy.friction"] / 1e6, 3), number(last["energy.algorithmic"] / 1e6, 4), f"{balance:.0e}",
-                     attempts(name, "blend")[-1]["attempt"], *seconds(name, "blend")])
-    return markdown("Half-tube with inertia: the same 3 m in 30 s and in 0.3 s, blend",
-                    ["slide", "friction, MN, mean of 0.5 to 2.9 m", "largest kinetic energy, MJ", "friction work, MJ",
-                     "algorithmic dissipation, MJ", "largest unbalance of the ledger / energy", "attempts", "s", "CPU s"],
-                    rows)
+def of_half_tube(name, master):
+    N, D = late_forces(name, master)
+    return {"normal": mean(N), "driving": mean(D), "ripple": 100 * (max(D) - min(D)) / mean(D)}
 
 
-RIPPLES = {"half_tube": "0.1 m steps", "half_tube_fine_steps": "0.025 m steps", "half_tube_halved": "halved tube"}
+def of_inertia(name):
+    steps = driven(name)
+    last = steps[-1][1]
+    energy = last["energy.friction"] + last["energy.kinetic"] + last["energy.strain"]
+    return {"friction": mean([row["pair.sliding.friction"] for y, row in steps if 0.5 <= y <= 2.9]),
+            "kinetic": max(row["energy.kinetic"] for _, row in steps),
+            "friction_work": last["energy.friction"], "algorithmic": last["energy.algorithmic"],
+            "unbalance": max(abs(row["energy.balance"]) for _, row in steps) / energy}
 
 
-def ripple_table():
-    rows = [[title(master), *(number(ripple(name, master), 2) for name in RIPPLES)] for master in MASTERS]
-    return markdown("Half-tube: ripple of the driving force, peak-to-peak over mean, %",
-                    ["master", *RIPPLES.values()], rows)
+def of_foundation(name, master):
+    return {"roughness": roughness([value for _, value in centre_line(name, master)]),
+            "normal": read_table(folder(name, master) / "history.csv")[-1]["pair.base.normal"]}
 
 
-def options_table():
-    rows = [[what, number(ripple(*run), 2), number(iterations(*run)[1], 2)] for what, run in OPTIONS.items()]
-    return markdown("Half-tube with blend: ripple with one thing changed",
-                    ["changed", "ripple, 0.1 m steps, %", "iterations: mean of the slides"], rows)
+def of_mesh_line(name, master):
+    first = [row for row in read_table(folder(name, master) / "iterations.csv") if row["attempt"] == 1]
+    return {"status_changes": [int(row["status_changes"]) for row in first],
+            "residuals": [row["residual"] for row in first[-4:]]}
 
 
-MESHES = ("quad", "tri", "hybrid")
+def measured(name, master):
+    """Everything that tables are made of, as the run gives it."""
+    run, rows = summary(name, master), attempts(name, master)
+    figures = {"status": run["status"], "seconds": run["seconds"], "factorisations": run["factorisations"],
+               "attempts": int(rows[-1]["attempt"]), "iterations": iterations(name, master),
+               "first_residual": float(rows[0]["value"]), "last_residual": float(rows[-1]["value"])}
+    if name in INERTIA:
+        return figures | of_inertia(name)
+    if name in MESH_LINES:
+        return figures | of_mesh_line(name, master)
+    if name.startswith("foundation"):
+        return figures if name.endswith("_tight") else figures | of_foundation(name, master)
+    return figures | of_half_tube(name, master)
 
 
-def foundation_table():
-    rows = []
-    for mesh in MESHES:
-        for master in MASTERS:
-            name, tight = f"foundation_{mesh}", f"foundation_{mesh}_tight"
-            pressures = [value for _, value in centre_line(name, master)]
-            last = table(folder(name, master) / "history.csv")[-1]
-            rows.append([mesh, title(master), number(roughness(pressures), 4),
-                         number(last["pair.base.normal"] / 1e6, 3), iterations(name, master)[0],
-                         iterations(tight, master)[0] if summary(tight, master)["status"] == "done" else "-",
-                         f"{float(attempts(tight, master)[-1]['value']):.0e}"])
-    return markdown("Foundation: pressed on soil, three divisions of the soil's surface",
-                    ["soil surface", "master", "roughness", "N, MN", "iterations", "to `solver.tolerance: 1e-12`",
-                     "residual then"], rows)
+def short(figures):
+    """Nine digits are more than any table shows."""
+    if isinstance(figures, dict):
+        return {key: short(value) for key, value in figures.items()}
+    if isinstance(figures, (list, tuple)):
+        return [short(value) for value in figures]
+    return float(f"{figures:.9g}") if isinstance(figures, float) else figures
 
 
-PARTS = {"search": "search", "patches": "patches", "contact": "contact", "assembly": "assembly",
-         "factor": "factorisation", "solve": "solves", "output": "output"}
-
-
-def cost_table():
-    rows = []
-    for mesh in MESHES:
-        for master in MASTERS:
-            run = summary(f"foundation_{mesh}", master)
-            of = run["seconds"]
-            facets = summary(f"foundation_{mesh}", "facets")["seconds"]
-            both = [cell for kind in ("total", "cpu")
-                    for cell in (number(of[kind], 1), number(of[kind] / facets[kind], 2))]
-            parts = [number(of[part], 2) for part in PARTS]
-            rows.append([mesh, title(master), *both, *parts, run["factorisations"]])
-    return markdown(f"Foundation: seconds, {THREADS} threads",
-                    ["soil surface", "master", "total", "over facets", "CPU", "over facets", *PARTS.values(),
-                     "factorisations"], rows)
-
-
-def line_table():
-    rows = []
-    for name, what in (("half_tube_line", "along the tube"), ("half_tube_line_axial", "around the tube")):
-        for master in MASTERS:
-            press, slide, worst, cuts = iterations(name, master)
-            lines = table(folder(name, master) / "iterations.csv")
-            first = [row for row in lines if row["attempt"] == 1]
-            rows.append([what, title(master), summary(name, master)["status"], press, number(slide, 2), worst, cuts,
-                         " ".join(str(int(row["status_changes"])) for row in first),
-                         " ".join(f"{row['residual']:.0e}" for row in first[-4:])])
-    return markdown("Half-tube, a mesh line of the contactor on one of the tube",
-                    ["mesh line", "master", "ended", "iterations: press", "mean of 10 slides", "most of a slide",
-                     "cut steps", "status changes at the iterates of the pressure step", "its last four residuals"],
-                    rows)
-
-
-def readme_table():
-    rows = []
-    for master in MASTERS:
-        N, D = late_forces("half_tube", master)
-        press, slide, *_ = iterations("half_tube", master)
-        pressures = [value for _, value in centre_line("foundation_quad", master)]
-        rows.append([f"`{title(master)}`" if master in DRAWN else title(master), number(mean(N) / 1e6, 2),
-                     number(mean(D) / (MU * mean(N)), 4), number(ripple("half_tube", master), 2),
-                     number(ripple("half_tube_halved", master), 2), f"{press}, {number(slide, 1)}",
-                     number(roughness(pressures), 3),
-                     seconds("foundation_quad", master)[1]])
-    return table_of(["half-tube, mu = 0.1", "N, MN", "D/(mu N)", "ripple of D, %", "with the tube's mesh halved",
-                     "iterations: press, mean of the slides", "foundation: roughness", "CPU seconds"], rows)
-
-
-def update_readme():
-    path = Path("README.md")
-    head, rest = path.read_text().split("<!-- figures -->\n")
-    tail = rest.split("<!-- end -->\n")[1]
-    path.write_text(f"{head}<!-- figures -->\n{readme_table()}\n\n<!-- end -->\n{tail}")
+def store():
+    of = {}
+    for name, master in sorted(set(runs())):
+        of.setdefault(name, {})[master] = short(measured(name, master))
+    results.DATA.parent.mkdir(parents=True, exist_ok=True)
+    lines = [f'"{name}": {{\n' + ",\n".join(f'  "{master}": {json.dumps(run)}' for master, run in masters.items()) + "\n}"
+             for name, masters in of.items()]
+    results.DATA.write_text("{\n" + ",\n".join(lines) + "\n}\n")
 
 
 def gnuplot(script, **data):
@@ -403,35 +299,13 @@ def main():
     draw_pressure()
     draw_inertia()
     draw_half_tube()
-    tables = (half_tube_table, ripple_table, options_table, inertia_table, foundation_table, cost_table, line_table)
-    text = "\n\n".join(make() for make in tables) + "\n"
-    Path("docs/results.md").write_text(RESULTS_HEAD + text)
-    update_readme()
-    print(text, end="")
+    store()
+    for path, text in results.pages().items():
+        path.write_text(text)
+    print(results.RESULTS.read_text(), end="")
+    for fault in prose.faults(json.loads(results.DATA.read_text())):
+        print(f"figures: {fault}", file=sys.stderr)
 
-
-RESULTS_HEAD = """# Results
-
-Written by `scripts/figures`, which runs the scenes of `configs/paper`; edit nothing here. Seconds are those of the
-machine it ran on last, the fastest of at least three runs; others were at work on it, so that CPU seconds compare better.
-`rpim` and `blend` have their defaults, 2 rings and the multiquadric with R = 1.42, q = 1.03, m = 6, unless the tables say
-otherwise.
-
-- N is the sum of the nodal normal forces, D the force that drives the contactor; means and ripples are over distances
-  from 0.5 m on, the paper's sliding steps 5 to 30. Steps of 0.1 m on facets of 1 m miss the extremes of the ripple.
-- *Halved* is the tube with twice as many facets both ways (`[26, 24, 3]`), 0.375 x 0.5 m.
-- Roughness is the root mean square second difference of the nodal contact pressure along y = 0 over its mean, end nodes
-  left out.
-- Residuals are over the reference force ([theory](theory.md), section 6): largest components, but for the last four of
-  the mesh lines, which are 2-norms. The linear systems are solved no further than a tenth of `solver.tolerance`.
-
-![Driving force over sliding distance](images/friction.png)
-
-![Friction over the distance of the driven rear, with inertia](images/inertia.png)
-
-![Contact pressure along the centre line of the foundation](images/pressure.png)
-
-"""
 
 if __name__ == "__main__":
     main()

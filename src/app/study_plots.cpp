@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 
 namespace osculate::app {
 
@@ -45,6 +46,7 @@ public:
     void add(const StudySeries& series, const std::vector<study::CostPoint>& data) {
         std::string rows = rows_of(data);
         if (rows.empty()) return;
+        ++titles_;
         const auto law = study::fit_power_law(data);
         const char* colour = colours[static_cast<std::size_t>(series.colour) % colours.size()];
         const int point = points[static_cast<std::size_t>(series.style) % points.size()];
@@ -58,22 +60,27 @@ public:
     }
 
     void add_front(const std::vector<study::CostPoint>& front) {
-        if (const std::string rows = rows_of(front); !rows.empty())
-            add_line(block(rows), "with points pt 6 ps 2 lw 1.5 lc rgb '#e41a1c' title 'Pareto front'");
+        const std::string rows = rows_of(front);
+        if (rows.empty()) return;
+        ++titles_;
+        add_line(block(rows), "with points pt 6 ps 2 lw 1.5 lc rgb '#e41a1c' title 'Pareto front'");
     }
 
     /// Draws both files; nothing where there is no point.
     [[nodiscard]] std::string script(const std::string& title, const std::string& x, const std::string& y) const {
         if (lines_.empty()) return {};
+        // a key of too many titles would break into columns over the curves
+        constexpr int least_height = 600, margins = 80, line = 28;
+        const int height = std::max(least_height, margins + line * titles_);
         std::string text =
             data_ + fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange {}\nset yrange {}\n"
                                 "set xtics {}\nset ytics {}\n",
                                 quoted(title), quoted(x), quoted(y), x_.range(), y_.range(), x_.tics(), y_.tics());
-        for (const auto& [terminal, ending] :
-             {std::pair{"svg size 1000,600 font 'sans,14' background 'white'", "svg"},
-              std::pair{"pngcairo size 1000,600 font 'sans,12' background 'white'", "png"}})
-            text += fmt::format("set terminal {}\nset output '{}.{}'\nplot {}\nunset output\n", terminal, name_, ending,
-                                lines_);
+        for (const auto& [terminal, font, ending] :
+             {std::tuple{"svg", "sans,14", "svg"}, std::tuple{"pngcairo", "sans,12", "png"}})
+            text += fmt::format("set terminal {} size 1000,{} font '{}' background 'white'\nset output '{}.{}'\n"
+                                "plot {}\nunset output\n",
+                                terminal, height, font, name_, ending, lines_);
         return text;
     }
 
@@ -126,7 +133,7 @@ private:
 
     std::string name_, data_, lines_;
     Extent x_, y_;
-    int blocks_ = 0;
+    int blocks_ = 0, titles_ = 0;
 };
 
 std::string plots_of(const scene::Study& study, const std::vector<StudyCase>& cases,

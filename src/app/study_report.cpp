@@ -31,7 +31,7 @@ void write_csv(const StudyResult& result, const std::filesystem::path& path) {
     std::vector<std::string> columns{"surface", "mesh", "facets", "vertices", "size", "method"};
     for (const ErrorKind& kind : error_kinds())
         for (const char* measure : {".mean", ".worst"}) columns.push_back(kind.name + std::string(measure));
-    for (const char* count : {"points", "missing", "fallbacks"}) columns.emplace_back(count);
+    for (const char* count : {"points", "missing", "fallbacks", "cpu_seconds"}) columns.emplace_back(count);
     output::CsvTable table(path, columns);
     for (const StudyRow& r : result.rows) {
         std::vector<output::Cell> cells{r.surface, long{r.mesh}, long{r.facets}, long{r.vertices}, r.size, r.method};
@@ -40,6 +40,7 @@ void write_csv(const StudyResult& result, const std::filesystem::path& path) {
             cells.emplace_back((r.errors.*kind.measure).worst);
         }
         for (const Index count : {r.errors.points, r.errors.missing, r.fallbacks}) cells.emplace_back(long{count});
+        cells.emplace_back(r.cpu_seconds);
         table.row(cells);
     }
 }

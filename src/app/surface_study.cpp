@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <stdexcept>
 
 namespace osculate::app {
@@ -96,11 +97,13 @@ StudyResult run_surface_study(const scene::SurfaceStudy& study, int threads) {
         for (const study::SurfaceMesh& mesh : meshes) {
             ++number;
             for (const std::string& method : study.methods) {
+                const std::clock_t start = std::clock();
                 const auto approximation = study::make_approximation(method, mesh);
+                const study::Errors errors = study::measure_errors(mesh, *approximation, exact, study.points, threads);
+                const double cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
                 result.rows.push_back({name, method, number, mesh.topology.facet_count(), mesh.topology.vertex_count(),
-                                       mesh.topology.mean_facet_size(),
-                                       study::measure_errors(mesh, *approximation, exact, study.points, threads),
-                                       approximation->fallbacks()});
+                                       mesh.topology.mean_facet_size(), errors, approximation->fallbacks(),
+                                       cpu_seconds});
             }
         }
     }

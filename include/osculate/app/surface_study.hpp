@@ -18,6 +18,7 @@ struct StudyRow {
     double size = 0; ///< mean facet size, m
     study::Errors errors;
     Index fallbacks = 0;
+    double cpu_seconds = 0; ///< of making the surface and measuring it
 };
 
 struct StudyResult {

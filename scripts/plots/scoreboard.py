@@ -168,9 +168,11 @@ def foundation_aims(s):
     for soil in ("tri", "hybrid"):
         for surface in ("facets", "rpim", "blend"):
             ask = dict(soil=soil, surface=surface, mesh="given")
-            ratio = worst(study, "roughness", weighting="mortar", **ask) / worst(study, "roughness", weighting="node", **ask)
-            yield within(problem("foundation", study.texts), f"roughness with mortar over that with node, {soil}, {surface}",
-                         ratio, 0.5, lambda v: number(v, 2))
+            for what, where in (("roughness", ""), ("inner_roughness", " 1 m and more from the edges")):
+                ratio = worst(study, what, weighting="mortar", **ask) / worst(study, what, weighting="node", **ask)
+                yield within(problem("foundation", study.texts),
+                             f"roughness{where} with mortar over that with node, {soil}, {surface}", ratio, 0.5,
+                             lambda v: number(v, 2))
 
 
 def span(points):

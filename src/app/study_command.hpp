@@ -13,7 +13,7 @@ struct StudyOptions {
     std::filesystem::path directory; ///< out/<study name> when empty
     std::vector<scene::Override> overrides;
     int jobs = 1;
-    int threads = 0; ///< of every run; 0: one
+    int threads = 0;               ///< of every run; 0: one
     int repeats = 0;               ///< 0: those of the study
     std::vector<std::string> only; ///< "axis=value,value": runs nothing else
     bool report_only = false, quiet = false;

@@ -29,8 +29,9 @@ TEST(BadScene, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(faults[0].line, 19);
     EXPECT_EQ(faults[0].column, 5);
     EXPECT_EQ(faults[0].key, "contact.joint.frcition");
-    EXPECT_EQ(faults[0].expected, "one of the keys slave, master, discretisation, friction, closing_tolerance, initial_overlap_limit, "
-                                  "stiffness_scale");
+    EXPECT_EQ(faults[0].expected,
+              "one of the keys slave, master, discretisation, friction, closing_tolerance, initial_overlap_limit, "
+              "stiffness_scale");
     EXPECT_EQ(faults[0].found, "unknown key 'frcition'");
     EXPECT_EQ(faults[0].nearest, "friction");
 }
@@ -191,10 +192,10 @@ TEST(BadScene, FaultInAnOverride) {
                           "--set: contact.joint.friction: expected valid YAML, found end of sequence flow not found");
     expect_override_fault({"contact..friction", "1"},
                           "--set: contact..friction: expected key.path=value, found 'contact..friction'");
-    expect_override_fault(
-        {"contact.joint.ring", "1"},
-        "--set: contact.joint.ring: expected one of the keys slave, master, discretisation, friction, closing_tolerance, "
-        "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
+    expect_override_fault({"contact.joint.ring", "1"},
+                          "--set: contact.joint.ring: expected one of the keys slave, master, discretisation, "
+                          "friction, closing_tolerance, "
+                          "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
 }
 
 TEST(BadScene, OptionOfAnotherChoice) {

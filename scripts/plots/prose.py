@@ -36,6 +36,32 @@ def inverse(values):
     return [1 / value for value in values]
 
 
+def weightings():
+    """Rows of README's table of node and mortar."""
+    def pick(study, column, **where):
+        return [float(row[column]) for row in read(study) if all(row[key] == value for key, value in where.items())]
+
+    def worst(study, column, **where):
+        return max(pick(study, column, **where))
+
+    patch = pick("taylor_patch", "worst_pressure.error", weighting="node")
+    yield f"| patch test, worst node | fails by {span([100 * error for error in patch], 0)} % |"
+    for title, tube in (("half-tube, ripple with `blend`", "base"), ("the same, tube's mesh halved", "halved")):
+        node, mortar = (100 * worst("half_tube_ripple", "ripple.error", surface="blend", weighting=weighting,
+                                    sliding_step="0.1m", tube=tube) for weighting in ("node", "mortar"))
+        yield f"| {title} | {node:.2f} % | {mortar:.2f} % |"
+    for title, mesh in (("Hertz, ball, `blend`, 8 elements across: peak, radius", "8_across"),
+                        ("16 elements across", "16_across")):
+        node, mortar = (", ".join(format(100 * worst("hertz_sphere", what + ".error", model="quarter", surface="blend",
+                                                     weighting=weighting, mesh=mesh), ".2f") for what in ("peak_pressure", "contact_radius"))
+                        for weighting in ("node", "mortar"))
+        yield f"| {title} | {node} % | {mortar} % |"
+    cpu = [pick("half_tube_ripple", "cpu_seconds", surface="blend", weighting="mortar", sliding_step="0.1m", tube=tube)[0]
+           / pick("half_tube_ripple", "cpu_seconds", surface="blend", weighting="node", sliding_step="0.1m", tube=tube)[0]
+           for tube in ("base", "between", "halved")]
+    yield f"| half-tube with `blend`, CPU time over that of `node` | 1 | {span(cpu)} |"
+
+
 def claims(runs):
     """(file, text it must hold); spaces and line ends are alike."""
     ripple = lambda name, master: f"{runs[name][master]['ripple']:.2f}"
@@ -49,6 +75,8 @@ def claims(runs):
     yield "README.md", (
         f"`blend` takes {span(cpu_ratios(runs, foundations, 'blend', 'facets'))} times the CPU time of `facets`, `rpim` "
         f"{span(cpu_ratios(runs, foundations, 'rpim', 'facets'))} times.")
+    for line in weightings():
+        yield "README.md", line
     searches = [run["seconds"]["search"] for scene in foundations for run in runs[scene].values()]
     yield "docs/search.md", f"the search takes {span(searches, 2)} s of the foundation runs"
 

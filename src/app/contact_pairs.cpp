@@ -27,7 +27,8 @@ std::vector<Mat3> in_symmetry_planes(const scene::Scene& scene, const model::Mod
             if (held.name == name && held.body == slave.body)
                 for (const Index node : held.nodes) {
                     Mat3& P = kept.try_emplace(node, Mat3::Identity()).first->second;
-                    P = P * (Mat3::Identity() - normal * normal.transpose());
+                    const Vec3 left = P * normal; // nothing where the plane is one of those before
+                    if (left.norm() > 1e-6) P -= left * left.transpose() / left.squaredNorm();
                 }
     }
     if (std::ranges::none_of(nodes, [&](Index node) { return kept.contains(node); })) return {};

@@ -38,9 +38,9 @@ struct SmoothSlave {
 ///     gap      g_j = int psi_j g dA / D_j                     normal  n_j = N_j / |N_j|,  N_j = int psi_j n dA / D_j
 ///     weights  W_ji = int psi_j N_i dA / D_j                  a force lambda on node j loads master node i with -W_ji lambda.
 /// Gap and normal are those of the master surface, from one evaluation at each point of a rule on the slave facet, or on
-/// the smooth surface through the slave nodes: positions sum_k C_k s_k with constant C. The weights are the shape functions N_i of the master's facets, so that a constant pressure meets the master as the
-/// loads that its elements take for constant: the patch test. They have kinks, and are integrated over the
-/// overlaps of slave and master facets.
+/// the smooth surface through the slave nodes: positions sum_k C_k s_k with constant C, m. The weights are the shape
+/// functions N_i of the master's facets, so that a constant pressure meets the master as the loads that its elements take
+/// for constant: the patch test. They have kinks, and are integrated over the overlaps of slave and master facets.
 ///
 /// Facets that lie over the master in part are averaged over that part, with dual functions made for it.
 /// In ContactPoint::nodes, numbers from surface.vertex_count() on are slave nodes, counted from there: the other nodes of

@@ -273,6 +273,12 @@ void describe(Visitor& v, Solver& solver) {
     v.flag({.name = "predictor",
             .meaning = "Move driven bodies rigidly by the prescribed increment before the first iteration."},
            solver.predictor);
+    v.flag(
+        {.name = "stabilisation",
+         .meaning =
+             "In statics, let bodies that nothing holds lean on springs until contact does; no step is accepted with "
+             "springs in place."},
+        solver.stabilisation);
 }
 
 void describe_output(Visitor& v, Output& output) {

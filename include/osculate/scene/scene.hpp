@@ -295,6 +295,7 @@ struct Solver {
     int max_iterations = 30;     ///< Newton iterations of one attempt
     double smallest_step = 1e-3; ///< of the stage's step: a smaller one is given up
     bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
+    bool stabilisation = true;   ///< springs under bodies that nothing holds yet, gone before a step is accepted
     bool operator==(const Solver&) const = default;
 };
 

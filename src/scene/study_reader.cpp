@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <string_view>
 
 namespace osculate::scene {
 
@@ -33,6 +34,7 @@ private:
     void axis(const std::string& name, StudyAxis& axis);
     void listed_values(const Tree& key, StudyAxis& axis);
     void named_value(const Tree& entry, StudyAxis& axis);
+    void scene_files(const Tree& pattern, StudyAxis& axis);
     void compare_parameters(const Tree& at, const StudyAxis& axis);
     void leave_out(const Tree& list);
     void quantity(StudyQuantity& q);
@@ -56,6 +58,12 @@ private:
 };
 
 constexpr const char* variable_rule = "a name of letters, digits and _ that formulas do not know yet";
+
+/// Whether the name of an axis' value is fit for a folder's name.
+bool fits_value(const std::string& name) {
+    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; };
+    return std::ranges::all_of(name, fits) && !name.starts_with('.');
+}
 
 void StudyReader::text(const char* name, const char* what, StudyText& value) {
     const Key key{.name = name};
@@ -116,9 +124,7 @@ void StudyReader::listed_values(const Tree& key, StudyAxis& axis) {
 
 void StudyReader::named_value(const Tree& entry, StudyAxis& axis) {
     AxisValue value{entry.key, "", {}, {}};
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; };
-    if (!std::ranges::all_of(entry.key, fits) || entry.key.starts_with('.'))
-        name_fault(entry, "axes." + axis.name, "a name of letters, digits, _, - and .");
+    if (!fits_value(entry.key)) name_fault(entry, "axes." + axis.name, "a name of letters, digits, _, - and .");
     reader_.group({.name = entry.key}, [&] {
         settings(reader_.take({.name = "set"}, "a map"), value.settings);
         if (const Tree* scene = reader_.take({.name = "scene"}, "a scene file")) value.scene = scene_path(*scene);
@@ -137,6 +143,34 @@ void StudyReader::named_value(const Tree& entry, StudyAxis& axis) {
         }
     });
     axis.values.push_back(std::move(value));
+}
+
+/// Whether a name is what a pattern stands for: * any characters, ? any one.
+bool matches(std::string_view pattern, std::string_view name) {
+    if (pattern.empty()) return name.empty();
+    if (pattern.front() == '*')
+        return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
+    return !name.empty() && (pattern.front() == '?' || pattern.front() == name.front()) &&
+           matches(pattern.substr(1), name.substr(1));
+}
+
+void StudyReader::scene_files(const Tree& pattern, StudyAxis& axis) {
+    const Key key{.name = "scenes"};
+    const fs::path wanted = (fs::absolute(study_.path).parent_path() / pattern.scalar).lexically_normal();
+    std::error_code none;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(wanted.parent_path(), none))
+        if (entry.is_regular_file(none) && matches(wanted.filename().string(), entry.path().filename().string()))
+            files.push_back(entry.path());
+    std::ranges::sort(files); // folders have no order of their own
+    for (const fs::path& file : files) {
+        const std::string name = file.stem().string();
+        if (!fits_value(name))
+            reader_.fault(pattern, key, "files whose names are made of letters, digits, _, - and .",
+                          "'" + file.filename().string() + "'");
+        axis.values.push_back({name, file.string(), {}, {}});
+    }
+    if (files.empty()) reader_.fault(pattern, key, "scene files, * and ? in their name");
 }
 
 void StudyReader::compare_parameters(const Tree& at, const StudyAxis& axis) {
@@ -168,10 +202,15 @@ void StudyReader::axis(const std::string& name, StudyAxis& axis) {
             listed_values(*key, axis);
             return;
         }
+        if (const Tree* pattern = here->find("scenes"); pattern && pattern->kind == Tree::Kind::scalar) {
+            reader_.take({.name = "scenes"}, "");
+            scene_files(*pattern, axis);
+            return;
+        }
         for (const Tree& entry : here->children) named_value(entry, axis);
     });
     if (axis.values.empty() && faults_.size() == before)
-        reader_.fault(*here, {.name = name}, "key and values, or a map of values", here->found());
+        reader_.fault(*here, {.name = name}, "key and values, scenes, or a map of values", here->found());
     if (faults_.size() == before) compare_parameters(*here, axis);
 }
 

@@ -312,6 +312,23 @@ struct Output {
     bool operator==(const Output&) const = default;
 };
 
+// ---- expectation ---------------------------------------------------------------------------------------------------------
+
+enum class Outcome { completed, gives_up };
+
+/// What a run is expected to come to, held against the checks of a run.
+struct Expectation {
+    Outcome outcome = Outcome::completed;
+    std::string cause; ///< words that the message of a run that gives up holds
+    /// Of the forces that act. The solver leaves solver.tolerance of a reference force in the mean square over n degrees of
+    /// freedom, sqrt(n) of it in a sum: 1e-6 for 1e-9 and a million.
+    double force_balance = 1e-6;
+    /// Of the largest energy, over the whole run: what one step may do by itself, see StepControl.
+    double energy_growth = StepControl{}.energy_tolerance;
+    std::optional<double> penetration; ///< of the facet size; not given: the stage's bound, see app::RunChecks
+    bool operator==(const Expectation&) const = default;
+};
+
 struct Scene {
     std::string name;            ///< fit for a file name: letters, digits, _ and -
     std::string description;     ///< free text
@@ -324,6 +341,7 @@ struct Scene {
     Named<Stage> stages;
     Solver solver;
     Output output;
+    std::optional<Expectation> expect; ///< not given: nothing is judged
     bool operator==(const Scene&) const = default;
 };
 

@@ -10,10 +10,6 @@ namespace osculate::app {
 
 namespace {
 
-/// Of the facet size, where a stage has no bound. Contact is exact: the solver's tolerance leaves a gap of the order of
-/// tolerance * force / c on a closed node, with c ~ E A / h some 1e-9 of the elastic strain. A thousand times that.
-constexpr double exact = 1e-6;
-
 double share(double part, double whole) {
     return whole > 0 ? part / whole : 0;
 }
@@ -40,7 +36,7 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             const double allowed = limits.allowed_interpenetration / (limits.in_metres ? size : 1);
             const double bound = expect_ && expect_->penetration ? *expect_->penetration
                                  : std::isfinite(allowed)        ? allowed
-                                                                 : exact;
+                                                                 : scene::Expectation::exact;
             if (depth / bound <= excess_) continue;
             excess_ = depth / bound;
             excessive_ = depth;

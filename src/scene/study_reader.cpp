@@ -1,6 +1,7 @@
 #include "osculate/scene/nearest.hpp"
 #include "osculate/scene/study.hpp"
 #include "scene/describe_parts.hpp"
+#include "scene/files_like.hpp"
 #include "scene/flow_text.hpp"
 #include "scene/study_checks.hpp"
 #include "scene/tree_reader.hpp"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <string_view>
 
 namespace osculate::scene {
 
@@ -145,24 +145,10 @@ void StudyReader::named_value(const Tree& entry, StudyAxis& axis) {
     axis.values.push_back(std::move(value));
 }
 
-/// Whether a name is what a pattern stands for: * any characters, ? any one.
-bool matches(std::string_view pattern, std::string_view name) {
-    if (pattern.empty()) return name.empty();
-    if (pattern.front() == '*')
-        return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
-    return !name.empty() && (pattern.front() == '?' || pattern.front() == name.front()) &&
-           matches(pattern.substr(1), name.substr(1));
-}
-
 void StudyReader::scene_files(const Tree& pattern, StudyAxis& axis) {
     const Key key{.name = "scenes"};
-    const fs::path wanted = (fs::absolute(study_.path).parent_path() / pattern.scalar).lexically_normal();
-    std::error_code none;
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(wanted.parent_path(), none))
-        if (entry.is_regular_file(none) && matches(wanted.filename().string(), entry.path().filename().string()))
-            files.push_back(entry.path());
-    std::ranges::sort(files); // folders have no order of their own
+    const std::vector<fs::path> files =
+        files_like((fs::absolute(study_.path).parent_path() / pattern.scalar).lexically_normal());
     for (const fs::path& file : files) {
         const std::string name = file.stem().string();
         if (!fits_value(name))

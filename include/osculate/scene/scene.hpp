@@ -318,6 +318,10 @@ enum class Outcome { completed, gives_up };
 
 /// What a run is expected to come to, held against the checks of a run.
 struct Expectation {
+    /// Penetration, of the facet size, where a stage has no bound. Contact is exact: on a closed node the solver leaves a gap
+    /// of the order of tolerance * force / c, with c ~ E A / h some 1e-9 of the elastic strain. A thousand times that.
+    static constexpr double exact = 1e-6;
+
     Outcome outcome = Outcome::completed;
     std::string cause; ///< words that the message of a run that gives up holds
     /// Of the forces that act. The solver leaves solver.tolerance of a reference force in the mean square over n degrees of
@@ -325,7 +329,7 @@ struct Expectation {
     double force_balance = 1e-6;
     /// Of the largest energy, over the whole run: what one step may do by itself, see StepControl.
     double energy_growth = StepControl{}.energy_tolerance;
-    std::optional<double> penetration; ///< of the facet size; not given: the stage's bound, see app::RunChecks
+    std::optional<double> penetration; ///< of the facet size; not given: the stage's bound or `exact`
     bool operator==(const Expectation&) const = default;
 };
 

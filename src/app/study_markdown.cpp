@@ -96,7 +96,7 @@ std::string tally(const std::vector<StudyCase>& cases) {
                                    count_of([](const StudyCase& c) { return c.record.status == "done"; }),
                                    count_of([](const StudyCase& c) { return c.record.status == "gave_up"; }));
     if (const auto rest = std::ssize(cases) - count_of(finished); rest > 0)
-        text += fmt::format(", {} did neither", rest);
+        text += fmt::format(", {} not finished", rest);
     const auto met = count_of([&](const StudyCase& c) { return finished(c) && c.record.expectation == "met"; });
     const auto judged = count_of([&](const StudyCase& c) { return finished(c) && c.record.expectation != "none"; });
     if (judged > 0) text += fmt::format("; {} of {} as expected", met, judged);
@@ -120,7 +120,7 @@ std::string value_matrix(const scene::Study& study, const std::vector<StudyCase>
     for (const StudyCase& c : cases) {
         const StudyRecord& r = c.record;
         Words cells = axis_values(study, c);
-        cells.push_back(outcome(r));
+        cells.push_back(r.status == "done" ? "completed" : outcome(r));
         if (expected) cells.push_back(r.finished() ? r.expectation : "-");
         for (std::size_t k = 0; k < study.quantities.size(); ++k)
             cells.push_back(c.results.empty() ? "-" : figure(c.results[k].value));

@@ -22,10 +22,13 @@ bool matches(std::string_view pattern, std::string_view name) {
 
 std::vector<fs::path> files_like(const fs::path& pattern) {
     std::vector<fs::path> files;
+    const std::string wanted = pattern.filename().string();
     std::error_code none;
-    for (const auto& entry : fs::directory_iterator(pattern.parent_path(), none))
-        if (entry.is_regular_file(none) && matches(pattern.filename().string(), entry.path().filename().string()))
-            files.push_back(entry.path());
+    for (const auto& entry : fs::directory_iterator(pattern.parent_path(), none)) {
+        const std::string name = entry.path().filename().string();
+        const bool hidden = name.starts_with('.') && !wanted.starts_with('.'); // drafts of editors, as shells do
+        if (!hidden && entry.is_regular_file(none) && matches(wanted, name)) files.push_back(entry.path());
+    }
     std::ranges::sort(files); // folders have no order of their own
     return files;
 }

@@ -182,11 +182,12 @@ TEST(StudyFile, ContradictionsAreFaults) {
 }
 
 TEST(StudyFile, AnAxisMayBeAllScenesOfAFolder) {
-    for (const char* name : {"b_2.yaml", "a_1.yaml", "c.txt", "other.yaml"}) support::scene_file(name, small_scene);
+    for (const char* name : {"b_2.yaml", "a_1.yaml", "c.txt", "other.yaml", "._1.yaml"})
+        support::scene_file(name, small_scene);
     const auto with = [](const std::string& pattern) {
         return "axes:\n  scene: {scenes: " + pattern + "}\nquantities:\n  steps: {value: steps + 0 * penetration}\n";
     };
-    const Study study = read(with("./?_*.yaml"));
+    const Study study = read(with("'./?_*.yaml'"));
     std::vector<std::string> ids;
     for (const Combination& c : study.combinations()) ids.push_back(study.id(c));
     EXPECT_THAT(ids, ElementsAre("scene=a_1", "scene=b_2"));

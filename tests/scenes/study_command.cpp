@@ -283,6 +283,7 @@ repeats: 2
     EXPECT_THAT(report,
                 HasSubstr("| scene | outcome | expectation | steps | cuts | Newton iterations | balance | growth | "
                           "penetration | CPU s | remark |"));
+    EXPECT_THAT(report, HasSubstr("| done | completed | met | 4 | 0 | "));
     EXPECT_THAT(report, HasSubstr("| torn | gave up | missed: gave up where it should complete | "));
     EXPECT_THAT(report, Not(HasSubstr("## Runs"))) << "one table says it all";
 }

@@ -1,8 +1,8 @@
 #pragma once
 /// Writes the files of a run while it goes.
 
-#include "osculate/app/run_checks.hpp"
 #include "osculate/app/compile.hpp"
+#include "osculate/app/run_checks.hpp"
 #include "osculate/output/csv_table.hpp"
 #include "osculate/output/frames.hpp"
 #include "osculate/output/history.hpp"

@@ -345,6 +345,12 @@ void describe(Visitor& v, Scene& scene) {
                scene.output.template_name);
         describe_output(v, scene.output);
     });
+    bool expected = scene.expect.has_value();
+    Expectation expect = scene.expect.value_or(Expectation{});
+    v.optional_group(
+        {.name = "expect", .meaning = "What the run is expected to come to; its summary says whether it did."},
+        expected, [&] { describe(v, expect); });
+    if (expected) scene.expect = std::move(expect);
 }
 
 } // namespace osculate::scene

@@ -183,6 +183,23 @@ BodyWork BodyForces::work(const model::State& state) const {
     return work;
 }
 
+Field BodyForces::outer_forces(const model::State& state) const {
+    Field f(state.u.size(), Vec3::Zero());
+    if (dynamics_ == nullptr) {
+        if (follower_pressure_) add_pressures(1, true, state.u, f);
+        return f;
+    }
+    const Integrator& w = dynamics_->integrator;
+    if (follower_pressure_) {
+        add_pressures(1 - w.alpha_f, true, state.u, f);
+        add_pressures(w.alpha_f, false, u_start_, f);
+    }
+    mass().multiply_add(weighted(w.alpha_m - 1, state.a, -w.alpha_m, a_start_), f, threads_);
+    if (const double by_M = dynamics_->mass_damping; by_M > 0)
+        mass().multiply_add(weighted(by_M * (w.alpha_f - 1), state.v, -by_M * w.alpha_f, v_start_), f, threads_);
+    return f;
+}
+
 Field body_forces(const model::Model& model, const Dynamics& dynamics, const model::State& state, int threads) {
     Field f = model::internal_force(model, state.u, threads);
     add_damping(model, dynamics, state.v, f, threads);

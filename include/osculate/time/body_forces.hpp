@@ -63,6 +63,9 @@ public:
     [[nodiscard]] double inertia(Index node) const;
     /// Work over the step that ended in `state`.
     [[nodiscard]] BodyWork work(const model::State& state) const;
+    /// What acts from outside of the bodies over that step but for dead loads: follower pressures, less inertia and damping
+    /// by mass. (nodes) N
+    [[nodiscard]] std::vector<Vec3> outer_forces(const model::State& state) const;
 
 private:
     using Field = std::vector<Vec3>;

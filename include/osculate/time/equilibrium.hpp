@@ -84,6 +84,10 @@ public:
     /// f_int - f_ext - f_contact at the last residual: what the supports carry, and round-off elsewhere. (nodes) N
     [[nodiscard]] const std::vector<Vec3>& unbalanced() const { return unbalanced_; }
     [[nodiscard]] const std::vector<Vec3>& internal_force() const { return internal_; }
+    /// Dead loads of the attempt, in dynamics their mean over the step. (nodes) N
+    [[nodiscard]] const std::vector<Vec3>& external_force() const { return load_.force; }
+    /// What residuals are measured against, N.
+    [[nodiscard]] double reference_force() const { return reference_force_; }
     /// Node whose row holds the largest residual.
     [[nodiscard]] Index worst_node() const { return worst_node_; }
     /// Element with the least volume left, at the last residual; where it has none there was no residual.

@@ -77,7 +77,7 @@ void hold_now(const FailedAttempt& failed, const Equilibrium& equilibrium, const
     const model::Model& model = failed.model;
     const model::Constraints& constraints = equilibrium.constraints();
     const std::vector<Vec3> x = positions(model, state);
-    const Statuses natural = equilibrium.natural_statuses();
+    const double round_off = failed.ladder.tolerance * failed.ladder.reference_force;
     for (std::size_t b = 0; b < holds.size(); ++b) {
         const Body& body = model.bodies[b];
         BodyHold& one = holds[b];
@@ -93,7 +93,7 @@ void hold_now(const FailedAttempt& failed, const Equilibrium& equilibrium, const
                 const Status status = state.contact[p].status[j];
                 if (!contact::is_closed(status) || !pair.point(j).found) continue;
                 ++one.touching;
-                one.pressed += contact::is_closed(natural[p][j]);
+                one.pressed += state.contact[p].lambda[j].dot(pair.point(j).normal) >= -round_off;
                 const Vec3& s = x[pair.slaves().node[j]];
                 hold.hold(s, pair.point(j).normal);
                 if (status == Status::stick)

@@ -66,9 +66,12 @@ private:
         const auto at = std::ranges::find(found_.bodies, found_.body, &BodyHold::body);
         if (at == found_.bodies.end()) return;
         const BodyHold& loose = *at;
-        add("supports", "hold body '" + loose.body + "', which is free " + listed(loose.free_motions) +
-                            ": a set of it with fix, or a symmetry plane");
-        if (loose.in_pair && loose.pressed == 0 && loose.touched > 0) {
+        const std::string ways = loose.free_motions.empty()
+                                     ? "free in " + std::to_string(loose.free_by_supports) + " ways but for contact"
+                                     : "free " + listed(loose.free_motions);
+        add("supports",
+            "hold body '" + loose.body + "', which is " + ways + ": a set of it with fix, or a symmetry plane");
+        if (loose.in_pair && loose.pressed == 0 && loose.touching + loose.touched > 0) {
             add(stage_,
                 "what is done to body '" + loose.body + "' here pulls it off (it touched at " +
                     std::to_string(loose.touched) +

@@ -2,6 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/time/collision_check.hpp"
+#include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 
 #include <algorithm>

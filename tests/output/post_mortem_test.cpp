@@ -106,11 +106,16 @@ TEST(PostMortemText, SaysWhereWhyAndWhatToTry) {
           "pair 'joint', slip, gap -0.001 m over facet 9 of the master, nodes 3, 4, 8, 7 of body 'base'",
           "0.5 of 1e+04 N, in 'frozen statuses'; out of balance at that node (7, 8, 9) N",
           "stick-slip-stick-glide-open at node 4 of body 'cap' in pair 'joint'\n", "and 2 nodes more",
-          "'cap' free along x; touches at 5 slave nodes, 1 of which contact would have to pull; last good: at 8, "
-          "smallest gap "
-          "-0.001 m",
+          "'cap' free along x; touches at 5 slave nodes; last good: at 8, smallest gap -0.001 m",
           "try         stages.slide.steps: 8 instead of 4\n"})
         EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(PostMortemText, SaysOfABodyThatComesOffWhereContactWouldHaveToPull) {
+    time::PostMortem found = status_cycle();
+    found.cause = time::Cause::unsupported_body;
+    EXPECT_THAT(in_words(found),
+                HasSubstr("touches at 5 slave nodes, 1 of which contact would have to pull; last good"));
 }
 
 TEST(PostMortemText, EveryCauseHasANameAndWords) {

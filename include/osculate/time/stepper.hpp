@@ -4,13 +4,15 @@
 #include "osculate/time/attempt.hpp"
 #include "osculate/time/equilibrium.hpp"
 #include "osculate/time/ledger.hpp"
-#include "osculate/time/post_mortem.hpp"
 #include "osculate/time/solve_ladder.hpp"
 #include "osculate/time/stage.hpp"
 
 #include <memory>
 
 namespace osculate::time {
+
+struct FailedAttempt;
+struct PostMortem;
 
 struct StepperOptions {
     double tolerance = 1e-9;

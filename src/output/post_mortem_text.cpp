@@ -99,7 +99,7 @@ void say_bodies(std::string& text, const time::PostMortem& f) {
         std::string line = fmt::format("'{}' {}", b.body, held(b));
         if (b.in_pair) {
             line += fmt::format("; touches at {} slave nodes", b.touching);
-            if (b.touching > b.pressed)
+            if (b.touching > b.pressed && f.cause == time::Cause::unsupported_body)
                 line += fmt::format(", {} of which contact would have to pull", b.touching - b.pressed);
             line += fmt::format("; last good: at {}", b.touched);
             if (!b.nearest_pair.empty()) line += fmt::format(", smallest gap {:.4g} m", b.nearest_gap);

@@ -106,11 +106,11 @@ TEST_P(PostMortem, KeepsWhatWasAcceptedAndWritesTheFailedIterateBesideIt) {
 
 TEST_P(PostMortem, AdviceHelpsAndTheNextRunLeavesNothingOfIt) {
     ASSERT_EQ(fail().code, 3);
+    const json advice = found()["advice"];
     std::vector<std::string> changes;
     for (const std::string& change : GetParam().remedy) {
         bool advised = false;
-        for (const json& one : found()["advice"])
-            advised = advised || change.starts_with(one["key"].get<std::string>());
+        for (const json& one : advice) advised = advised || change.starts_with(one["key"].get<std::string>());
         EXPECT_TRUE(advised) << change;
         changes.insert(changes.end(), {"--set", change});
     }
@@ -149,7 +149,12 @@ INSTANTIATE_TEST_SUITE_P(
                 0.8229166666666667,
                 "stages.crush",
                 {"stages.crush.displacement.top.z=-0.3 m"}},
-        Failure{"too_deep", "interpenetration", "block", 0.01, "solver.smallest_step", {"stages.fall.control.allowed_interpenetration=0.05"}},
+        Failure{"too_deep",
+                "interpenetration",
+                "block",
+                0.01,
+                "solver.smallest_step",
+                {"stages.fall.control.allowed_interpenetration=0.05"}},
         Failure{"energy",
                 "energy",
                 "block",

@@ -86,6 +86,7 @@ public:
         }
         point = std::move(side.point);
         point.facet = hit.facet;
+        point.side = side.hit.facet;
         if (!point.found || variation == nullptr) return;
         if (side.active.empty()) {
             ContactPoint same;

@@ -28,8 +28,9 @@ ContactTerm::ContactTerm(std::string name, const std::vector<Vec3>& X, SlaveNode
     : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
       master_nodes_(std::move(master_nodes)), master_(std::move(master)),
       search_(*surface_, vertices(X), centre(X, slaves_.node)), options_(options), inertia_(slaves_.node.size(), 0.0),
-      held_(slaves_.node.size(), 0), facet_(slaves_.node.size(), -1), changes_(slaves_.node.size(), 0),
-      hits_(slaves_.node.size()), points_(slaves_.node.size()), point_nodes_(slaves_.node.size()) {
+      held_(slaves_.node.size(), 0), facet_(slaves_.node.size(), -1), side_(slaves_.node.size(), -1),
+      changes_(slaves_.node.size(), 0), hits_(slaves_.node.size()), points_(slaves_.node.size()),
+      point_nodes_(slaves_.node.size()) {
     finest_ = std::numeric_limits<double>::infinity();
     for (Index f = 0; f < surface_->facet_count(); ++f)
         finest_ = std::min({finest_, surface_->facet_size(f), thickness(f)});
@@ -92,6 +93,7 @@ void ContactTerm::begin_step(const std::vector<Vec3>& x, const ContactHistory& h
     facet_ = history.facet;
     lambda_start_ = history.lambda;
     std::fill(changes_.begin(), changes_.end(), 0);
+    std::fill(side_.begin(), side_.end(), -1);
     const ScopedTimer timer(timings, Part::search);
     vertices_ = vertices(x);
     search_.build(vertices_);
@@ -144,6 +146,14 @@ void ContactTerm::evaluate_nodes(const std::vector<Vec3>& x, int threads) {
     parallel_for(threads, size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j) master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, points_[j]);
     });
+    // a point in a crease may see now one side, now the other, above the same facet
+    for (Index j = 0; j < size(); ++j) {
+        const Index now = points_[j].found ? points_[j].side : -1;
+        if (now >= 0 && side_[j] >= 0 && now != side_[j] && master_->tells_apart(side_[j], now) &&
+            ++changes_[j] >= options_.changes_before_latch)
+            facet_[j] = now;
+        side_[j] = now;
+    }
 }
 
 contact::Coulomb ContactTerm::law(Index j) const {

@@ -194,6 +194,8 @@ bool Equilibrium::evaluate_bodies() {
 }
 
 solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* F) {
+    before_z_.swap(last_z_);
+    last_z_ = Eigen::Map<const Vector>(z, size_);
     unpack(z);
     if (!evaluate_bodies()) return Verdict::shorten;
     for (auto& pair : model_.pairs) pair->evaluate(x_, timings_, threads_);
@@ -213,7 +215,7 @@ solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* 
 
     fill(F);
     record(F, status_changes);
-    return rule_ == StatusRule::natural && cycles(records_.back().residual) ? Verdict::stop : Verdict::proceed;
+    return cycles(records_.back().residual) ? Verdict::stop : Verdict::proceed;
 }
 
 void Equilibrium::fill(double* F) {

@@ -12,6 +12,7 @@ using solve::KinsolOutcome;
 namespace {
 
 constexpr int most_settlings = 40; ///< KINSOL calls of rung 3
+constexpr int most_means = 3;      ///< ways out of a cycle of two iterates, one after another
 
 double largest_component(const std::vector<Vec3>& u) {
     double largest = 0;
@@ -37,10 +38,10 @@ solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& so
                                LadderOptions& options) {
     const auto size = static_cast<Index>(z.size());
     solve::KinsolResult solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
-    // natural statuses stop an iteration that gains no more, frozen ones let it run out
-    const auto rest = rule == StatusRule::natural ? KinsolOutcome::stopped : KinsolOutcome::max_iterations;
-    if (solved.outcome != rest) return solved;
-    const double floor = options.round_off * largest_component(equilibrium.displacements(z));
+    if (solved.outcome != KinsolOutcome::stopped) return solved; // it may still gain
+    const double moved = largest_component(equilibrium.displacements(z));
+    if (!(moved <= options.farthest)) return solved; // it rests nowhere near a solution
+    const double floor = options.round_off * moved;
     if (!(floor > options.reference_force && solved.residual * options.reference_force <= options.tolerance * floor))
         return solved;
     options.reference_force = floor;
@@ -76,7 +77,14 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
         equilibrium.set_statuses(statuses, StatusRule::frozen, false);
         z = last_z;
         if (settling == 0) equilibrium.linearise_first_about(options.unpredicted);
-        const auto solved = solve_once(equilibrium, solver, z, StatusRule::frozen, options);
+        auto solved = solve_once(equilibrium, solver, z, StatusRule::frozen, options);
+        for (int k = 0; k < most_means && solved.outcome == KinsolOutcome::stopped; ++k) {
+            const int before = solved.iterations;
+            z = equilibrium.midpoint();
+            equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+            solved = solve_once(equilibrium, solver, z, StatusRule::frozen, options);
+            solved.iterations += before;
+        }
         result.iterations += solved.iterations;
         result.outcome = solved.outcome;
         result.residual = solved.residual;
@@ -210,8 +218,8 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     LadderOptions now = options;
     const bool predicted = z != unpredicted;
     LadderResult result;
-    const auto newton = [&](const char* rung, const std::vector<Vec3>& from) {
-        equilibrium.set_statuses(start, StatusRule::natural, force_first);
+    const auto newton = [&](const char* rung, const std::vector<Vec3>& from, bool force) {
+        equilibrium.set_statuses(start, StatusRule::natural, force);
         equilibrium.linearise_first_about(from);
         auto solved = solve_once(equilibrium, solver, z, StatusRule::natural, now);
         // what the linear residual alone says is no equilibrium
@@ -224,11 +232,16 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     };
     const auto rungs = [&] {
         bool singular = false;
-        if (newton("semismooth Newton", options.predicted)) return singular;
+        if (newton("semismooth Newton", options.predicted, force_first)) return singular;
         singular = result.outcome == KinsolOutcome::singular;
         z = unpredicted;
-        if (predicted && newton("semismooth Newton without predictor", options.unpredicted)) return singular;
+        if (predicted && newton("semismooth Newton without predictor", options.unpredicted, force_first))
+            return singular;
         singular = singular || result.outcome == KinsolOutcome::singular;
+        for (int k = 0; k < most_means && result.outcome == KinsolOutcome::stopped; ++k) {
+            z = equilibrium.midpoint();
+            if (newton("semismooth Newton from the mean of two iterates", {}, false)) return singular;
+        }
         if (start.empty()) return singular;
         z = unpredicted;
         LadderResult settled = settle(equilibrium, solver, z, start, now);

@@ -217,9 +217,7 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
         carried = std::max(carried, digit * by_u * largest);
     }
-    double farthest = 0;
-    for (const Vec3& u : state_.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
-    const double round_off = round_off_force() * farthest;
+    const double round_off = round_off_force() * largest_displacement();
     if (carried > round_off) return carried;
     // driven nodes that move ahead of their bodies; by a small part of it, as elements may not bear the whole
     constexpr double part = 1e-3;
@@ -234,6 +232,12 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
     }
     const double driven = norm(model::internal_force(model_, u, options_.threads)) / part;
     return std::max(driven, round_off);
+}
+
+double Stepper::largest_displacement() const {
+    double farthest = 0;
+    for (const Vec3& u : state_.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
+    return farthest;
 }
 
 double Stepper::round_off_force() const {

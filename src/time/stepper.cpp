@@ -183,6 +183,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                              characteristic_length_,
                              reference_force(stage, load, equilibrium, dt),
                              round_off_force(),
+                             characteristic_length_ + largest_displacement(),
                              {},
                              {}};
         if (model_.finite_strain) {

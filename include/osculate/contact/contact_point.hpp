@@ -14,6 +14,7 @@ struct ContactPoint {
     bool found = false;  ///< false: beyond the master's boundary, or out of its reach; the rest is then meaningless
     bool behind = false; ///< not found because the point is so deep that it lies behind the surface; gap is set
     Index facet = -1;    ///< temporary contact facet MF
+    Index side = -1;     ///< facet of the side that was taken where sides meet in a crease; -1: there are none
     double gap = 0;      ///< g, m
     Vec3 normal = Vec3::Zero();
     Vec3 foot = Vec3::Zero(); ///< X_P, where the weights are taken

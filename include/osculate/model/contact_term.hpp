@@ -160,6 +160,7 @@ private:
     std::vector<Vec3> x_start_;  ///< all nodes
     std::vector<Vec3> vertices_; ///< master surface now
     std::vector<Index> facet_;
+    std::vector<Index> side_;  ///< ContactPoint::side at the last evaluation
     std::vector<int> changes_; ///< facet changes of each slave in this attempt
     std::vector<contact::FacetHit> hits_;
     std::vector<contact::ContactPoint> points_;

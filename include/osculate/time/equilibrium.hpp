@@ -74,6 +74,8 @@ public:
     [[nodiscard]] Vector unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const;
     [[nodiscard]] model::State state(const Vector& z) const;
 
+    /// Midway between the last two points at which the residual was evaluated: out of a cycle of two.
+    [[nodiscard]] Vector midpoint() const { return 0.5 * (last_z_ + before_z_); }
     /// Displacements of z, (nodes) m.
     [[nodiscard]] std::vector<Vec3> displacements(const Vector& z) const;
     /// Statuses at the last residual, and what the complementarity functions say there.
@@ -146,8 +148,9 @@ private:
     std::vector<std::vector<std::vector<contact::Status>>> recent_statuses_;
     std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> times seen, least residual
     std::size_t last_configuration_ = 0;
-    double best_ = 0; ///< least residual since set_statuses()
-    int idle_ = 0;    ///< iterates since
+    double best_ = 0;          ///< least residual since set_statuses()
+    int idle_ = 0;             ///< iterates since
+    Vector last_z_, before_z_; ///< of the last two residuals
     Index worst_node_ = -1;
     model::WorstElement worst_element_; ///< at the last residual
     bool stale_preconditioner_ = false; ///< the tangent of the bodies has moved on

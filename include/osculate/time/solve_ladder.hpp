@@ -22,6 +22,7 @@ struct LadderOptions {
     /// Reference force that round-off of the internal forces calls for, over the largest displacement, N/m: a solve that comes
     /// to rest there is held against no smaller one.
     double round_off = 0;
+    double farthest = 0; ///< m, displacements beyond which an iterate is not taken seriously there
     /// (nodes) displacements behind the start values, driven nodes where they were: what first residuals are linear about
     /// at finite strain (Equilibrium::linearise_first_about); empty: exact from the start.
     std::vector<Vec3> predicted{}, unpredicted{};

@@ -87,6 +87,7 @@ private:
     /// Reference force over displacement that round-off calls for, N/m: internal forces of a rigid motion are round-off of
     /// stiffness times displacement.
     [[nodiscard]] double round_off_force() const;
+    [[nodiscard]] double largest_displacement() const; ///< component of the accepted state, m
     /// Norm of the residual at z, contact laws included: the reference where it is initial overlap alone that acts, N.
     [[nodiscard]] static double imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses,
                                           bool forced);

@@ -6,7 +6,9 @@ FOLDER = Path("configs/studies")
 
 
 def names():
-    return sorted(path.stem for path in FOLDER.glob("*.yaml"))
+    """Studies that measure errors: those of values alone are a matrix, their study.md, and have no page."""
+    of_errors = re.compile(r"^ *(- )?(reference|exact|surfaces):|[{,] *(reference|exact):", re.MULTILINE)
+    return sorted(path.stem for path in FOLDER.glob("*.yaml") if of_errors.search(path.read_text()))
 
 
 def indent(line):

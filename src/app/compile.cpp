@@ -31,6 +31,7 @@ public:
 
     Plan run(std::vector<mesh::Mesh> meshes) {
         require(meshes.size() == scene_.bodies.size(), "compile: one mesh per body");
+        move_origin(meshes);
         add_bodies(std::move(meshes));
         throw_faults(); // nothing below can be trusted on a broken mesh
         add_sets();
@@ -51,7 +52,8 @@ public:
             add_mass();
             add_gravity();
         }
-        plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0, scene_.solver.predictor, threads_};
+        plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0,
+                         scene_.solver.predictor, scene_.solver.stabilisation,  threads_};
         plan_.items = plan_items(scene_, plan_);
         return std::move(plan_);
     }
@@ -59,6 +61,18 @@ public:
 private:
     void throw_faults() {
         if (!faults_.empty()) throw SceneError(std::move(faults_));
+    }
+
+    /// Far from the scene's origin positions have few digits left for gaps: they are taken from the middle of all bodies.
+    void move_origin(std::vector<mesh::Mesh>& meshes) {
+        constexpr double far = 8; // half diagonals: three of 53 bits
+        Eigen::AlignedBox3d box;
+        for (const mesh::Mesh& m : meshes)
+            for (const Vec3& X : m.nodes) box.extend(X);
+        if (!(box.center().norm() > far * 0.5 * box.diagonal().norm())) return;
+        plan_.model.origin = box.center();
+        for (mesh::Mesh& m : meshes)
+            for (Vec3& X : m.nodes) X -= plan_.model.origin;
     }
 
     void add_bodies(std::vector<mesh::Mesh> meshes) {
@@ -138,14 +152,15 @@ private:
             const mesh::Mesh& m = plan_.model.bodies[b].mesh;
             const auto& exterior = exterior_[b];
             const std::size_t before = faults_.size();
+            const Vec3& o = plan_.model.origin;
             const mesh::Region region = std::visit(
                 Overloaded{
                     [&](const scene::SelectNamed& s) { return select(name, spec.body, s, m, exterior); },
-                    [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point, s.normal); },
+                    [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point - o, s.normal); },
                     [&](const scene::SelectCylinder& s) {
-                        return mesh::select_cylinder(m, exterior, s.point, s.axis, s.radius);
+                        return mesh::select_cylinder(m, exterior, s.point - o, s.axis, s.radius);
                     },
-                    [&](const scene::SelectBox& s) { return mesh::select_box(m, exterior, s.min, s.max); },
+                    [&](const scene::SelectBox& s) { return mesh::select_box(m, exterior, s.min - o, s.max - o); },
                     [&](const scene::SelectNormal& s) {
                         return mesh::select_normal(m, exterior, s.direction, s.angle);
                     },

@@ -81,9 +81,8 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
                               return contact::make_rpim_surface(
                                   surface, vertices, {s.ring, radial_basis(s), s.m, coordinates(s.coordinates)});
                           },
-                          [&](const scene::BlendSurface& s) { // does not depend on the facet: no rule
+                          [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
                               options.hysteresis = 0;
-                              options.changes_before_latch = std::numeric_limits<int>::max();
                               return contact::make_blend_surface(
                                   surface, vertices, {s.ring, radial_basis(s), s.m, coordinates(s.coordinates)});
                           },
@@ -152,8 +151,10 @@ std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene,
             largest = std::max(largest, size);
         }
     }
-    // c = E_slave * tributary area / h: the stiffness of the slave's own first layer, so free of units
-    const double E = scene::elastic(scene.bodies[slave.body].second.material).E;
+    // c = E * tributary area / h: the stiffness of a layer of elements, so free of units, of the softer body: it is the one
+    // that gives way
+    const double E = std::min(scene::elastic(scene.bodies[slave.body].second.material).E,
+                              scene::elastic(scene.bodies[master.body].second.material).E);
     for (const auto& [node, values] : area_and_size) {
         slaves.node.push_back(node);
         slaves.area.push_back(values.first);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
 #include <sys/resource.h>
 #include <utility>
@@ -45,7 +46,8 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
                          Settings settings)
     : scene_(scene), plan_(plan), stepper_(stepper), timings_(timings), settings_(std::move(settings)),
       progress_(0, stepper.end_time(),
-                settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)) {
+                settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)),
+      checks_(plan.model, scene.expect) {
     const scene::Output& out = scene.output;
     const fs::path& folder = settings_.directory;
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
@@ -121,6 +123,7 @@ void RunRecorder::attempted(const time::Attempt& a, const std::vector<time::Iter
 }
 
 void RunRecorder::accepted(const time::AcceptedStep& step) {
+    checks_.accepted(step);
     const model::Constraints& constraints = step.equilibrium.constraints();
     on_disk(timings_, [&] {
         const output::Snapshot snapshot(plan_.model, step.state,
@@ -145,7 +148,14 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
     progress_.finish();
     summary_.status = status;
     summary_.failure = failure;
+    summary_.expectation = checks_.judge(failure);
     write_summary();
+    if (!summary_.expectation) return;
+    const std::vector<std::string>& misses = summary_.expectation->misses;
+    if (!misses.empty())
+        fmt::print(stderr, "not as expected: {}\n", fmt::join(misses, "; "));
+    else if (!settings_.quiet)
+        fmt::print(stderr, "as expected\n");
 }
 
 void RunRecorder::write_summary() {
@@ -157,6 +167,7 @@ void RunRecorder::write_summary() {
     summary_.peak_memory_bytes = usage.ru_maxrss * 1024; // Linux counts in kB
     summary_.factorisations = stepper_.factorisations();
     summary_.timings = timings_;
+    summary_.checks = checks_.checks();
     on_disk(timings_, [&] { output::write_summary(settings_.directory / "summary.json", summary_); });
 }
 

@@ -2,6 +2,7 @@
 /// Writes the files of a run while it goes.
 
 #include "osculate/app/compile.hpp"
+#include "osculate/app/run_checks.hpp"
 #include "osculate/output/csv_table.hpp"
 #include "osculate/output/frames.hpp"
 #include "osculate/output/history.hpp"
@@ -33,7 +34,7 @@ public:
     void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override;
     void accepted(const time::AcceptedStep& step) override;
 
-    /// Says how the run ended.
+    /// Says how the run ended, and on stderr whether that was expected.
     void finish(const std::string& status, const std::string& failure = {});
     [[nodiscard]] const output::Summary& summary() const { return summary_; }
 
@@ -53,6 +54,7 @@ private:
     std::unique_ptr<output::History> history_;
     std::unique_ptr<output::Frames> frames_;
     output::Progress progress_;
+    RunChecks checks_;
 };
 
 } // namespace osculate::app

@@ -52,6 +52,21 @@ Json read_json(const fs::path& path) {
     return Json::parse(content(path), nullptr, false); // `discarded` where it is none
 }
 
+void read_checks(StudyRecord& record, const Json& json) {
+    const auto checks = json.find("checks");
+    for (std::size_t k = 0; k < study_checks.size() && checks != json.end(); ++k)
+        if (const auto at = checks->find(study_checks[k]); at != checks->end()) record.checks[k] = *at;
+}
+
+std::string read_expectation(const Json& summary) {
+    const auto expectation = summary.find("expectation");
+    if (expectation == summary.end()) return "none";
+    if (expectation->at("met")) return "met";
+    std::string words;
+    for (const std::string miss : expectation->at("misses")) words += (words.empty() ? "missed: " : "; ") + miss;
+    return words;
+}
+
 StudyRecord read_record(const fs::path& folder) {
     StudyRecord record;
     const Json json = read_json(folder / record_file);
@@ -65,6 +80,8 @@ StudyRecord read_record(const fs::path& folder) {
         record.rejected = json.at("rejected");
         record.iterations = json.at("iterations");
         record.same = json.at("same");
+        read_checks(record, json);
+        record.expectation = json.value("expectation", record.expectation); // records of old have neither
         for (const Json& item : json.at("repeats")) {
             StudyRepeat repeat{item.at("cpu"), item.at("wall"), item.at("memory"), {}};
             for (std::size_t p = 0; p < study_parts.size(); ++p) repeat.parts[p] = item.at(study_parts[p]);
@@ -175,6 +192,14 @@ double StudyRecord::median_part(std::size_t part) const {
     return values.empty() ? nan : study::median(std::move(values));
 }
 
+std::vector<double> StudyRecord::numbers() const {
+    std::vector<double> values{dofs, accepted, rejected, iterations};
+    for (const auto value : {&StudyRepeat::cpu, &StudyRepeat::wall, &StudyRepeat::memory})
+        values.push_back(median(value));
+    values.insert(values.end(), checks.begin(), checks.end());
+    return values;
+}
+
 const scene::NamedFunctions& study_functions() {
     static const scene::NamedFunctions functions = [] {
         scene::NamedFunctions list;
@@ -211,9 +236,13 @@ void write_record(const StudyCase& c) {
         for (std::size_t p = 0; p < study_parts.size(); ++p) item[study_parts[p]] = repeat.parts[p];
         repeats.push_back(item);
     }
-    const Json json{{"hash", r.hash},         {"status", r.status},     {"reason", r.reason},         {"dofs", r.dofs},
-                    {"accepted", r.accepted}, {"rejected", r.rejected}, {"iterations", r.iterations}, {"same", r.same},
-                    {"repeats", repeats}};
+    Json checks = Json::object();
+    for (std::size_t k = 0; k < study_checks.size(); ++k)
+        if (!std::isnan(r.checks[k])) checks[study_checks[k]] = r.checks[k];
+    const Json json{
+        {"hash", r.hash},         {"status", r.status},           {"reason", r.reason},         {"dofs", r.dofs},
+        {"accepted", r.accepted}, {"rejected", r.rejected},       {"iterations", r.iterations}, {"same", r.same},
+        {"checks", checks},       {"expectation", r.expectation}, {"repeats", repeats}};
     fs::create_directories(c.folder);
     const fs::path path = c.folder / record_file, part = c.folder / (std::string(record_file) + ".part");
     {
@@ -236,6 +265,8 @@ bool add_repeat(StudyRecord& record, const fs::path& folder) {
         record.accepted = json.at("steps").at("accepted");
         record.rejected = json.at("steps").at("rejected");
         record.iterations = json.at("iterations");
+        read_checks(record, json);
+        record.expectation = read_expectation(json);
         const Json& seconds = json.at("seconds");
         StudyRepeat repeat{seconds.at("cpu"), seconds.at("total"), json.at("peak_memory_bytes"), {}};
         for (std::size_t p = 0; p < study_parts.size(); ++p) repeat.parts[p] = seconds.at(study_parts[p]);
@@ -250,16 +281,14 @@ void measure(const scene::Study& study, std::vector<StudyCase>& cases) {
     for (StudyCase& c : cases) {
         const StudyRecord& r = c.record;
         const bool known = r.finished();
-        c.numbers = scene::numbers_of(
-            study, c.combination, study_functions(),
-            known ? std::vector<double>{r.dofs, r.accepted, r.rejected, r.iterations, r.median(&StudyRepeat::cpu),
-                                        r.median(&StudyRepeat::wall), r.median(&StudyRepeat::memory)}
-                  : std::vector<double>(scene::run_numbers().size(), nan));
-        if (r.status != "done") continue;
-        if (!c.results.empty()) continue;
+        c.numbers = scene::numbers_of(study, c.combination, study_functions(),
+                                      known ? r.numbers() : std::vector<double>(scene::run_numbers().size(), nan));
+        if (!known || !c.results.empty()) continue;
         for (const scene::StudyQuantity& q : study.quantities) {
+            // files of a run that gave up end before their time
+            const bool whole = r.status == "done" || q.source == scene::RowSource::summary;
             try {
-                c.results.push_back(measure(q, c));
+                c.results.push_back(whole ? measure(q, c) : QuantityResult{});
             } catch (const std::runtime_error& error) { // files that someone took away
                 c.results.emplace_back();
                 c.record.reason = error.what();
@@ -267,6 +296,7 @@ void measure(const scene::Study& study, std::vector<StudyCase>& cases) {
         }
     }
     for (StudyCase& c : cases) {
+        if (!c.completed()) continue;
         for (std::size_t k = 0; k < c.results.size(); ++k) {
             const scene::StudyQuantity& q = study.quantities[k];
             QuantityResult& result = c.results[k];

@@ -15,6 +15,16 @@ namespace osculate::app {
 /// Parts of `seconds` in summary.json.
 inline constexpr std::array study_parts{"search", "patches", "contact", "assembly", "factor", "solve", "output"};
 
+/// Of `checks` in summary.json.
+inline constexpr std::array study_checks{"force_balance", "energy_balance", "energy_growth", "penetration"};
+
+/// NaN, for checks that a run does not have.
+constexpr std::array<double, study_checks.size()> no_checks() {
+    std::array<double, study_checks.size()> values{};
+    values.fill(std::numeric_limits<double>::quiet_NaN());
+    return values;
+}
+
 struct StudyRepeat {
     double cpu = 0, wall = 0; ///< s
     double memory = 0;        ///< largest, bytes
@@ -27,12 +37,16 @@ struct StudyRecord {
     std::string status; ///< done, gave_up, refused, bug; empty: not finished
     std::string reason;
     double dofs = 0, accepted = 0, rejected = 0, iterations = 0;
+    std::array<double, study_checks.size()> checks = no_checks();
+    std::string expectation = "none"; ///< met; missed: what; none
     std::vector<StudyRepeat> repeats;
     bool same = true; ///< all repeats gave the same bits
 
     [[nodiscard]] bool finished() const { return status == "done" || status == "gave_up"; }
     [[nodiscard]] double median(double StudyRepeat::*value) const; ///< NaN without repeats
     [[nodiscard]] double median_part(std::size_t part) const;
+    /// Values of scene::run_numbers().
+    [[nodiscard]] std::vector<double> numbers() const;
 };
 
 struct QuantityResult {
@@ -48,7 +62,10 @@ struct StudyCase {
     scene::Scene scene; ///< resolved
     StudyRecord record;
     scene::Numbers numbers;
-    std::vector<QuantityResult> results; ///< by quantity; empty until measured
+    std::vector<QuantityResult>
+        results; ///< by quantity; empty until measured. Of a run that gave up those of its summary
+
+    [[nodiscard]] bool completed() const { return record.status == "done" && !results.empty(); }
 };
 
 /// Every combination, with the record of an earlier run where nothing it follows from has changed.

@@ -22,6 +22,16 @@ std::string measure(double value) {
     return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
 }
 
+/// Counts in full, all else to three digits.
+std::string figure(double value) {
+    constexpr double most = 1e9;
+    return std::rint(value) == value && std::abs(value) < most ? fmt::format("{:.0f}", value) : number(value);
+}
+
+std::string outcome(const StudyRecord& record) {
+    return record.status.empty() ? "waiting" : record.status == "gave_up" ? "gave up" : record.status;
+}
+
 std::string count(double value) {
     return std::isnan(value) ? "-" : fmt::format("{:.0f}", value);
 }
@@ -69,10 +79,54 @@ std::string run_table(const scene::Study& study, const std::vector<StudyCase>& c
         cells.push_back(seconds(r.median(&StudyRepeat::cpu)));
         cells.push_back(seconds(r.median(&StudyRepeat::wall)));
         cells.push_back(count(r.median(&StudyRepeat::memory) / megabyte));
-        std::string status = r.status.empty() ? "waiting" : r.status == "gave_up" ? "gave up" : r.status;
+        std::string status = outcome(r);
         if (!r.reason.empty()) status += ": " + r.reason;
         std::ranges::replace(status, '|', '/');
         cells.push_back(status);
+        text += row(cells);
+    }
+    return text;
+}
+
+/// How many runs ended how.
+std::string tally(const std::vector<StudyCase>& cases) {
+    const auto count_of = [&](const auto& which) { return std::ranges::count_if(cases, which); };
+    const auto finished = [](const StudyCase& c) { return c.record.finished(); };
+    std::string text = fmt::format("{} runs: {} completed, {} gave up", cases.size(),
+                                   count_of([](const StudyCase& c) { return c.record.status == "done"; }),
+                                   count_of([](const StudyCase& c) { return c.record.status == "gave_up"; }));
+    if (const auto rest = std::ssize(cases) - count_of(finished); rest > 0)
+        text += fmt::format(", {} not finished", rest);
+    const auto met = count_of([&](const StudyCase& c) { return finished(c) && c.record.expectation == "met"; });
+    const auto judged = count_of([&](const StudyCase& c) { return finished(c) && c.record.expectation != "none"; });
+    if (judged > 0) text += fmt::format("; {} of {} as expected", met, judged);
+    if (std::ranges::any_of(cases, [](const StudyCase& c) { return c.record.repeats.size() > 1; }))
+        text += fmt::format("; {} not the same, bit for bit, when repeated",
+                            count_of([](const StudyCase& c) { return !c.record.same; }));
+    return text + ".\n";
+}
+
+/// A row per run with all its values: for studies that measure no error.
+std::string value_matrix(const scene::Study& study, const std::vector<StudyCase>& cases) {
+    const bool expected = std::ranges::any_of(
+        cases, [](const StudyCase& c) { return c.record.finished() && c.record.expectation != "none"; });
+    Words columns = axis_names(study);
+    columns.emplace_back("outcome");
+    if (expected) columns.emplace_back("expectation");
+    for (const scene::StudyQuantity& q : study.quantities)
+        columns.push_back(q.unit.empty() ? q.label : q.label + ", " + q.unit);
+    for (const char* name : {"CPU s", "remark"}) columns.emplace_back(name);
+    std::string text = header(columns);
+    for (const StudyCase& c : cases) {
+        const StudyRecord& r = c.record;
+        Words cells = axis_values(study, c);
+        cells.push_back(r.status == "done" ? "completed" : outcome(r));
+        if (expected) cells.push_back(r.finished() ? r.expectation : "-");
+        for (std::size_t k = 0; k < study.quantities.size(); ++k)
+            cells.push_back(c.results.empty() ? "-" : figure(c.results[k].value));
+        cells.push_back(seconds(r.median(&StudyRepeat::cpu)));
+        cells.push_back(r.reason + (r.same ? "" : std::string(r.reason.empty() ? "" : "; ") + "repeats differ"));
+        for (std::string& cell : cells) std::ranges::replace(cell, '|', '/');
         text += row(cells);
     }
     return text;
@@ -204,8 +258,12 @@ void write_study_report(const scene::Study& study, const std::vector<StudyCase>&
     std::string text = "# " + study.title + "\n\n" + paragraph(study.problem);
     if (!study.source.empty()) text += "Reference: " + paragraph(study.source);
     text += "Regenerate with `" + command + "`.\n\n";
-    for (std::size_t k = 0; k < study.quantities.size(); ++k) text += quantity_section(study, cases, series, k);
-    text += "## Runs\n\n" + run_table(study, cases) + "\n";
+    if (std::ranges::any_of(study.quantities, &scene::StudyQuantity::has_error)) {
+        for (std::size_t k = 0; k < study.quantities.size(); ++k) text += quantity_section(study, cases, series, k);
+        text += "## Runs\n\n" + run_table(study, cases) + "\n";
+    } else {
+        text += tally(cases) + "\n" + value_matrix(study, cases) + "\n";
+    }
     std::size_t repeats = 0;
     for (const StudyCase& c : cases) repeats = std::max(repeats, c.record.repeats.size());
     if (repeats > 1) text += fmt::format("Times are medians of up to {} runs.\n\n", repeats);

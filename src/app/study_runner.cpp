@@ -85,7 +85,9 @@ private:
 bool Runner::wants(const StudyCase& c, std::size_t repeat) const {
     const StudyRecord& r = c.record;
     if (failed_.contains(&c) || r.repeats.size() > repeat || !is_chosen(c, options_)) return false;
-    return r.status.empty() || (r.status == "done" && repeat < static_cast<std::size_t>(options_.repeats));
+    if (r.status.empty()) return true;
+    // one that gave up before it could write its summary is not done again
+    return r.finished() && !r.repeats.empty() && repeat < static_cast<std::size_t>(options_.repeats);
 }
 
 /// The first case with fewest repeats that is not running.

@@ -46,7 +46,7 @@ std::vector<StudySeries> make_series(const scene::Study& study, const std::vecto
                            styles.emplace(style, next_style).first->second});
             all.back().problem = study.problem_of(c.combination);
         }
-        if (!c.results.empty()) all[at->second].cases.push_back(&c);
+        if (c.completed()) all[at->second].cases.push_back(&c);
     }
     return all;
 }
@@ -77,7 +77,7 @@ std::vector<study::CostPoint> convergence_points(const scene::Study& study, cons
 
 bool is_relative(const scene::StudyQuantity& quantity, const std::vector<StudyCase>& cases, std::size_t index) {
     return quantity.relative && quantity.exact.empty() && std::ranges::any_of(cases, [&](const StudyCase& c) {
-               return !c.results.empty() && std::abs(c.results[index].reference) > 0;
+               return c.completed() && std::abs(c.results[index].reference) > 0;
            });
 }
 
@@ -89,7 +89,7 @@ std::vector<const StudyCase*> pareto_cases(const scene::Study& study, const std:
     };
     std::map<scene::Combination, Problem> problems;
     for (const StudyCase& c : cases) {
-        if (c.results.empty()) continue;
+        if (!c.completed()) continue;
         Problem& problem = problems[study.problem_of(c.combination)];
         problem.cases.push_back(&c);
         problem.points.push_back({c.record.median(&StudyRepeat::cpu), c.results[quantity].error});

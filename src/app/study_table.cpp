@@ -27,7 +27,7 @@ void write_study_table(const scene::Study& study, const std::vector<StudyCase>& 
     for (const scene::StudyAxis& axis : study.axes) columns.push_back(axis.name);
     for (const auto& [name, value] : study.parameters_of(scene::Combination(study.axes.size(), 0)))
         if (!name.ends_with("_index")) columns.push_back("parameter." + name);
-    for (const char* name : {"status", "dofs", "steps_accepted", "steps_rejected", "iterations"})
+    for (const char* name : {"status", "expectation", "dofs", "steps_accepted", "steps_rejected", "iterations"})
         columns.emplace_back(name);
     for (const scene::StudyQuantity& q : study.quantities)
         for (const char* what : {".value", ".reference", ".error"}) columns.push_back(q.name + what);
@@ -48,6 +48,7 @@ void write_study_table(const scene::Study& study, const std::vector<StudyCase>& 
             for (const auto& [name, value] : study.parameters_of(c.combination))
                 if (!name.ends_with("_index")) cells.push_back(cell(value));
             cells.emplace_back(r.status.empty() ? std::string("waiting") : r.status);
+            cells.emplace_back(known ? r.expectation : std::string());
             for (const double value : {r.dofs, r.accepted, r.rejected, r.iterations})
                 cells.push_back(count(value, known));
             for (std::size_t k = 0; k < study.quantities.size(); ++k) {

@@ -95,6 +95,12 @@ public:
         }
     }
 
+    /// Facets across a crease have no patch in common, others at a vertex have that of the vertex.
+    [[nodiscard]] bool tells_apart(Index from, Index to) const override {
+        const auto &a = vertex_patches_.of_facet[from], &b = vertex_patches_.of_facet[to];
+        return std::ranges::none_of(a, [&](Index p) { return std::ranges::find(b, p) != b.end(); });
+    }
+
 private:
     static constexpr double tie = 1e-9;
 
@@ -139,7 +145,7 @@ private:
     /// Facets of the other sides when s lies beyond a crease, so that its closest point is on one.
     [[nodiscard]] std::vector<Index> across_crease(const FacetHit& hit) const {
         std::vector<Index> result;
-        if (hit.overhang == 0 || creases_[hit.facet].empty()) return result;
+        if (hit.latched || hit.overhang == 0 || creases_[hit.facet].empty()) return result;
         const int n = static_cast<int>(surface_.facet_vertices(hit.facet).size());
         const auto on_edge = [&](int c) {
             const Vec2& u = hit.u;

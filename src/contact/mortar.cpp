@@ -121,6 +121,7 @@ int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, con
                 const Vec3 at = position(q, s);
                 q.hit = q.changes < changes_before_latch ? search.track(at, q.facet, x, hysteresis)
                                                          : search.closest_on(q.facet, at, x);
+                q.hit.latched = q.changes >= changes_before_latch;
             }
     });
     int changed = 0;
@@ -128,8 +129,8 @@ int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, con
     for (Facet& facet : facets_)
         for (GapPoint& q : facet.gap_points) {
             if (q.hit.facet != q.facet) {
+                q.changes += q.facet < 0 || q.hit.facet < 0 || master_.tells_apart(q.facet, q.hit.facet);
                 q.facet = q.hit.facet;
-                ++q.changes;
                 ++changed;
             }
             hits.push_back(q.hit);

@@ -113,13 +113,14 @@ void ContactTerm::evaluate(const std::vector<Vec3>& x, Timings& timings, int thr
                 hits_[j] = changes_[j] < options_.changes_before_latch
                                ? search_.track(s, facet_[j], vertices_, options_.hysteresis)
                                : search_.closest_on(facet_[j], s, vertices_);
+                hits_[j].latched = changes_[j] >= options_.changes_before_latch;
             }
         });
         facet_changes_ = 0;
         for (Index j = 0; j < size(); ++j)
             if (hits_[j].facet != facet_[j]) {
+                changes_[j] += facet_[j] < 0 || hits_[j].facet < 0 || master_->tells_apart(facet_[j], hits_[j].facet);
                 facet_[j] = hits_[j].facet;
-                ++changes_[j];
                 ++facet_changes_;
             }
     }

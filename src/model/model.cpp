@@ -113,6 +113,23 @@ double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads
     return sum / 2 + (model.finite_strain ? model.finite_strain->energy(model.X, u, threads) : 0);
 }
 
+std::vector<double> volume_shares(const Model& model) {
+    std::vector<double> share(model.X.size(), 0.0);
+    for (const Body& body : model.bodies) {
+        double volume = 0;
+        Vector part;
+        for_each_element(
+            body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
+                part.resize(kernel.nodes());
+                kernel.lumped_mass(X, 1, part);
+                for (int i = 0; i < kernel.nodes(); ++i) share[element[static_cast<std::size_t>(i)]] += part(i);
+                volume += part.sum();
+            });
+        for (Index i = 0; i < body.nodes(); ++i) share[body.first_node + i] /= volume;
+    }
+    return share;
+}
+
 Vec3 centre_of_mass(const Body& body) {
     // nodal shares of the volume are exact for the first moment, too
     std::vector<Vec3> share(static_cast<std::size_t>(body.first_node + body.nodes()), Vec3::Zero());

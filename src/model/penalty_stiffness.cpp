@@ -5,7 +5,7 @@
 namespace osculate::model {
 
 PenaltyStiffness::PenaltyStiffness(const Constraints& constraints, const BlockMatrix& K)
-    : constraints_(constraints), K_(K) {
+    : constraints_(constraints), K_(&K) {
     matrix_.symmetric_positive_definite = true;
 }
 
@@ -31,7 +31,7 @@ void PenaltyStiffness::build_pattern(const std::vector<Spring>& springs) {
     const Index nodes = constraints_.nodes();
     std::vector<std::vector<Index>> columns(static_cast<std::size_t>(nodes));
     for (Index node = 0; node < nodes; ++node)
-        for (Index k = K_.row_begin(node); k < K_.row_end(node); ++k) columns[node].push_back(K_.column(k));
+        for (Index k = K_->row_begin(node); k < K_->row_end(node); ++k) columns[node].push_back(K_->column(k));
     for (const Spring& s : springs) {
         std::vector<Index> reached = s.masters;
         reached.push_back(s.slave);
@@ -89,7 +89,7 @@ void PenaltyStiffness::add(Index row, Index column, const Mat3& global, std::vec
 void PenaltyStiffness::fill_base() {
     base_.assign(matrix_.column.size(), 0.0);
     for (Index node = 0; node < constraints_.nodes(); ++node)
-        for (Index k = K_.row_begin(node); k < K_.row_end(node); ++k) add(node, K_.column(k), K_.block(k), base_);
+        for (Index k = K_->row_begin(node); k < K_->row_end(node); ++k) add(node, K_->column(k), K_->block(k), base_);
 }
 
 void PenaltyStiffness::stiffness_changed() {

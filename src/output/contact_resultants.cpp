@@ -23,6 +23,7 @@ ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
         sum.friction += (contact.lambda - p_N * contact.normal).norm();
         sum.area += term.slaves().area[j];
     }
+    sum.moment += snapshot.model().origin.cross(sum.force);
     return sum;
 }
 

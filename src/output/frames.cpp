@@ -62,7 +62,7 @@ void Frames::add_surface(const model::Model& model, std::string name, Index pair
     std::unordered_map<Index, Index> point_of;
     for (const Index node : nodes) {
         point_of.emplace(node, static_cast<Index>(surface.points.size()));
-        surface.points.push_back(model.X[node]);
+        surface.points.push_back(model.X[node] + model.origin);
     }
     for (mesh::Facet& facet : surface.facets)
         for (int c = 0; c < facet.count; ++c) {
@@ -84,7 +84,9 @@ void Frames::write(const Snapshot& snapshot, long number) {
         std::vector<Array> arrays;
         for (const Field* f : body_fields_) arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));
         const std::string name = file(body.name, number, "vtu");
-        write_vtu(directory_ / name, body.mesh.nodes, body.mesh.blocks, arrays, time);
+        std::vector<Vec3> points = body.mesh.nodes;
+        for (Vec3& X : points) X += model.origin;
+        write_vtu(directory_ / name, points, body.mesh.blocks, arrays, time);
         series_.add(time, body.name, name);
     }
     for (const Surface& surface : surfaces_) {

@@ -90,7 +90,7 @@ void History::row(const Snapshot& snapshot, const model::Constraints& constraint
     if (ledger_ && ledger != nullptr) {
         for (const EnergyColumn& energy : energies) cells.emplace_back(ledger->*energy.value);
         append(cells, ledger->linear);
-        append(cells, ledger->angular);
+        append(cells, Vec3(ledger->angular + snapshot.model().origin.cross(ledger->linear)));
     } else if (ledger_) {
         cells.resize(cells.size() + std::size(energies) + 6, std::string());
     }

@@ -34,6 +34,17 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["threads"] = summary.threads;
     json["plan"] = summary.plan;
+    if (summary.checks) {
+        const Summary::Checks& checks = *summary.checks;
+        Json& list = json["checks"];
+        list["force_balance"] = checks.force_balance;
+        if (checks.energy_balance) list["energy_balance"] = *checks.energy_balance;
+        if (checks.energy_growth) list["energy_growth"] = *checks.energy_growth;
+        list["penetration"] = checks.penetration;
+        list["penetration_m"] = checks.penetration_m;
+    }
+    if (summary.expectation)
+        json["expectation"] = {{"met", summary.expectation->met()}, {"misses", summary.expectation->misses}};
     write_json_atomic(path, json);
 }
 

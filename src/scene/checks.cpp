@@ -160,6 +160,11 @@ public:
         }
     }
 
+    void check_expectation(const Expectation& expect) {
+        if (expect.outcome == Outcome::completed && !expect.cause.empty())
+            fault({"expect", "cause"}, "outcome gives_up with a cause", "outcome completed");
+    }
+
 private:
     /// The deepest part of a path that the tree has.
     [[nodiscard]] const Tree* locate(const std::vector<std::string>& path) const {
@@ -197,6 +202,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     rules.check_contact_mass(scene.stages);
     for (const auto& [name, pair] : scene.contact) rules.check_pair(name, pair);
     for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);
+    if (scene.expect) rules.check_expectation(*scene.expect);
 }
 
 } // namespace osculate::scene

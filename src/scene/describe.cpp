@@ -273,6 +273,12 @@ void describe(Visitor& v, Solver& solver) {
     v.flag({.name = "predictor",
             .meaning = "Move driven bodies rigidly by the prescribed increment before the first iteration."},
            solver.predictor);
+    v.flag(
+        {.name = "stabilisation",
+         .meaning =
+             "In statics, let bodies that nothing holds lean on springs until contact does; no step is accepted with "
+             "springs in place."},
+        solver.stabilisation);
 }
 
 void describe_output(Visitor& v, Output& output) {
@@ -339,6 +345,12 @@ void describe(Visitor& v, Scene& scene) {
                scene.output.template_name);
         describe_output(v, scene.output);
     });
+    bool expected = scene.expect.has_value();
+    Expectation expect = scene.expect.value_or(Expectation{});
+    v.optional_group(
+        {.name = "expect", .meaning = "What the run is expected to come to; its summary says whether it did."},
+        expected, [&] { describe(v, expect); });
+    if (expected) scene.expect = std::move(expect);
 }
 
 } // namespace osculate::scene

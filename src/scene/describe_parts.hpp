@@ -59,5 +59,6 @@ void describe(Visitor& v, Support& support);
 void describe(Visitor& v, Pair& pair);
 void describe(Visitor& v, Stage& stage);
 void describe(Visitor& v, Solver& solver);
+void describe(Visitor& v, Expectation& expect);
 
 } // namespace osculate::scene

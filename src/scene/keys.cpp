@@ -60,6 +60,9 @@ public:
         body();
         path_.pop_back();
     }
+    void optional_group(const Key& key, bool& /*present*/, const std::function<void()>& body) override {
+        group(key, body);
+    }
     void one_of(const Choice& choice) override {
         for (std::size_t i = 0; i < choice.tags.size(); ++i) {
             choice.choose(i);

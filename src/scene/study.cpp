@@ -108,7 +108,9 @@ const std::vector<std::string>& body_columns() {
 }
 
 const std::vector<std::string>& run_numbers() {
-    static const std::vector<std::string> names{"dofs", "steps", "rejected", "iterations", "cpu", "wall", "memory"};
+    static const std::vector<std::string> names{
+        "dofs",   "steps",         "rejected",       "iterations",    "cpu",        "wall",
+        "memory", "force_balance", "energy_balance", "energy_growth", "penetration"};
     return names;
 }
 

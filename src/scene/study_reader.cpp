@@ -1,6 +1,7 @@
 #include "osculate/scene/nearest.hpp"
 #include "osculate/scene/study.hpp"
 #include "scene/describe_parts.hpp"
+#include "scene/files_like.hpp"
 #include "scene/flow_text.hpp"
 #include "scene/study_checks.hpp"
 #include "scene/tree_reader.hpp"
@@ -33,6 +34,7 @@ private:
     void axis(const std::string& name, StudyAxis& axis);
     void listed_values(const Tree& key, StudyAxis& axis);
     void named_value(const Tree& entry, StudyAxis& axis);
+    void scene_files(const Tree& pattern, StudyAxis& axis);
     void compare_parameters(const Tree& at, const StudyAxis& axis);
     void leave_out(const Tree& list);
     void quantity(StudyQuantity& q);
@@ -56,6 +58,12 @@ private:
 };
 
 constexpr const char* variable_rule = "a name of letters, digits and _ that formulas do not know yet";
+
+/// Whether the name of an axis' value is fit for a folder's name.
+bool fits_value(const std::string& name) {
+    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; };
+    return std::ranges::all_of(name, fits) && !name.starts_with('.');
+}
 
 void StudyReader::text(const char* name, const char* what, StudyText& value) {
     const Key key{.name = name};
@@ -116,9 +124,7 @@ void StudyReader::listed_values(const Tree& key, StudyAxis& axis) {
 
 void StudyReader::named_value(const Tree& entry, StudyAxis& axis) {
     AxisValue value{entry.key, "", {}, {}};
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; };
-    if (!std::ranges::all_of(entry.key, fits) || entry.key.starts_with('.'))
-        name_fault(entry, "axes." + axis.name, "a name of letters, digits, _, - and .");
+    if (!fits_value(entry.key)) name_fault(entry, "axes." + axis.name, "a name of letters, digits, _, - and .");
     reader_.group({.name = entry.key}, [&] {
         settings(reader_.take({.name = "set"}, "a map"), value.settings);
         if (const Tree* scene = reader_.take({.name = "scene"}, "a scene file")) value.scene = scene_path(*scene);
@@ -137,6 +143,20 @@ void StudyReader::named_value(const Tree& entry, StudyAxis& axis) {
         }
     });
     axis.values.push_back(std::move(value));
+}
+
+void StudyReader::scene_files(const Tree& pattern, StudyAxis& axis) {
+    const Key key{.name = "scenes"};
+    const std::vector<fs::path> files =
+        files_like((fs::absolute(study_.path).parent_path() / pattern.scalar).lexically_normal());
+    for (const fs::path& file : files) {
+        const std::string name = file.stem().string();
+        if (!fits_value(name))
+            reader_.fault(pattern, key, "files whose names are made of letters, digits, _, - and .",
+                          "'" + file.filename().string() + "'");
+        axis.values.push_back({name, file.string(), {}, {}});
+    }
+    if (files.empty()) reader_.fault(pattern, key, "scene files, * and ? in their name");
 }
 
 void StudyReader::compare_parameters(const Tree& at, const StudyAxis& axis) {
@@ -168,10 +188,15 @@ void StudyReader::axis(const std::string& name, StudyAxis& axis) {
             listed_values(*key, axis);
             return;
         }
+        if (const Tree* pattern = here->find("scenes"); pattern && pattern->kind == Tree::Kind::scalar) {
+            reader_.take({.name = "scenes"}, "");
+            scene_files(*pattern, axis);
+            return;
+        }
         for (const Tree& entry : here->children) named_value(entry, axis);
     });
     if (axis.values.empty() && faults_.size() == before)
-        reader_.fault(*here, {.name = name}, "key and values, or a map of values", here->found());
+        reader_.fault(*here, {.name = name}, "key and values, scenes, or a map of values", here->found());
     if (faults_.size() == before) compare_parameters(*here, axis);
 }
 

@@ -305,6 +305,11 @@ void TreeReader::group(const Key& key, const std::function<void()>& body) {
     enter(*tree, path_of(key.name), body);
 }
 
+void TreeReader::optional_group(const Key& key, bool& present, const std::function<void()>& body) {
+    present = levels_.back().map->find(key.name) != nullptr;
+    group(key, body);
+}
+
 void TreeReader::one_of(const Choice& choice) {
     Level& level = levels_.back();
     std::vector<std::size_t> present;

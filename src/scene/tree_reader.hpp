@@ -43,6 +43,7 @@ public:
     void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) override;
     void axes(const Key& key, Mat3& value) override;
     void group(const Key& key, const std::function<void()>& body) override;
+    void optional_group(const Key& key, bool& present, const std::function<void()>& body) override;
     void one_of(const Choice& choice) override;
     void named(const Key& key, const Entries& entries) override;
 

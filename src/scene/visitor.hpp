@@ -96,6 +96,7 @@ public:
     virtual void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) = 0;
     virtual void axes(const Key& key, Mat3& value) = 0; ///< columns; the first two are written
     virtual void group(const Key& key, const std::function<void()>& body) = 0;
+    virtual void optional_group(const Key& key, bool& present, const std::function<void()>& body) = 0;
     virtual void one_of(const Choice& choice) = 0;
     virtual void named(const Key& key, const Entries& entries) = 0;
 };

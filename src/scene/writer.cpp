@@ -87,6 +87,9 @@ public:
         --depth_;
         if (text_.size() == before + 1) text_.insert(before, " {}");
     }
+    void optional_group(const Key& key, bool& present, const std::function<void()>& body) override {
+        if (present) group(key, body);
+    }
     void one_of(const Choice& choice) override { choice.describe(choice.active); }
     void named(const Key& key, const Entries& entries) override {
         if (entries.size() == 0) return;

@@ -2,11 +2,16 @@
 #include "osculate/solve/direct_solver.hpp"
 #include "solve/blas_threads.hpp"
 
+#include <algorithm>
 #include <cholmod.h>
 #include <cstring>
 
 namespace osculate::solve {
 namespace {
+
+/// What is left of a diagonal entry after elimination, of that entry, below which it counts as round-off: unlike the ratio of
+/// pivots it does not take soft bodies beside stiff ones, or other units, for singular.
+constexpr double negligible_pivot = 1e-13;
 
 class Cholesky final : public DirectSolver {
 public:
@@ -30,6 +35,9 @@ public:
     Cholesky& operator=(const Cholesky&) = delete;
 
     FactorStatus factorise(const SparseMatrix& A) override {
+        failing_ = -1;
+        empty_ = A.rows() == 0; // everything is held
+        if (empty_) return FactorStatus::ok;
         // The rows of a symmetric CSR matrix are the columns CHOLMOD expects; it reads the lower triangle only.
         cholmod_sparse view{};
         view.nrow = view.ncol = static_cast<std::size_t>(A.rows());
@@ -50,7 +58,6 @@ public:
             pattern_ = A.pattern;
         }
         cholmod_l_factorize(&view, factor_, &common_);
-        failing_ = -1;
         if (common_.status == CHOLMOD_NOT_POSDEF) {
             const auto* permutation = static_cast<const SparseIndex*>(factor_->Perm);
             if (factor_->minor < factor_->n) failing_ = permutation[factor_->minor];
@@ -58,10 +65,12 @@ public:
         }
         if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw RunFailure("out of memory in a sparse factorisation");
         require(common_.status >= CHOLMOD_OK, "CHOLMOD factorisation failed");
-        return cholmod_l_rcond(factor_, &common_) < 1e-15 ? FactorStatus::singular : FactorStatus::ok;
+        failing_ = negligible_equation(A);
+        return failing_ >= 0 ? FactorStatus::singular : FactorStatus::ok;
     }
 
     void solve(const double* b, double* x) override {
+        if (empty_) return;
         require(factor_ != nullptr, "solve before factorise");
         cholmod_dense rhs{};
         rhs.nrow = rhs.d = rhs.nzmax = factor_->n;
@@ -76,11 +85,33 @@ public:
     SparseIndex failing_equation() const override { return failing_; }
 
 private:
+    /// The first equation whose pivot is negligible, -1 where there is none.
+    [[nodiscard]] SparseIndex negligible_equation(const SparseMatrix& A) const {
+        const auto* permutation = static_cast<const SparseIndex*>(factor_->Perm);
+        const auto* first = static_cast<const SparseIndex*>(factor_->super);
+        const auto* row = static_cast<const SparseIndex*>(factor_->pi);
+        const auto* start = static_cast<const SparseIndex*>(factor_->px);
+        const auto* L = static_cast<const double*>(factor_->x);
+        for (std::size_t s = 0; s < factor_->nsuper; ++s) {
+            const SparseIndex rows = row[s + 1] - row[s];
+            for (SparseIndex k = first[s]; k < first[s + 1]; ++k) {
+                const double pivot = L[start[s] + (k - first[s]) * (rows + 1)];
+                const SparseIndex equation = permutation[k];
+                const auto begin = A.column.begin() + A.row_start[equation];
+                const auto end = A.column.begin() + A.row_start[equation + 1];
+                const double diagonal = A.value[std::lower_bound(begin, end, equation) - A.column.begin()];
+                if (!(pivot * pivot > negligible_pivot * diagonal)) return equation;
+            }
+        }
+        return -1;
+    }
+
     cholmod_common common_{};
     cholmod_factor* factor_ = nullptr;
     cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;
     std::uint64_t pattern_ = 0;
     SparseIndex failing_ = -1;
+    bool empty_ = false;
 };
 
 } // namespace

@@ -183,7 +183,7 @@ struct KinsolSolver::Impl {
             if (result.converged) return true;
         }
         if (factorise(*tangent)) return solve_directly(b, x);
-        if (failing_equation < 0) failing_equation = suspect; // LU does not say where it failed
+        if (suspect >= 0) failing_equation = suspect;
         return false;
     }
 

@@ -2,15 +2,18 @@
 #include "osculate/solve/direct_solver.hpp"
 #include "solve/blas_threads.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <umfpack.h>
+#include <vector>
 
 namespace osculate::solve {
 namespace {
 
-/// Reciprocal condition estimate (smallest over largest pivot) below which the matrix counts as singular.
-constexpr double singular_rcond = 1e-16;
+/// Smallest over largest pivot below which the matrix counts as singular. UMFPACK scales by the unknowns first, so that
+/// neither units nor soft bodies beside stiff ones count.
+constexpr double singular_rcond = 1e-14;
 
 class Lu final : public DirectSolver {
 public:
@@ -46,9 +49,10 @@ public:
         require(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "UMFPACK factorisation failed");
         // iterative refinement in solve() reads the matrix again
         matrix_ = &A;
-        const double rcond = info_[UMFPACK_RCOND];
-        return status == UMFPACK_WARNING_singular_matrix || !(rcond > singular_rcond) ? FactorStatus::singular
-                                                                                      : FactorStatus::ok;
+        failing_ = -1;
+        if (status == UMFPACK_OK && info_[UMFPACK_RCOND] > singular_rcond) return FactorStatus::ok;
+        failing_ = smallest_pivot(A.rows());
+        return FactorStatus::singular;
     }
 
     void solve(const double* b, double* x) override {
@@ -57,13 +61,27 @@ public:
                          numeric_, control_.data(), info_.data());
     }
 
+    SparseIndex failing_equation() const override { return failing_; }
+
 private:
+    /// Unknown of the smallest pivot.
+    [[nodiscard]] SparseIndex smallest_pivot(SparseIndex size) const {
+        std::vector<SparseIndex> unknown(static_cast<std::size_t>(size)), equation(unknown.size());
+        std::vector<double> pivot(unknown.size());
+        umfpack_dl_get_numeric(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, unknown.data(), equation.data(),
+                               pivot.data(), nullptr, nullptr, numeric_);
+        const auto smallest =
+            std::ranges::min_element(pivot, {}, [](double p) { return std::isfinite(p) ? std::abs(p) : 0; });
+        return unknown[static_cast<std::size_t>(smallest - pivot.begin())];
+    }
+
     std::array<double, UMFPACK_CONTROL> control_{};
     std::array<double, UMFPACK_INFO> info_{};
     void* symbolic_ = nullptr;
     void* numeric_ = nullptr;
     const SparseMatrix* matrix_ = nullptr;
     std::uint64_t pattern_ = 0;
+    SparseIndex failing_ = -1;
 };
 
 } // namespace

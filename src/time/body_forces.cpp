@@ -75,6 +75,24 @@ bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pres
     return changed;
 }
 
+void BodyForces::add_springs(model::BlockMatrix& tangent) const {
+    for (Index i = 0; i < tangent.rows(); ++i)
+        tangent.block(tangent.slot(i, i)).diagonal().array() +=
+            springs_.stiffness * (*springs_.share)[static_cast<std::size_t>(i)];
+}
+
+void BodyForces::stabilise(Stabilisation springs) {
+    springs_ = std::move(springs);
+    if (varies()) return; // linearise() adds them
+    tangent_ = model_.K;
+    add_springs(tangent_);
+}
+
+void BodyForces::release() {
+    springs_ = {};
+    if (dynamics_ == nullptr && !varies()) tangent_ = {};
+}
+
 model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
     model::WorstElement worst;
     if (dynamics_ == nullptr) {
@@ -82,6 +100,9 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
         model_.K.multiply_add(u, f, threads_);
         if (nonlinear()) worst = model_.finite_strain->add_internal_force(model_.X, u, f, threads_);
         if (follower_pressure_) add_pressures(-1, true, u, f);
+        if (stabilised())
+            for (std::size_t i = 0; i < f.size(); ++i)
+                f[i] += springs_.stiffness * (*springs_.share)[i] * (u[i] - springs_.anchor[i]);
         return worst;
     }
     f = force_start_;
@@ -94,6 +115,7 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
 bool BodyForces::linearise(const Field& u) {
     if (!varies()) return false;
     tangent_ = constant_;
+    if (stabilised()) add_springs(tangent_);
     if (nonlinear() && dynamics_ == nullptr)
         model_.finite_strain->add_tangent(model_.X, u, tangent_, threads_);
     else if (nonlinear())
@@ -159,6 +181,23 @@ BodyWork BodyForces::work(const model::State& state) const {
         work.damping -= dot(Du, f);
     }
     return work;
+}
+
+Field BodyForces::outer_forces(const model::State& state) const {
+    Field f(state.u.size(), Vec3::Zero());
+    if (dynamics_ == nullptr) {
+        if (follower_pressure_) add_pressures(1, true, state.u, f);
+        return f;
+    }
+    const Integrator& w = dynamics_->integrator;
+    if (follower_pressure_) {
+        add_pressures(1 - w.alpha_f, true, state.u, f);
+        add_pressures(w.alpha_f, false, u_start_, f);
+    }
+    mass().multiply_add(weighted(w.alpha_m - 1, state.a, -w.alpha_m, a_start_), f, threads_);
+    if (const double by_M = dynamics_->mass_damping; by_M > 0)
+        mass().multiply_add(weighted(by_M * (w.alpha_f - 1), state.v, -by_M * w.alpha_f, v_start_), f, threads_);
+    return f;
 }
 
 Field body_forces(const model::Model& model, const Dynamics& dynamics, const model::State& state, int threads) {

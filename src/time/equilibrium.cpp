@@ -92,6 +92,21 @@ void Equilibrium::set_statuses(std::vector<std::vector<Status>> statuses, Status
     idle_ = 0;
 }
 
+void Equilibrium::stabilise(Stabilisation springs) {
+    const ScopedTimer timer(timings_, Part::assembly);
+    bodies_.stabilise(std::move(springs));
+    matrix_->use(bodies_.tangent());
+    if (preconditioner_) preconditioner_->use(bodies_.tangent());
+}
+
+void Equilibrium::release() {
+    if (!bodies_.stabilised()) return;
+    const ScopedTimer timer(timings_, Part::assembly);
+    bodies_.release();
+    matrix_->use(bodies_.tangent());
+    if (preconditioner_) preconditioner_->use(bodies_.tangent());
+}
+
 void Equilibrium::unpack(const double* z) {
     constraints_.scatter(z, load_.prescribed, u_);
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = model_.X[i] + u_[i];
@@ -113,10 +128,15 @@ Vector Equilibrium::unknowns(const std::vector<Vec3>& u, const std::vector<model
     return z;
 }
 
+std::vector<Vec3> Equilibrium::displacements(const Vector& z) const {
+    std::vector<Vec3> u(u_.size(), Vec3::Zero());
+    constraints_.scatter(z.data(), load_.prescribed, u);
+    return u;
+}
+
 model::State Equilibrium::state(const Vector& z) const {
     model::State state;
-    state.u.assign(u_.size(), Vec3::Zero());
-    constraints_.scatter(z.data(), load_.prescribed, state.u);
+    state.u = displacements(z);
     bodies_.complete(state);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];

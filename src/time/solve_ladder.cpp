@@ -1,6 +1,7 @@
 #include "osculate/time/solve_ladder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace osculate::time {
@@ -11,6 +12,44 @@ using solve::KinsolOutcome;
 namespace {
 
 constexpr int most_settlings = 40; ///< KINSOL calls of rung 3
+
+double largest_component(const std::vector<Vec3>& u) {
+    double largest = 0;
+    for (const Vec3& v : u) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+    return largest;
+}
+
+solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const LadderOptions& options) {
+    solve::KinsolOptions kinsol;
+    kinsol.tolerance = options.tolerance;
+    kinsol.max_iterations = options.max_iterations;
+    kinsol.residual_scale = 1 / options.reference_force;
+    kinsol.unknown_scale = Vector::Constant(size, 1 / options.reference_force);
+    kinsol.unknown_scale.head(equilibrium.constraints().equations()).setConstant(1 / options.characteristic_length);
+    equilibrium.set_reference_force(options.reference_force);
+    return kinsol;
+}
+
+/// One KINSOL call. One that comes to rest at round-off of the internal forces counts as converged, with a larger reference
+/// force from then on.
+/// @param rule  of the statuses: they go on from where it came to rest
+solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, StatusRule rule,
+                               LadderOptions& options) {
+    const auto size = static_cast<Index>(z.size());
+    solve::KinsolResult solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
+    // natural statuses stop an iteration that gains no more, frozen ones let it run out
+    const auto rest = rule == StatusRule::natural ? KinsolOutcome::stopped : KinsolOutcome::max_iterations;
+    if (solved.outcome != rest) return solved;
+    const double floor = options.round_off * largest_component(equilibrium.displacements(z));
+    if (!(floor > options.reference_force && solved.residual * options.reference_force <= options.tolerance * floor))
+        return solved;
+    options.reference_force = floor;
+    equilibrium.set_statuses(equilibrium.statuses(), rule, false);
+    const int before = solved.iterations;
+    solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
+    solved.iterations += before;
+    return solved;
+}
 
 /// Closes every second one of the nodes that `now` has open and `before` had closed; false when there are none.
 bool take_back_half(const Statuses& before, Statuses& now) {
@@ -27,7 +66,7 @@ bool take_back_half(const Statuses& before, Statuses& now) {
 }
 
 LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, Statuses statuses,
-                    const std::vector<Vec3>& unpredicted, const solve::KinsolOptions& kinsol) {
+                    LadderOptions& options) {
     LadderResult result;
     result.rung = "frozen statuses";
     std::set<Statuses> seen;
@@ -36,8 +75,8 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
     for (int settling = 0; settling < most_settlings; ++settling) {
         equilibrium.set_statuses(statuses, StatusRule::frozen, false);
         z = last_z;
-        if (settling == 0) equilibrium.linearise_first_about(unpredicted);
-        const auto solved = solver.solve(equilibrium, z, kinsol);
+        if (settling == 0) equilibrium.linearise_first_about(options.unpredicted);
+        const auto solved = solve_once(equilibrium, solver, z, StatusRule::frozen, options);
         result.iterations += solved.iterations;
         result.outcome = solved.outcome;
         result.residual = solved.residual;
@@ -55,51 +94,163 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
     return result;
 }
 
-solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const LadderOptions& options) {
-    solve::KinsolOptions kinsol;
-    kinsol.tolerance = options.tolerance;
-    kinsol.max_iterations = options.max_iterations;
-    kinsol.residual_scale = 1 / options.reference_force;
-    kinsol.unknown_scale = Vector::Constant(size, 1 / options.reference_force);
-    kinsol.unknown_scale.head(equilibrium.constraints().equations()).setConstant(1 / options.characteristic_length);
-    equilibrium.set_reference_force(options.reference_force);
-    return kinsol;
+double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, Index& where) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (const double distance = (a[i] - b[i]).norm(); distance > largest) {
+            largest = distance;
+            where = static_cast<Index>(i);
+        }
+    return largest;
+}
+
+/// Rung 4, a proximal point iteration: u_k+1 solves f(u) + k S (u - u_k) = f_ext + f_contact.
+LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, Statuses statuses,
+                       bool force_first, LadderOptions& options) {
+    constexpr int most_solves = 200, most_slow = 40, most_failures = 12, easy = 6;
+    constexpr double softer = 1.0 / 16, little_softer = 0.5, stiffer = 16;
+    constexpr double too_far = 2; // strides
+    constexpr double near = 0.1;  // of a stride: worth trying without springs
+
+    const StabilisationOptions& how = options.stabilisation;
+    LadderResult result;
+    result.rung = "stabilised";
+    result.outcome = KinsolOutcome::stopped;
+    const std::vector<Vec3> start = equilibrium.displacements(z);
+    std::vector<Vec3> anchor = start;
+    Vector anchor_z = z;
+    // the reference force is a norm over the nodes; this is no less than their sum
+    double stiffness = options.reference_force * std::sqrt(static_cast<double>(start.size())) / how.stride;
+    int failures = 0, slow = 0; // slow: not on the way across a gap
+    const auto newton = [&](bool springs) {
+        if (springs)
+            equilibrium.stabilise({how.share, stiffness, anchor});
+        else
+            equilibrium.release();
+        equilibrium.set_statuses(statuses, StatusRule::natural, force_first && result.stabilised_solves == 0);
+        const auto solved = solve_once(equilibrium, solver, z, StatusRule::natural, options);
+        result.iterations += solved.iterations;
+        result.residual = solved.residual;
+        result.failing_equation = solved.failing_equation;
+        return solved;
+    };
+    bool undetermined = false; // the tangent without springs was singular with these statuses
+    while (result.stabilised_solves < most_solves && slow < most_slow && failures < most_failures) {
+        z = anchor_z;
+        const auto solved = newton(true);
+        ++result.stabilised_solves;
+        if (solved.outcome != KinsolOutcome::converged) {
+            ++failures;
+            stiffness *= stiffer;
+            continue;
+        }
+        std::vector<Vec3> u = equilibrium.displacements(z);
+        Index node = -1;
+        const double moved = largest_distance(u, anchor, node);
+        if (moved > too_far * how.stride) { // it may have gone through what it should have met
+            stiffness *= moved / how.stride;
+            continue;
+        }
+        result.travelled = largest_distance(u, start, node);
+        if (result.travelled > how.farthest) {
+            result.adrift = node;
+            break;
+        }
+        slow += moved < 0.5 * how.stride ? 1 : 0;
+        Statuses next = equilibrium.statuses();
+        undetermined = undetermined && next == statuses;
+        statuses = std::move(next);
+        anchor = std::move(u);
+        anchor_z = z;
+
+        equilibrium.release();
+        equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+        Vector F(z.size());
+        if (equilibrium.residual(z.data(), F.data()) == Equilibrium::Verdict::proceed) {
+            result.residual = F.cwiseAbs().maxCoeff() / options.reference_force;
+            if (result.residual <= options.tolerance && equilibrium.natural_statuses() == statuses) {
+                result.outcome = KinsolOutcome::converged;
+                return result;
+            }
+        }
+        if (moved < near * how.stride && !undetermined) {
+            const auto free = newton(false);
+            Index any = -1;
+            if (free.outcome == KinsolOutcome::converged &&
+                largest_distance(equilibrium.displacements(z), anchor, any) < how.stride) {
+                result.outcome = KinsolOutcome::converged;
+                return result;
+            }
+            undetermined = free.outcome == KinsolOutcome::singular;
+        }
+        // a body that has met nothing yet moves by a stride at a time, not through what it should meet
+        stiffness *= std::max(solved.iterations <= easy ? softer : little_softer, moved / how.stride);
+    }
+    if (result.adrift < 0 && result.stabilised_solves == most_solves && failures < most_failures) {
+        result.travelled = largest_distance(anchor, start, result.adrift);
+        if (result.travelled < 0.5 * how.farthest) result.adrift = -1; // it moved, but did not run away
+    }
+    equilibrium.release();
+    return result;
 }
 
 } // namespace
 
 LadderResult solve_trial(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Statuses& statuses,
                          const LadderOptions& options) {
+    LadderOptions now = options;
     equilibrium.set_statuses(statuses, StatusRule::frozen, false);
     equilibrium.linearise_first_about(options.predicted);
-    const auto solved =
-        solver.solve(equilibrium, z, kinsol_options(equilibrium, static_cast<Index>(z.size()), options));
-    return {solved.outcome, solved.iterations, solved.residual, "trial", solved.failing_equation};
+    const auto solved = solve_once(equilibrium, solver, z, StatusRule::frozen, now);
+    return {solved.outcome, solved.iterations, solved.residual, now.reference_force, "trial", solved.failing_equation};
 }
 
 LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Vector& unpredicted,
                    const Statuses& start, bool force_first, const LadderOptions& options) {
-    const solve::KinsolOptions kinsol = kinsol_options(equilibrium, static_cast<Index>(z.size()), options);
+    LadderOptions now = options;
     const bool predicted = z != unpredicted;
     LadderResult result;
     const auto newton = [&](const char* rung, const std::vector<Vec3>& from) {
         equilibrium.set_statuses(start, StatusRule::natural, force_first);
         equilibrium.linearise_first_about(from);
-        auto solved = solver.solve(equilibrium, z, kinsol);
+        auto solved = solve_once(equilibrium, solver, z, StatusRule::natural, now);
         // what the linear residual alone says is no equilibrium
-        if (solved.iterations == 0 && !from.empty()) solved = solver.solve(equilibrium, z, kinsol);
-        result = {solved.outcome, result.iterations + solved.iterations, solved.residual, rung,
-                  solved.failing_equation};
+        if (solved.iterations == 0 && !from.empty())
+            solved = solve_once(equilibrium, solver, z, StatusRule::natural, now);
+        result = {
+            solved.outcome,         result.iterations + solved.iterations, solved.residual, now.reference_force, rung,
+            solved.failing_equation};
         return result.converged();
     };
-    if (newton("semismooth Newton", options.predicted)) return result;
-    z = unpredicted;
-    if (predicted && newton("semismooth Newton without predictor", options.unpredicted)) return result;
-    if (start.empty()) return result;
-    z = unpredicted;
-    LadderResult settled = settle(equilibrium, solver, z, start, options.unpredicted, kinsol);
-    settled.iterations += result.iterations;
-    return settled;
+    const auto rungs = [&] {
+        bool singular = false;
+        if (newton("semismooth Newton", options.predicted)) return singular;
+        singular = result.outcome == KinsolOutcome::singular;
+        z = unpredicted;
+        if (predicted && newton("semismooth Newton without predictor", options.unpredicted)) return singular;
+        singular = singular || result.outcome == KinsolOutcome::singular;
+        if (start.empty()) return singular;
+        z = unpredicted;
+        LadderResult settled = settle(equilibrium, solver, z, start, now);
+        settled.iterations += result.iterations;
+        settled.reference_force = now.reference_force;
+        result = settled;
+        return singular || result.outcome == KinsolOutcome::singular;
+    };
+    const Vector first = z;
+    const bool singular = rungs();
+    const StabilisationOptions& how = options.stabilisation;
+    if (result.converged() || how.share == nullptr || !(singular || how.last_resort)) return result;
+    z = first;
+    LadderResult held = stabilise(equilibrium, solver, z, start, force_first, now);
+    held.reference_force = now.reference_force;
+    held.iterations += result.iterations;
+    if (!held.converged() && held.adrift < 0) { // what failed without springs says more
+        result.iterations = held.iterations;
+        return result;
+    }
+    if (held.adrift >= 0) held.outcome = KinsolOutcome::singular;
+    return held;
 }
 
 } // namespace osculate::time

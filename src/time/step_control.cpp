@@ -76,6 +76,11 @@ double next_step(const StepEvidence& evidence, const StepLimits& limits, double 
 
 } // namespace
 
+bool cannot_be_cut(const StepLimits& limits, double dt, int repeats) {
+    constexpr double same_step = 1e-6; // relative; above what fit_to() stretches a step by
+    return dt <= limits.dt_min * (1 + same_step) || repeats >= limits.most_repeats;
+}
+
 double reduction_factor(double g0, double g1, double g_p) {
     if (g1 >= -g_p) return 1;
     const double lambda = g0 >= g_p ? g0 / (g0 - g1)          // (27)
@@ -111,11 +116,12 @@ Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt
     std::ostringstream cause;
     describe(cause, objection, limits);
     decision.lambda = std::max(limits.smallest_lambda, objection.lambda); // NaN becomes the floor
-    constexpr double same_step = 1e-6; // relative; above what fit_to() stretches a step by
-    const bool smallest = dt <= limits.dt_min * (1 + same_step), repeated = repeats >= limits.most_repeats;
-    decision.dt = smallest || repeated ? dt : std::max(decision.lambda * dt, limits.dt_min);
-    decision.verdict = smallest || repeated ? Verdict::give_up : Verdict::retry;
-    if (smallest)
+    const bool repeated = repeats >= limits.most_repeats, end = evidence.hopeless || cannot_be_cut(limits, dt, repeats);
+    decision.dt = end ? dt : std::max(decision.lambda * dt, limits.dt_min);
+    decision.verdict = end ? Verdict::give_up : Verdict::retry;
+    if (evidence.hopeless)
+        cause << "; no smaller step would help";
+    else if (end && !repeated)
         cause << "; the step of " << dt << " s cannot be cut: dt_min is " << limits.dt_min << " s";
     else if (repeated)
         cause << "; the step has been repeated " << repeats << " times, the most allowed";

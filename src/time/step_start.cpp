@@ -115,6 +115,24 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
     return forced;
 }
 
+StabilisationOptions Stepper::stabilisation_options() const {
+    StabilisationOptions how;
+    how.share = &volume_shares_;
+    how.farthest = characteristic_length_;
+    constexpr double part = 0.05; // of the model, where there is no facet to compare with
+    how.stride = part * characteristic_length_;
+    if (model_.pairs.empty()) return how;
+    double finest = how.stride, least = how.farthest;
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model_.pairs[p];
+        finest = std::min(finest, pair.finest());
+        for (Index j = 0; j < pair.size(); ++j)
+            if (pair.point(j).found) least = std::min(least, pair.point(j).gap);
+    }
+    how.stride = std::max(finest, 0.5 * least); // a wide gap is crossed in a few strides
+    return how;
+}
+
 void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& constraints,
                                         const std::vector<Vec3>& force) {
     const Dynamics& dynamics = *stage.dynamics;
@@ -142,7 +160,7 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     const auto solver = solve::make_cholesky();
     // nodes without mass have no acceleration of their own
     solve::SparseMatrix matrix = free_mass.matrix();
-    const double heaviest = *std::max_element(matrix.value.begin(), matrix.value.end());
+    const double heaviest = matrix.value.empty() ? 0 : *std::ranges::max_element(matrix.value);
     std::vector<char> empty(static_cast<std::size_t>(constraints.equations()), 0);
     for (solve::SparseIndex i = 0; i < matrix.rows(); ++i)
         for (solve::SparseIndex k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
@@ -197,12 +215,9 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
         carried = std::max(carried, digit * by_u * largest);
     }
-    // what internal forces of a rigid motion are made of: round-off of stiffness times displacement, summed over neighbours
-    constexpr double sum = 10;
     double farthest = 0;
     for (const Vec3& u : state_.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
-    const double round_off =
-        sum * std::numeric_limits<double>::epsilon() / options_.tolerance * largest_stiffness_ * farthest;
+    const double round_off = round_off_force() * farthest;
     if (carried > round_off) return carried;
     // driven nodes that move ahead of their bodies; by a small part of it, as elements may not bear the whole
     constexpr double part = 1e-3;
@@ -216,7 +231,19 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         u[i] = equilibrium.constraints().to_global(i, moved);
     }
     const double driven = norm(model::internal_force(model_, u, options_.threads)) / part;
-    return std::max(driven, round_off) > 0 ? std::max(driven, round_off) : 1;
+    return std::max(driven, round_off);
+}
+
+double Stepper::round_off_force() const {
+    constexpr double sum = 10; // over neighbours
+    return sum * std::numeric_limits<double>::epsilon() / options_.tolerance * largest_stiffness_;
+}
+
+double Stepper::imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses, bool forced) {
+    Vector F(z.size());
+    equilibrium.set_statuses(statuses, StatusRule::natural, forced);
+    if (equilibrium.residual(z.data(), F.data()) == solve::NonlinearProblem::Verdict::shorten) return 1;
+    return F.norm() > 0 ? F.norm() : 1; // where nothing is out of balance any unit will do
 }
 
 } // namespace osculate::time

@@ -55,6 +55,8 @@ Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions 
     }
     characteristic_length_ = (high - low).norm();
     largest_stiffness_ = model::largest_stiffness(model);
+    const bool statics = std::ranges::any_of(stages_, [](const Stage& s) { return !s.dynamics.has_value(); });
+    if (options_.stabilisation && statics) volume_shares_ = model::volume_shares(model);
 }
 
 double Stepper::end_time() const {
@@ -68,8 +70,8 @@ void Stepper::run(StepObserver& observer) {
 }
 
 std::string Stepper::explain(const LadderResult& result, const Equilibrium& equilibrium, Attempt& attempt) const {
-    Index node = equilibrium.worst_node();
-    if (result.failing_equation >= 0)
+    Index node = result.adrift >= 0 ? result.adrift : equilibrium.worst_node();
+    if (result.failing_equation >= 0 && result.adrift < 0)
         for (Index i = 0; i < model_.nodes(); ++i)
             for (int k = 0; k < 3; ++k)
                 if (equilibrium.constraints().equation(i, k) == result.failing_equation) node = i;
@@ -85,11 +87,18 @@ std::string Stepper::explain(const LadderResult& result, const Equilibrium& equi
     }
     name_node(node, attempt);
     attempt.value = result.residual;
+    if (result.adrift >= 0) {
+        text << "body '" << attempt.body << "' is held by nothing: its loads moved node " << attempt.node << " by "
+             << result.travelled << " m without its finding support; add a support, turn the load towards a "
+             << "contact partner, or check that their surfaces face each other";
+        return text.str();
+    }
     text << result.rung << ": " << solve::describe(result.outcome) << " after " << result.iterations
          << " iterations, relative residual " << result.residual;
     if (!attempt.body.empty()) text << ", worst at node " << attempt.node << " of body '" << attempt.body << "'";
     switch (result.outcome) {
     case solve::KinsolOutcome::singular:
+        if (result.adrift >= 0) break;
         text << "; a body is held by nothing: add a support, or check that it touches another at the start";
         break;
     case solve::KinsolOutcome::stopped:
@@ -212,6 +221,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                              options_.max_iterations,
                              characteristic_length_,
                              reference_force(stage, load, equilibrium, dt),
+                             round_off_force(),
                              {},
                              {}};
         if (model_.finite_strain) {
@@ -225,6 +235,11 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             forced = starting_statuses(equilibrium, z, statuses);
         else
             for (const model::ContactHistory& history : state_.contact) statuses.push_back(history.status);
+        if (dynamics == nullptr && !volume_shares_.empty()) {
+            ladder.stabilisation = stabilisation_options();
+            ladder.stabilisation.last_resort = cannot_be_cut(stage.limits, dt, repeats);
+        }
+        if (ladder.reference_force == 0) ladder.reference_force = imbalance(equilibrium, z, statuses, forced);
         const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};
         equilibrium.begin_attempt(state_, std::move(load), dt);
         const long factorised = solver.factorisations();
@@ -243,6 +258,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 evidence.iterations = iterations;
                 decision = judge(evidence, stage.limits, dt, repeats);
                 z = std::move(trial);
+                ladder.reference_force = result.reference_force;
                 ladder.predicted.clear();
             }
         }
@@ -253,6 +269,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             iterations += result.iterations;
             evidence = {};
             evidence.solved = result.converged();
+            evidence.hopeless = result.adrift >= 0;
             evidence.iterations = iterations;
             evidence.residual = result.residual;
             evidence.forced = options_.reject_every > 0 && (attempts_ + 1) % options_.reject_every == 0;
@@ -276,6 +293,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         if (decision.verdict == Verdict::accept) {
             equilibrium.commit();
             state_ = std::move(next);
+            stabilised_steps_ += result.stabilised_solves > 0 ? 1 : 0;
             if (dynamics != nullptr) ledger_ = ledger;
             observer.attempted(attempt, equilibrium.records());
             observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
@@ -288,8 +306,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         equilibrium.rollback();
         observer.attempted(attempt, equilibrium.records());
         if (decision.verdict == Verdict::give_up)
-            throw RunFailure("stage '" + stage.name + "', step of " + number(dt) + " s to time " + number(time) +
-                             " s, the smallest allowed, failed. " + attempt.cause);
+            throw RunFailure("stage '" + stage.name + "', step of " + number(dt) + " s to time " + number(time) + " s" +
+                             (evidence.hopeless ? "" : ", the smallest allowed,") + " failed. " + attempt.cause);
         if (decision.reason != Reason::forced) ++repeats;
         dt = decision.reason == Reason::forced ? proposed : decision.dt;
     }

@@ -162,6 +162,15 @@ TEST(BadScene, BoundsOfStepControl) {
                           "--set: stages.load.control.error_tolerance: expected a dynamic stage, found a static one");
 }
 
+TEST(BadScene, ExpectationsThatContradict) {
+    expect_override_fault({"expect.cause", "no support"},
+                          "--set: expect.cause: expected outcome gives_up with a cause, found outcome completed");
+    expect_override_fault({"expect.outcome", "gave_up"}, "--set: expect.outcome: expected one of completed, gives_up, "
+                                                         "found 'gave_up' (did you mean 'gives_up'?)");
+    expect_override_fault({"expect.penetration", "0"}, "--set: expect.penetration: expected a number > 0, found '0'");
+    EXPECT_THAT(messages(faults_of(small_scene, {{"expect", "{outcome: gives_up, cause: no support}"}})), IsEmpty());
+}
+
 TEST(BadScene, AllFaultsAtOnceInOrder) {
     std::string text = replaced(small_scene, "nu: 0.3", "nu: 3");
     text = replaced(text, "steps: 2", "stpes: 2");

@@ -98,6 +98,20 @@ TEST(Reader, PutsTheMirrorsNormalFirst) {
     EXPECT_NEAR(support.axes.determinant(), 1, round_off);
 }
 
+TEST(Reader, ExpectsNothingUnlessTold) {
+    EXPECT_FALSE(read_small().expect);
+    EXPECT_FALSE(again(read_small()).expect);
+    const Scene plain = read_small({{"expect", "{}"}});
+    EXPECT_EQ(plain.expect, Expectation{});
+    EXPECT_EQ(again(plain), plain);
+    const Scene scene = read_small({{"expect", "{outcome: gives_up, cause: no support, penetration: 0.01}"}});
+    ASSERT_TRUE(scene.expect);
+    EXPECT_EQ(scene.expect->outcome, Outcome::gives_up);
+    EXPECT_EQ(scene.expect->cause, "no support");
+    EXPECT_EQ(scene.expect->penetration, 0.01);
+    EXPECT_EQ(again(scene).expect, scene.expect);
+}
+
 TEST(Reader, FindsAMeshFileBesideTheScene) {
     const fs::path folder = fs::path(testing::TempDir()) / "scene_with_mesh";
     fs::create_directories(folder);

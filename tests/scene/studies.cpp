@@ -181,6 +181,22 @@ TEST(StudyFile, ContradictionsAreFaults) {
                 testing::Contains(HasSubstr("constants.h: expected a name")));
 }
 
+TEST(StudyFile, AnAxisMayBeAllScenesOfAFolder) {
+    for (const char* name : {"b_2.yaml", "a_1.yaml", "c.txt", "other.yaml", "._1.yaml"})
+        support::scene_file(name, small_scene);
+    const auto with = [](const std::string& pattern) {
+        return "axes:\n  scene: {scenes: " + pattern + "}\nquantities:\n  steps: {value: steps + 0 * penetration}\n";
+    };
+    const Study study = read(with("'./?_*.yaml'"));
+    std::vector<std::string> ids;
+    for (const Combination& c : study.combinations()) ids.push_back(study.id(c));
+    EXPECT_THAT(ids, ElementsAre("scene=a_1", "scene=b_2"));
+    EXPECT_EQ(study.scene_of({1}), support::temporary("b_2.yaml"));
+    EXPECT_THAT(faults(with("nothing_*.yaml")),
+                ElementsAre("study.yaml:2:19: axes.scene.scenes: expected scene files, * and ? in their name, found "
+                            "'nothing_*.yaml'"));
+}
+
 TEST(StudyFile, OneOfSurfacesIsAnother) {
     EXPECT_TRUE(is_run_study(file_with(small_study)));
     EXPECT_FALSE(is_run_study(support::scene_file("surfaces.yaml", "surfaces: {ball: {}}\n")));

@@ -96,7 +96,7 @@ TEST_F(Run, ReactionsBalanceThePairForceWhereSetsShareNodes) {
 }
 
 TEST_F(Run, CountsEveryAttempt) {
-    // pulled off the base: steps fail, are cut, and the run gives up
+    // pulled off the base: a step fails, is cut, and the run gives up
     const Outcome outcome = osculate({"run", press, "-o", "run", "--set", "stages.pull.displacement.rear.x=6 m",
                                       "--set", "solver.smallest_step=0.3", "--set", "output.iterations=true"});
     EXPECT_EQ(outcome.code, 3);
@@ -116,7 +116,7 @@ TEST_F(Run, CountsEveryAttempt) {
         newton += std::stol(steps.text(i, "iterations"));
     }
     EXPECT_GE(accepted, 1);
-    EXPECT_GE(rejected, 2);
+    EXPECT_GE(rejected, 1);
     EXPECT_EQ(steps.text(steps.rows.size() - 1, "verdict"), "give_up");
     EXPECT_EQ(iterations.text(iterations.rows.size() - 1, "attempt"), steps.text(steps.rows.size() - 1, "attempt"));
 

@@ -237,6 +237,57 @@ quantities:
     EXPECT_EQ(study({(folder / "small.yaml").string(), "-o", "s"}).err, "") << "it is finished, too";
 }
 
+TEST_F(Study, OfValuesAloneIsAMatrix) {
+    fs::create_directories(folder / "scenes");
+    std::ofstream(folder / "scenes/done.yaml") << content(press) << "expect: {outcome: completed}\n";
+    std::ofstream(folder / "scenes/torn.yaml") << content(press) << "expect: {outcome: completed}\n"
+                                               << "solver: {smallest_step: 0.3}\n";
+    std::string torn = content(folder / "scenes/torn.yaml");
+    torn.replace(torn.find("rear: {x: 0.1 m}"), 16, "rear: {x: 6 m}");
+    std::ofstream(folder / "scenes/torn.yaml") << torn;
+    const Outcome outcome = study({write(R"(problem: All of them.
+axes:
+  scene: {scenes: scenes/*.yaml}
+quantities:
+  steps: {value: steps}
+  cuts: {value: rejected}
+  iterations: {value: iterations, label: Newton iterations}
+  balance: {value: force_balance}
+  growth: {value: energy_growth}
+  penetration: {value: penetration}
+repeats: 2
+)"),
+                                   "-o", "s", "--quiet"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("nothing to plot"));
+    EXPECT_FALSE(fs::exists(folder / "s/study.gp"));
+    const Csv csv(folder / "s/study.csv");
+    ASSERT_EQ(csv.rows.size(), 2U);
+    EXPECT_EQ(csv.text(0, "expectation"), "met");
+    EXPECT_EQ(csv.text(1, "expectation"), "missed: gave up where it should complete");
+    EXPECT_EQ(csv.text(1, "status"), "gave_up");
+    const Csv steps(folder / "s/runs/scene=torn/steps.csv");
+    double iterations = 0;
+    for (std::size_t i = 0; i < steps.rows.size(); ++i) iterations += steps.number(i, "iterations");
+    EXPECT_EQ(csv.number(1, "iterations.value"), iterations) << "it gave up, and its work counts";
+    EXPECT_GE(csv.number(1, "cuts.value"), 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_LT(csv.number(i, "balance.value"), 1e-9);
+        EXPECT_LT(csv.number(i, "penetration.value"), 1e-9);
+        EXPECT_EQ(csv.text(i, "growth.value"), "") << "a matter of dynamics";
+        EXPECT_EQ(csv.text(i, "same_bits"), "yes") << "runs that gave up are repeated, too";
+    }
+    const std::string report = content(folder / "s/study.md");
+    EXPECT_THAT(report, HasSubstr("2 runs: 1 completed, 1 gave up; 1 of 2 as expected; 0 not the same, bit for bit, "
+                                  "when repeated."));
+    EXPECT_THAT(report,
+                HasSubstr("| scene | outcome | expectation | steps | cuts | Newton iterations | balance | growth | "
+                          "penetration | CPU s | remark |"));
+    EXPECT_THAT(report, HasSubstr("| done | completed | met | 4 | 0 | "));
+    EXPECT_THAT(report, HasSubstr("| torn | gave up | missed: gave up where it should complete | "));
+    EXPECT_THAT(report, Not(HasSubstr("## Runs"))) << "one table says it all";
+}
+
 TEST_F(Study, RepeatsMustGiveTheSameBits) {
     const std::string file = write(small_study);
     ASSERT_EQ(study({file, "-o", "s", "--quiet", "--repeats", "2"}).code, 0);

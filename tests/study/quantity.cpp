@@ -89,9 +89,10 @@ TEST(ShippedStudies, CanBeRead) {
         if (entry.path().extension() != ".yaml" || !scene::is_run_study(path)) continue;
         const scene::Study study = scene::read_study(path, functions);
         EXPECT_FALSE(study.problem.empty()) << path;
+        ++runs;
+        if (std::ranges::none_of(study.quantities, &scene::StudyQuantity::has_error)) continue; // a matrix of values
         EXPECT_FALSE(study.source.empty()) << path;
         EXPECT_GE(study.refine, 0) << path;
-        ++runs;
     }
     EXPECT_GT(runs, 0);
 }

@@ -92,8 +92,9 @@ Depths depths(Fall& fall) {
                                   fall.dt[k]);
         Vector z = equilibrium.unknowns(start.u, start.contact);
         const double weight = 80; // N
-        const auto solved = time::solve_trial(equilibrium, solver, z, {start.contact[0].status},
-                                              {1e-6, 30, 1, std::max(weight, 1e-3 * weight / fall.dt[k]), {}, {}});
+        const auto solved =
+            time::solve_trial(equilibrium, solver, z, {start.contact[0].status},
+                              {.tolerance = 1e-6, .reference_force = std::max(weight, 1e-3 * weight / fall.dt[k])});
         EXPECT_TRUE(solved.converged()) << "step " << k;
         const std::vector<Vec3> trial = equilibrium.state(z).u;
         int open = 0;

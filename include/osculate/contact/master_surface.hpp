@@ -39,6 +39,12 @@ public:
     /// no unique foot.
     virtual void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
                           ContactVariation* variation = nullptr) const = 0;
+    /// Whether a slave point between two facets that share a vertex may see another gap above one than above the other. Points
+    /// that go to and fro between such facets are latched to one of them.
+    [[nodiscard]] virtual bool tells_apart(Index from, Index to) const {
+        (void)from, (void)to;
+        return true;
+    }
     /// Fits patches anew at converged positions x where the surface has been bent by more than 60 degrees within one, so
     /// that its frozen coordinates have become misleading. To be called between steps only.
     /// @returns how many

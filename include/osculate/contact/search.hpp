@@ -16,6 +16,7 @@ struct FacetHit {
     double distance = 0;   ///< to the facet, m
     double overhang = 0;   ///< how far the foot on the extended facet lies beyond its edge, m; 0 inside
     bool boundary = false; ///< the closest point lies on the surface's boundary
+    bool latched = false;  ///< stays on this facet, and on its side of creases, for now
     double beyond = 0;     ///< how far s lies past that boundary, in the plane of the facet there, m; 0 inside
 };
 

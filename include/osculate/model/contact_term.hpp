@@ -77,6 +77,8 @@ public:
     [[nodiscard]] double finest() const { return finest_; }
     /// Positions of the master's vertices, mirror images among them.
     [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const;
+    /// Whether the master has mirror images: forces on them fold back onto its nodes.
+    [[nodiscard]] bool mirrored() const { return !master_nodes_.image.empty(); }
     /// The vertex that stands for the node itself of which `vertex` may be an image.
     [[nodiscard]] Index own_vertex(Index vertex) const { return own_vertex_.empty() ? vertex : own_vertex_[vertex]; }
     [[nodiscard]] ContactHistory initial_history() const;

@@ -33,7 +33,8 @@ struct Set {
 
 struct Model {
     std::vector<Body> bodies;
-    std::vector<Vec3> X; ///< reference positions of all nodes, m
+    Vec3 origin = Vec3::Zero(); ///< where the scene's coordinates have X = 0, m: far from it digits would be lost
+    std::vector<Vec3> X;        ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
     std::vector<Set> sets;
     std::vector<std::unique_ptr<ContactTerm>> pairs;
     BlockMatrix K;                               ///< constant stiffness of the linear bodies, in the pattern of all
@@ -59,6 +60,8 @@ struct Model {
 ///                  that has no other keeps its mass. Empty: none
 [[nodiscard]] BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
                                         const std::vector<char>& massless);
+/// (nodes) share of each node in the volume of its body, lumped; the shares of a body sum to 1.
+[[nodiscard]] std::vector<double> volume_shares(const Model& model);
 /// Centre of mass of a body of uniform density in its reference configuration, m.
 [[nodiscard]] Vec3 centre_of_mass(const Body& body);
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).

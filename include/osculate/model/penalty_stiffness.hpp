@@ -23,6 +23,11 @@ public:
     PenaltyStiffness(const Constraints& constraints, const BlockMatrix& K);
     /// Takes over new values of K; they count from the next set_springs() on.
     void stiffness_changed();
+    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    void use(const BlockMatrix& K) {
+        K_ = &K;
+        stiffness_changed();
+    }
     /// Rewrites the matrix for other springs; the pattern grows where it has to.
     void set_springs(const std::vector<Spring>& springs);
     /// Keeps the pattern as it is, or goes back to the one last kept: the order of elimination, and with it the last digit
@@ -41,7 +46,7 @@ private:
     void add(Index row, Index column, const Mat3& global, std::vector<double>& into) const;
 
     const Constraints& constraints_;
-    const BlockMatrix& K_;
+    const BlockMatrix* K_;
     std::vector<Index> block_row_start_, block_column_, block_offset_; ///< offset of a block's columns within a row
     std::vector<double> base_;
     std::vector<Spring> pattern_springs_, kept_; ///< the pattern was built for; where they connect counts

@@ -45,6 +45,11 @@ public:
     void expect_unsymmetric() { matrix_.symmetric_positive_definite = false; }
     /// Takes over new values of K.
     void stiffness_changed();
+    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    void use(const BlockMatrix& K) {
+        K_ = &K;
+        stiffness_changed();
+    }
     /// Sets the values to the stiffness and the unit columns of the contact forces.
     void reset();
     /// Contact tangent of coupling j in global components: contact rows, derivatives A (3 x 3+3n) by (slave, masters) and

@@ -4,6 +4,7 @@
 #include "osculate/core/timing.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,18 @@ struct Summary {
         long accepted = 0, rejected = 0;
     };
 
+    /// Worst over the accepted steps, see app::RunChecks.
+    struct Checks {
+        double force_balance = 0;                            ///< of the forces that act
+        double penetration = 0, penetration_m = 0;           ///< in facet sizes; m
+        std::optional<double> energy_balance, energy_growth; ///< of the largest energy; without a dynamic step none
+    };
+    /// Whether the run came to what its scene expects.
+    struct Expectation {
+        std::vector<std::string> misses; ///< in words; none: met
+        [[nodiscard]] bool met() const { return misses.empty(); }
+    };
+
     std::string version, scene;
     std::string status;  ///< how the run stands or ended
     std::string failure; ///< why it gave up; left out of the file when empty
@@ -37,6 +50,8 @@ struct Summary {
     long peak_memory_bytes = 0;
     int threads = 1;
     std::vector<std::string> plan;
+    std::optional<Checks> checks;
+    std::optional<Expectation> expectation; ///< where the scene has one, when the run has ended
 };
 
 /// Writes summary.json, whole or not at all; total_seconds, cpu_seconds and timings together are its `seconds`.

@@ -295,6 +295,7 @@ struct Solver {
     int max_iterations = 30;     ///< Newton iterations of one attempt
     double smallest_step = 1e-3; ///< of the stage's step: a smaller one is given up
     bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
+    bool stabilisation = true;   ///< springs under bodies that nothing holds yet, gone before a step is accepted
     bool operator==(const Solver&) const = default;
 };
 
@@ -312,6 +313,27 @@ struct Output {
     bool operator==(const Output&) const = default;
 };
 
+// ---- expectation ---------------------------------------------------------------------------------------------------------
+
+enum class Outcome { completed, gives_up };
+
+/// What a run is expected to come to, held against the checks of a run.
+struct Expectation {
+    /// Penetration, of the facet size, where a stage has no bound. Contact is exact: on a closed node the solver leaves a gap
+    /// of the order of tolerance * force / c, with c ~ E A / h some 1e-9 of the elastic strain. A thousand times that.
+    static constexpr double exact = 1e-6;
+
+    Outcome outcome = Outcome::completed;
+    std::string cause; ///< words that the message of a run that gives up holds
+    /// Of the forces that act. The solver leaves solver.tolerance of a reference force in the mean square over n degrees of
+    /// freedom, sqrt(n) of it in a sum: 1e-6 for 1e-9 and a million.
+    double force_balance = 1e-6;
+    /// Of the largest energy, over the whole run: what one step may do by itself, see StepControl.
+    double energy_growth = StepControl{}.energy_tolerance;
+    std::optional<double> penetration; ///< of the facet size; not given: the stage's bound or `exact`
+    bool operator==(const Expectation&) const = default;
+};
+
 struct Scene {
     std::string name;            ///< fit for a file name: letters, digits, _ and -
     std::string description;     ///< free text
@@ -324,6 +346,7 @@ struct Scene {
     Named<Stage> stages;
     Solver solver;
     Output output;
+    std::optional<Expectation> expect; ///< not given: nothing is judged
     bool operator==(const Scene&) const = default;
 };
 

@@ -19,6 +19,15 @@ struct FollowerLoad {
     double start = 0, end = 0;                        ///< Pa
 };
 
+/// Springs that hold every node of all bodies to where it was, in proportion to its share of its body's volume: the forces
+///     s_i k (u_i - a_i).
+/// Something to lean on for bodies that nothing else holds yet; no equilibrium is accepted with them in place.
+struct Stabilisation {
+    const std::vector<double>* share = nullptr; ///< s_i, see model::volume_shares
+    double stiffness = 0;                       ///< k, of all springs of one body together, N/m
+    std::vector<Vec3> anchor{};                 ///< a_i, (nodes) m
+};
+
 /// In statics f(u) = f_int(u) - f_p(u), f_p those of follower pressures. In dynamics the mean over the step that the integrator asks for,
 ///     f(u) = (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + K u - f_p) + alpha_f (C v_n + K u_n - f_p,n),
 /// v and a affine in u by its kinematics, C = mass_damping M + stiffness_damping K. Bodies at finite strain have in place
@@ -33,12 +42,19 @@ public:
 
     /// Opens a step. True where it changed the tangent.
     bool begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt);
+    /// Adds springs, or changes them, in statics. tangent() is another matrix afterwards.
+    void stabilise(Stabilisation springs);
+    /// Takes them away; tangent() is the one it was before.
+    void release();
+    [[nodiscard]] bool stabilised() const { return springs_.share != nullptr; }
     /// f (nodes) N at u (nodes) m; not to be used where an element is not admissible.
     model::WorstElement evaluate(const std::vector<Vec3>& u, std::vector<Vec3>& f) const;
     /// Takes the tangent to u. False where it does not depend on u, and nothing is done.
     bool linearise(const std::vector<Vec3>& u);
     /// df/du, at the last linearise(): the effective stiffness.
-    [[nodiscard]] const model::BlockMatrix& tangent() const { return dynamics_ || varies() ? tangent_ : model_.K; }
+    [[nodiscard]] const model::BlockMatrix& tangent() const {
+        return dynamics_ || varies() || stabilised() ? tangent_ : model_.K;
+    }
     [[nodiscard]] bool symmetric() const { return !follower_pressure_ && (dynamics_ == nullptr || !nonlinear()); }
 
     /// Velocities and accelerations at the end of the step from the displacements there; empty in statics.
@@ -47,6 +63,9 @@ public:
     [[nodiscard]] double inertia(Index node) const;
     /// Work over the step that ended in `state`.
     [[nodiscard]] BodyWork work(const model::State& state) const;
+    /// What acts from outside of the bodies over that step but for dead loads: follower pressures, less inertia and damping
+    /// by mass. (nodes) N
+    [[nodiscard]] std::vector<Vec3> outer_forces(const model::State& state) const;
 
 private:
     using Field = std::vector<Vec3>;
@@ -55,6 +74,7 @@ private:
     [[nodiscard]] bool varies() const { return nonlinear() || follower_pressure_; }
     /// f += factor times the pressures' forces, each pressure that of the step's start or end.
     void add_pressures(double factor, bool end, const Field& u, Field& f) const;
+    void add_springs(model::BlockMatrix& tangent) const;
     [[nodiscard]] const model::BlockMatrix& mass() const { return model_.mass(dynamics_->lumped_mass); }
 
     const model::Model& model_;
@@ -65,7 +85,8 @@ private:
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;
     fe::StepMean mean_;                 ///< of finite strain, for the current dt
-    model::BlockMatrix tangent_;        ///< dynamics, or where it varies
+    Stabilisation springs_;             ///< without share: none
+    model::BlockMatrix tangent_;        ///< dynamics, where it varies, or with springs
     model::BlockMatrix constant_;       ///< where it varies: the part of the tangent that does not depend on u
     Field u_start_, v_start_, a_start_; ///< dynamics only
     Field force_start_;                 ///< f at u_start but for finite strain, N; dynamics only

@@ -30,6 +30,8 @@ public:
     ContactPreconditioner(const model::Constraints& constraints, const model::BlockMatrix& K);
     /// Takes over new values of K.
     void stiffness_changed() { stiffness_.stiffness_changed(); }
+    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    void use(const model::BlockMatrix& K) { stiffness_.use(K); }
     void keep_pattern() { stiffness_.keep_pattern(); }
     void restore_pattern() { stiffness_.restore_pattern(); }
     /// Factorises for the contacts given, every coupling of the pairs among them.

@@ -57,6 +57,9 @@ public:
     /// The next residual is linear in the displacements about u, (nodes) m, where elements bear a driven motion that has
     /// not spread into the body yet. Of no concern, and not kept, without finite strain.
     void linearise_first_about(const std::vector<Vec3>& u);
+    /// Springs in place from the next residual on, see BodyForces; release() takes them away.
+    void stabilise(Stabilisation springs);
+    void release();
     void set_reference_force(double force) { reference_force_ = force; }
 
     [[nodiscard]] Index size() const override { return size_; }
@@ -71,6 +74,8 @@ public:
     [[nodiscard]] Vector unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const;
     [[nodiscard]] model::State state(const Vector& z) const;
 
+    /// Displacements of z, (nodes) m.
+    [[nodiscard]] std::vector<Vec3> displacements(const Vector& z) const;
     /// Statuses at the last residual, and what the complementarity functions say there.
     [[nodiscard]] const std::vector<std::vector<contact::Status>>& statuses() const { return statuses_; }
     [[nodiscard]] std::vector<std::vector<contact::Status>> natural_statuses() const;
@@ -79,6 +84,10 @@ public:
     /// f_int - f_ext - f_contact at the last residual: what the supports carry, and round-off elsewhere. (nodes) N
     [[nodiscard]] const std::vector<Vec3>& unbalanced() const { return unbalanced_; }
     [[nodiscard]] const std::vector<Vec3>& internal_force() const { return internal_; }
+    /// Dead loads of the attempt, in dynamics their mean over the step. (nodes) N
+    [[nodiscard]] const std::vector<Vec3>& external_force() const { return load_.force; }
+    /// What residuals are measured against, N.
+    [[nodiscard]] double reference_force() const { return reference_force_; }
     /// Node whose row holds the largest residual.
     [[nodiscard]] Index worst_node() const { return worst_node_; }
     /// Element with the least volume left, at the last residual; where it has none there was no residual.

@@ -5,22 +5,39 @@
 
 namespace osculate::time {
 
+/// The last rung, in statics: bodies lean on springs (see Stabilisation) that are moved after them and made softer until
+/// equilibrium holds without them.
+struct StabilisationOptions {
+    const std::vector<double>* share = nullptr; ///< model::volume_shares; null: the rung is left out
+    double stride = 0;                          ///< m, about as far as a body may move at a time: a facet, a thickness
+    double farthest = 0;                        ///< m, travel after which a body counts as held by nothing
+    bool last_resort = false;                   ///< any failure leads here, not a singular tangent alone
+};
+
 struct LadderOptions {
     double tolerance = 1e-9;
     int max_iterations = 30;
     double characteristic_length = 1; ///< m
     double reference_force = 1;       ///< N
+    /// Reference force that round-off of the internal forces calls for, over the largest displacement, N/m: a solve that comes
+    /// to rest there is held against no smaller one.
+    double round_off = 0;
     /// (nodes) displacements behind the start values, driven nodes where they were: what first residuals are linear about
     /// at finite strain (Equilibrium::linearise_first_about); empty: exact from the start.
-    std::vector<Vec3> predicted, unpredicted;
+    std::vector<Vec3> predicted{}, unpredicted{};
+    StabilisationOptions stabilisation{};
 };
 
 struct LadderResult {
     solve::KinsolOutcome outcome = solve::KinsolOutcome::converged;
-    int iterations = 0;    ///< Newton iterations of all rungs
-    double residual = 0;   ///< largest residual component over the reference force
-    const char* rung = ""; ///< the rung that ended the attempt
+    int iterations = 0;         ///< Newton iterations of all rungs
+    double residual = 0;        ///< largest residual component over the reference force
+    double reference_force = 0; ///< N, the one it was held against
+    const char* rung = "";      ///< the rung that ended the attempt
     solve::SparseIndex failing_equation = -1;
+    int stabilised_solves = 0; ///< with springs in place
+    Index adrift = -1;         ///< node that travelled farthest, of a body that found no support
+    double travelled = 0;      ///< how far it did, m
 
     [[nodiscard]] bool converged() const { return outcome == solve::KinsolOutcome::converged; }
 };
@@ -38,6 +55,9 @@ using Statuses = std::vector<std::vector<contact::Status>>;
 ///   that sticks can send Newton round in the slip branch
 /// 3 statuses frozen per KINSOL call and settled between calls; a release that leaves the tangent singular is taken back
 ///   by halves, so that no body loses its support
+/// 4 stabilised: where a tangent is singular, or as a last resort. Solved again and again with springs that hold bodies to
+///   where the last solve left them, softer each time it goes well; accepted where the residual without springs is within
+///   tolerance, so that motions which nothing determines stay as they are
 /// A smaller step and a named failure are the stepper's.
 /// @param z            predicted start values, last iterate afterwards
 /// @param unpredicted  start values without prediction

@@ -35,6 +35,7 @@ struct GapEvidence {
 struct StepEvidence {
     std::vector<GapEvidence> gaps;
     bool solved = true;     ///< false: nothing else is looked at
+    bool hopeless = false;  ///< not solved, and no smaller step would be
     int iterations = 0;     ///< of all solves of the attempt
     double residual = 0;    ///< relative
     double local_error = 0; ///< Integrator::local_error(), m
@@ -69,6 +70,9 @@ struct Decision {
     Index pair = -1, slave = -1; ///< governing point of an interpenetration or a collision
     std::string cause;           ///< in words; empty when accepted
 };
+
+/// Whether judge() gives up where it would cut the step.
+[[nodiscard]] bool cannot_be_cut(const StepLimits& limits, double dt, int repeats);
 
 /// The smallest lambda of all objections governs, among equals the first of: solver, interpenetration, collision, error,
 /// energy. A cut never goes below dt_min, which is tried before giving up.

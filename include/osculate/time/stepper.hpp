@@ -16,6 +16,7 @@ struct StepperOptions {
     int max_iterations = 30;
     int reject_every = 0; ///< rejects every k-th attempt on purpose, to see that it leaves no trace; 0 none
     bool predictor = true;
+    bool stabilisation = true; ///< see StabilisationOptions
     int threads = 1;
 };
 
@@ -50,6 +51,8 @@ public:
     [[nodiscard]] long refreshed_patches() const { return refreshed_patches_; }
     /// Paths of slave nodes that were followed facet by facet, see CollisionCheck.
     [[nodiscard]] long paths_followed() const { return paths_followed_; }
+    /// Steps accepted on the rung `stabilised`, see climb().
+    [[nodiscard]] int stabilised_steps() const { return stabilised_steps_; }
     [[nodiscard]] double end_time() const;
 
 private:
@@ -66,13 +69,22 @@ private:
                  std::vector<Vec3>& u) const;
     /// Statuses to start from; true where a pair is brought into contact by hand because nothing of it is closed yet.
     [[nodiscard]] bool starting_statuses(Equilibrium& equilibrium, const Vector& z, Statuses& statuses) const;
+    /// What forces are measured by, N; 0 where nothing acts yet.
     [[nodiscard]] double reference_force(const Stage& stage, const StepLoad& load, const Equilibrium& equilibrium,
                                          double dt) const;
+    /// Reference force over displacement that round-off calls for, N/m: internal forces of a rigid motion are round-off of
+    /// stiffness times displacement.
+    [[nodiscard]] double round_off_force() const;
+    /// Norm of the residual at z, contact laws included: the reference where it is initial overlap alone that acts, N.
+    [[nodiscard]] static double imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses,
+                                          bool forced);
     /// M a = f - K u - C v + contact forces of the state, a = 0 along held directions.
     void find_initial_acceleration(const Stage& stage, const model::Constraints& constraints,
                                    const std::vector<Vec3>& force);
     /// Velocities, accelerations and ledger at the start of the first dynamic stage after statics, or at all.
     void start_motion(const Stage& stage, const model::Constraints& constraints, StepLoad load);
+    /// Of the last rung of an attempt from displacements u, the pairs evaluated there.
+    [[nodiscard]] StabilisationOptions stabilisation_options() const;
     /// The attempt's row of the diary.
     Attempt diary(const Decision& decision, const LadderResult& result, const Equilibrium& equilibrium, double time,
                   double dt, int iterations);
@@ -87,9 +99,11 @@ private:
     Ledger ledger_;
     bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
+    int stabilised_steps_ = 0;
     long factorisations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;
-    double largest_stiffness_ = 0; ///< model::largest_stiffness
+    double largest_stiffness_ = 0;      ///< model::largest_stiffness
+    std::vector<double> volume_shares_; ///< model::volume_shares; empty without stabilisation
 };
 
 } // namespace osculate::time

@@ -1,0 +1,89 @@
+#include "osculate/app/run_checks.hpp"
+
+#include "osculate/time/force_balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace osculate::app {
+
+namespace {
+
+double share(double part, double whole) {
+    return whole > 0 ? part / whole : 0;
+}
+
+} // namespace
+
+void RunChecks::accepted(const time::AcceptedStep& step) {
+    const time::ForceBalance forces = time::force_balance(model_, step.equilibrium, step.state);
+    left_over_ = std::max(left_over_, forces.left_over);
+    acting_ = std::max(acting_, forces.acting);
+    add_penetration(step);
+    if (step.ledger != nullptr) add_energies(*step.ledger);
+}
+
+void RunChecks::add_penetration(const time::AcceptedStep& step) {
+    const time::StepLimits& limits = step.stage.limits;
+    for (const auto& pair : model_.pairs)
+        for (Index j = 0; j < pair->size(); ++j) {
+            const contact::ContactPoint& point = pair->point(j);
+            if ((!point.found && !point.behind) || point.facet < 0 || point.gap >= 0) continue;
+            const double size = pair->surface().facet_size(point.facet), depth = -point.gap / size;
+            penetration_ = std::max(penetration_, depth);
+            penetration_m_ = std::max(penetration_m_, -point.gap);
+            const double allowed = limits.allowed_interpenetration / (limits.in_metres ? size : 1);
+            const double bound = expect_ && expect_->penetration ? *expect_->penetration
+                                 : std::isfinite(allowed)        ? allowed
+                                                                 : scene::Expectation::exact;
+            if (depth / bound <= excess_) continue;
+            excess_ = depth / bound;
+            excessive_ = depth;
+            bound_ = bound;
+        }
+}
+
+void RunChecks::add_energies(const time::Ledger& ledger) {
+    dynamic_ = true;
+    const double dissipated = ledger.friction + ledger.damping + ledger.algorithmic;
+    const double rise = ledger.contact + ledger.balance - dissipated, energy = ledger.kinetic + ledger.strain;
+    // energy - rise - external is what there was at the start
+    energy_ = std::max({energy_, energy, energy - rise - ledger.external, std::abs(ledger.external)});
+    balance_ = std::max(balance_, std::abs(ledger.balance));
+    growth_ = std::max(growth_, rise);
+}
+
+output::Summary::Checks RunChecks::checks() const {
+    output::Summary::Checks checks;
+    checks.force_balance = share(left_over_, acting_);
+    checks.penetration = penetration_;
+    checks.penetration_m = penetration_m_;
+    if (dynamic_) {
+        checks.energy_balance = share(balance_, energy_);
+        checks.energy_growth = share(growth_, energy_);
+    }
+    return checks;
+}
+
+std::optional<output::Summary::Expectation> RunChecks::judge(const std::string& failure) const {
+    if (!expect_) return {};
+    output::Summary::Expectation result;
+    const auto miss = [&](std::string words) { result.misses.push_back(std::move(words)); };
+    if (expect_->outcome == scene::Outcome::completed) {
+        if (!failure.empty()) miss("gave up where it should complete");
+    } else if (failure.empty()) {
+        miss("completed where it should give up");
+    } else if (failure.find(expect_->cause) == std::string::npos) {
+        miss(fmt::format("gave up without the words '{}'", expect_->cause));
+    }
+    const output::Summary::Checks found = checks();
+    if (found.force_balance > expect_->force_balance)
+        miss(fmt::format("force balance {:.3g} above {:.3g}", found.force_balance, expect_->force_balance));
+    if (found.energy_growth && *found.energy_growth > expect_->energy_growth)
+        miss(fmt::format("energy growth {:.3g} above {:.3g}", *found.energy_growth, expect_->energy_growth));
+    if (excess_ > 1) miss(fmt::format("penetration {:.3g} above {:.3g} facet sizes", excessive_, bound_));
+    return result;
+}
+
+} // namespace osculate::app

@@ -1,0 +1,27 @@
+#include "scene/describe_parts.hpp"
+
+namespace osculate::scene {
+
+void describe(Visitor& v, Expectation& expect) {
+    static const std::string bound =
+        "allowed_interpenetration of the stage, " + number_text(Expectation::exact) + " where it has none";
+    static const Words outcomes{"completed", "gives_up"};
+    word(v, {.name = "outcome", .meaning = "How the run ends."}, outcomes, expect.outcome);
+    v.text({.name = "cause", .meaning = "Words that the message of a run that gives up holds."}, expect.cause);
+    v.number({.name = "force_balance",
+              .meaning = "Most that the forces on a body may leave over, of the forces that act.",
+              .range = range::positive},
+             expect.force_balance);
+    v.number({.name = "energy_growth",
+              .meaning = "Most that kinetic plus strain energy may rise beyond external work in dynamics, of the "
+                         "largest energy.",
+              .range = range::positive},
+             expect.energy_growth);
+    v.optional_number({.name = "penetration",
+                       .meaning = "Deepest interpenetration of any slave node in an accepted state, in facet sizes.",
+                       .range = range::positive,
+                       .default_text = bound.c_str()},
+                      expect.penetration);
+}
+
+} // namespace osculate::scene

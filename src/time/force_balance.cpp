@@ -1,0 +1,54 @@
+#include "osculate/time/force_balance.hpp"
+
+#include "time/nodal_field.hpp"
+
+#include <algorithm>
+
+namespace osculate::time {
+
+namespace {
+
+/// Adds a pair's contact forces on nodes to f; their sum.
+Vec3 add_contact(const model::ContactTerm& pair, const std::vector<Vec3>& lambda, NodalField& f) {
+    Vec3 sum = Vec3::Zero();
+    const auto add = [&](Index node, const Vec3& force) {
+        f[static_cast<std::size_t>(node)] += force;
+        sum += force;
+    };
+    for (Index j = 0; j < pair.size(); ++j) {
+        const Vec3& force = lambda[static_cast<std::size_t>(j)];
+        if (force.isZero(0)) continue;
+        add(pair.slaves().node[static_cast<std::size_t>(j)], force);
+        if (!pair.point(j).found) continue;
+        for (Index i = 0; i < pair.carriers(j); ++i)
+            add(pair.point_nodes(j)[static_cast<std::size_t>(i)], pair.master_force(j, i, force));
+    }
+    return sum;
+}
+
+} // namespace
+
+ForceBalance force_balance(const model::Model& model, const Equilibrium& equilibrium, const model::State& state) {
+    ForceBalance balance;
+    NodalField contact(state.u.size(), Vec3::Zero());
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        const Vec3 sum = add_contact(*model.pairs[p], state.contact[p].lambda, contact);
+        if (!model.pairs[p]->mirrored()) balance.left_over = std::max(balance.left_over, sum.norm());
+    }
+    const NodalField outer = equilibrium.bodies().outer_forces(state);
+    const NodalField &load = equilibrium.external_force(), &unbalanced = equilibrium.unbalanced();
+    for (const model::Body& body : model.bodies) {
+        Vec3 sum = Vec3::Zero();
+        for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node) {
+            const auto i = static_cast<std::size_t>(node);
+            const Vec3 reaction = equilibrium.constraints().reaction(node, unbalanced[i]);
+            sum += reaction + load[i] + outer[i] + contact[i];
+            balance.acting += reaction.norm() + load[i].norm() + outer[i].norm() + contact[i].norm();
+        }
+        balance.left_over = std::max(balance.left_over, sum.norm());
+    }
+    balance.acting = std::max(balance.acting, equilibrium.reference_force());
+    return balance;
+}
+
+} // namespace osculate::time

@@ -1,4 +1,5 @@
 #include "osculate/time/integrator.hpp"
+
 #include "support/floating_point_traps.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -1,7 +1,7 @@
 #include "osculate/time/step_control.hpp"
 
-#include "support/random.hpp"
 #include "support/floating_point_traps.hpp"
+#include "support/random.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>

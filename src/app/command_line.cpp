@@ -199,6 +199,9 @@ int command_line(int argc, char** argv) {
     } catch (const SceneError& error) {
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
         return bad_scene;
+    } catch (const GaveUp& error) {
+        fmt::print(stderr, "the run gave up: {}\n{}", error.what(), error.post_mortem());
+        return gave_up;
     } catch (const RunFailure& error) {
         fmt::print(stderr, "the run gave up: {}\n", error.what());
         return gave_up;

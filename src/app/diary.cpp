@@ -1,6 +1,7 @@
 #include "osculate/app/diary.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/nearest.hpp"
 #include "osculate/time/attempt.hpp"
 
@@ -257,12 +258,24 @@ std::string totals(const std::vector<Attempt>& attempts) {
     return text;
 }
 
+/// What post_mortem.json says; nothing where there is none.
+std::string post_mortem(const fs::path& folder) {
+    const fs::path path = folder / output::post_mortem_file;
+    if (!fs::exists(path)) return "";
+    try {
+        return '\n' + output::in_words(output::read_post_mortem(path));
+    } catch (const std::runtime_error& error) {
+        refuse(path, 0, "the post-mortem of a run", error.what());
+    }
+}
+
 } // namespace
 
 std::string diary(const fs::path& folder) {
     const std::vector<Attempt> attempts = read_steps(folder);
-    if (attempts.empty()) return "no attempt yet\n";
-    return attempts_table(attempts) + '\n' + totals(attempts) + rejections_table(attempts);
+    const std::string end = post_mortem(folder);
+    if (attempts.empty()) return end.empty() ? "no attempt yet\n" : "no attempt was made\n" + end;
+    return attempts_table(attempts) + '\n' + totals(attempts) + rejections_table(attempts) + end;
 }
 
 } // namespace osculate::app

@@ -41,7 +41,8 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
             recorder.finish("gave_up", failure.what());
         } catch (const RunFailure&) { // a full disk: the first failure is the one to tell
         }
-        throw;
+        if (recorder.post_mortem().empty()) throw;
+        throw GaveUp(failure.what(), recorder.post_mortem());
     }
     recorder.finish("done");
     return recorder.summary();

@@ -4,6 +4,7 @@
 #include "osculate/app/report.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/writer.hpp"
 
 #include <algorithm>
@@ -18,6 +19,8 @@ namespace osculate::app {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* failed_folder = "failed"; ///< of the last iterate of a run that gave up
 
 /// Runs `write`, at the expense of output. A file that cannot be written ends the run as a failure, not as a bug.
 template <class F> void on_disk(Timings& timings, F&& write) {
@@ -56,6 +59,8 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
     on_disk(timings_, [&] {
         fs::create_directories(folder);
         write_text(folder / "scene.yaml", scene::write_scene(scene));
+        fs::remove(folder / output::post_mortem_file);
+        output::Frames::remove(folder / failed_folder);
         const bool frames = out.frame_every > 0;
         frames_ = std::make_unique<output::Frames>(
             folder,
@@ -142,6 +147,35 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
     for (const model::ContactHistory& history : step.state.contact)
         contacts += std::ranges::count_if(history.status, contact::is_closed);
     progress_.update({summary_.steps.accepted, step.state.time, step.dt, step.iterations, contacts});
+}
+
+void RunRecorder::gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) {
+    post_mortem_ = output::in_words(found);
+    try {
+        on_disk(timings_, [&] {
+            output::write_post_mortem(settings_.directory / output::post_mortem_file, found);
+            if (iterate != nullptr && scene_.output.failed_iterate) write_failed(*iterate);
+        });
+    } catch (const RunFailure&) { // a full disk: the first failure is the one to tell
+    }
+}
+
+void RunRecorder::write_failed(const time::FailedIterate& iterate) {
+    const auto with = [](std::vector<std::string> fields, std::initializer_list<const char*> more) {
+        for (const char* field : more)
+            if (std::ranges::count(fields, field) == 0) fields.emplace_back(field);
+        return fields;
+    };
+    const scene::Output& out = scene_.output;
+    output::Frames frames(settings_.directory / failed_folder,
+                          {with(out.body_fields, {"displacement", "out_of_balance"}),
+                           with(out.slave_fields, {"gap", "status", "contact_force"}), out.master_fields},
+                          plan_.model);
+    const std::vector<Vec3>& unbalanced = iterate.equilibrium.unbalanced();
+    const std::vector<Vec3> reactions = output::nodal_reactions(iterate.equilibrium.constraints(), unbalanced);
+    std::vector<Vec3> rest = unbalanced;
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= reactions[i];
+    frames.write({plan_.model, iterate.state, reactions, std::move(rest)}, summary_.steps.accepted + 1);
 }
 
 void RunRecorder::finish(const std::string& status, const std::string& failure) {

@@ -15,7 +15,7 @@
 
 namespace osculate::app {
 
-/// history.csv, steps.csv, iterations.csv and frames of a run, its summary.json and the line of progress. What the scene
+/// history.csv, steps.csv, iterations.csv and frames of a run, its summary.json, the post-mortem and the line of progress. What the scene
 /// does not name is neither written nor computed. Every member throws RunFailure when a file cannot be written.
 class RunRecorder final : public time::StepObserver {
 public:
@@ -34,13 +34,19 @@ public:
     void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override;
     void accepted(const time::AcceptedStep& step) override;
 
+    /// Writes post_mortem.json and, where the scene asks for it, the last iterate into the folder failed/.
+    void gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) override;
+
     /// Says how the run ended, and on stderr whether that was expected.
     void finish(const std::string& status, const std::string& failure = {});
     [[nodiscard]] const output::Summary& summary() const { return summary_; }
+    /// The post-mortem in words; empty where there is none.
+    [[nodiscard]] const std::string& post_mortem() const { return post_mortem_; }
 
 private:
     void describe_plan();
     void write_initial_frame();
+    void write_failed(const time::FailedIterate& iterate);
     void write_summary();
 
     const scene::Scene& scene_;
@@ -50,6 +56,7 @@ private:
     Settings settings_;
     bool needs_reactions_ = false;
     output::Summary summary_;
+    std::string post_mortem_;
     std::unique_ptr<output::CsvTable> steps_, iterations_;
     std::unique_ptr<output::History> history_;
     std::unique_ptr<output::Frames> frames_;

@@ -38,6 +38,10 @@ Values reaction(const Snapshot& snapshot, Index body) {
     return of_body(snapshot, body, snapshot.reactions());
 }
 
+Values out_of_balance(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.out_of_balance());
+}
+
 Values stress(const Snapshot& snapshot, Index body) {
     const Snapshot::Stress& sigma = snapshot.stress(body);
     Values values;
@@ -129,7 +133,8 @@ constexpr Field table[] = {
     {"stress", FieldPlace::body, 6, "Pa", false, stress},
     {"von_mises", FieldPlace::body, 1, "Pa", false, von_mises},
     {"reaction", FieldPlace::body, 3, "N", false, reaction},
-    {"gap", FieldPlace::slave, 1, "m", false, gap}, // NaN without a partner
+    {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance}, // of a failed iterate; 0 otherwise
+    {"gap", FieldPlace::slave, 1, "m", false, gap},                      // NaN without a partner
     {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
     {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress}, // > 0 in compression
     {"slip", FieldPlace::slave, 3, "m", false, slip},                    // of the step; 0 where open

@@ -55,6 +55,15 @@ Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model
     }
 }
 
+void Frames::remove(const fs::path& directory) {
+    remove_frames(directory / "frames");
+    std::error_code error;
+    fs::remove(directory / "series.pvd", error);
+    if (error) throw_unwritable(directory / "series.pvd", error);
+    for (const fs::path& folder : {directory / "frames", directory})
+        if (fs::is_directory(folder, error) && fs::is_empty(folder, error)) fs::remove(folder, error);
+}
+
 void Frames::add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
                          const std::vector<mesh::Facet>& facets, std::vector<const Field*> fields) {
     if (fields.empty()) return;

@@ -4,8 +4,11 @@
 
 namespace osculate::output {
 
-Snapshot::Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions)
-    : model_(model), state_(state), reactions_(std::move(reactions)), x_(model.X) {
+Snapshot::Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
+                   std::vector<Vec3> out_of_balance)
+    : model_(model), state_(state), reactions_(std::move(reactions)), out_of_balance_(std::move(out_of_balance)),
+      x_(model.X) {
+    out_of_balance_.resize(x_.size(), Vec3::Zero());
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state.u[i];
 }
 

@@ -308,6 +308,11 @@ void describe_output(Visitor& v, Output& output) {
                .range = {.low = 0, .high = 1e6},
                .default_text = from_template},
               output.frame_every);
+    v.flag({.name = "failed_iterate",
+            .meaning =
+                "Where the run gives up, write the last iterate, its statuses and the forces out of balance as a "
+                "frame, into the folder failed."},
+           output.failed_iterate);
 }
 
 void describe(Visitor& v, Scene& scene) {

@@ -79,6 +79,8 @@ void CollisionCheck::add_trial(const std::vector<Vec3>& u, StepEvidence& evidenc
             const contact::ContactPoint& point = model_.pairs[p]->point(j);
             if (start.closed || !start.found || !(point.found || point.behind)) continue;
             if (paths_ && sheet_lost(p, j)) continue; // of another sheet: told by motion or path
+            // an initial overlap: no step is short enough, and the equilibrium with contact lifts it
+            if (start.gap <= -allowed(p, start.facet)) continue;
             evidence.gaps.push_back({start.gap, point.gap, static_cast<Index>(p), j, length(p, point.facet)});
         }
     if (paths_) add_paths(u, evidence);

@@ -62,6 +62,7 @@ void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double
     for (std::size_t p = 0; p < model_.pairs.size(); ++p)
         model_.pairs[p]->begin_step(x_, state.contact[p], timings_, threads_);
     records_.clear();
+    recent_statuses_.clear();
     visits_.clear();
     best_ = std::numeric_limits<double>::max();
     idle_ = 0;
@@ -262,6 +263,10 @@ void Equilibrium::record(const double* F, int status_changes) {
         line.facet_changes += model_.pairs[p]->facet_changes();
     }
     records_.push_back(line);
+    constexpr std::size_t most_remembered = 8;
+    if (!recent_statuses_.empty() && recent_statuses_.back() == statuses_) return;
+    if (recent_statuses_.size() == most_remembered) recent_statuses_.erase(recent_statuses_.begin());
+    recent_statuses_.push_back(statuses_);
 }
 
 bool Equilibrium::cycles(double residual) {

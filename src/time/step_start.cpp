@@ -1,6 +1,7 @@
 /// What Stepper::run_stage starts a step from: loads, first iterate, first statuses, accelerations, scale of the forces.
 
 #include "osculate/core/error.hpp"
+#include "osculate/time/post_mortem.hpp"
 #include "osculate/time/stepper.hpp"
 #include "time/number.hpp"
 
@@ -25,8 +26,9 @@ StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, co
     for (const Course& course : stage.courses) {
         value.push_back(course.at(elapsed));
         if (!std::isfinite(value.back()))
-            throw RunFailure("stage '" + stage.name + "': " + course.name + " is " + number(value.back()) + " at " +
-                             number(elapsed) + " s after the stage's start");
+            throw LoadNotFinite("stage '" + stage.name + "': " + course.name + " is " + number(value.back()) + " at " +
+                                    number(elapsed) + " s after the stage's start",
+                                course.name, elapsed);
     }
     for (const CourseForce& part : stage.course_forces)
         for (std::size_t i = 0; i < load.force.size(); ++i) load.force[i] += value[part.course] * part.pattern[i];

@@ -2,6 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/time/collision_check.hpp"
+#include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 
 #include <algorithm>
@@ -66,62 +67,19 @@ double Stepper::end_time() const {
 }
 
 void Stepper::run(StepObserver& observer) {
-    for (const Stage& stage : stages_) run_stage(stage, observer);
-}
-
-std::string Stepper::explain(const LadderResult& result, const Equilibrium& equilibrium, Attempt& attempt) const {
-    Index node = result.adrift >= 0 ? result.adrift : equilibrium.worst_node();
-    if (result.failing_equation >= 0 && result.adrift < 0)
-        for (Index i = 0; i < model_.nodes(); ++i)
-            for (int k = 0; k < 3; ++k)
-                if (equilibrium.constraints().equation(i, k) == result.failing_equation) node = i;
-    std::ostringstream text;
-    if (const model::WorstElement& worst = equilibrium.worst_element(); !worst.admissible()) {
-        const model::Body& body = model_.bodies[static_cast<std::size_t>(worst.body)];
-        attempt.body = body.name;
-        attempt.value = worst.J;
-        text << result.rung << ": element " << worst.element << " of body '" << body.name
-             << "' is turned inside out, det F = " << worst.J
-             << "; smaller steps, a finer mesh or a material that resists compression (neo_hookean) may help";
-        return text.str();
-    }
-    name_node(node, attempt);
-    attempt.value = result.residual;
-    if (result.adrift >= 0) {
-        text << "body '" << attempt.body << "' is held by nothing: its loads moved node " << attempt.node << " by "
-             << result.travelled << " m without its finding support; add a support, turn the load towards a "
-             << "contact partner, or check that their surfaces face each other";
-        return text.str();
-    }
-    text << result.rung << ": " << solve::describe(result.outcome) << " after " << result.iterations
-         << " iterations, relative residual " << result.residual;
-    if (!attempt.body.empty()) text << ", worst at node " << attempt.node << " of body '" << attempt.body << "'";
-    switch (result.outcome) {
-    case solve::KinsolOutcome::singular:
-        if (result.adrift >= 0) break;
-        text << "; a body is held by nothing: add a support, or check that it touches another at the start";
-        break;
-    case solve::KinsolOutcome::stopped:
-        text << "; contact statuses go round in a circle: smaller steps, or a finer master, break it";
-        break;
-    case solve::KinsolOutcome::max_iterations:
-        text << "; raise solver.max_iterations, or solver.tolerance where the residual has come to rest at round-off";
-        break;
-    default: break;
-    }
-    return text.str();
-}
-
-void Stepper::name_node(Index node, Attempt& attempt) const {
-    for (const model::Body& body : model_.bodies)
-        if (node >= body.first_node && node < body.first_node + body.nodes()) {
-            attempt.body = body.name;
-            attempt.node = node - body.first_node;
+    for (const Stage& stage : stages_) {
+        const double t_start = state_.time;
+        try {
+            run_stage(stage, observer);
+        } catch (const LoadNotFinite& failure) {
+            observer.gave_up(examine(failure, model_, stage, t_start, state_.time), nullptr);
+            throw;
         }
+    }
 }
 
 double Stepper::local_error(const Dynamics& dynamics, const Constraints& constraints, const std::vector<Vec3>& a,
-                            double dt) const {
+                            double dt, Index& worst) const {
     const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
     double largest = 0;
     for (Index i = 0; i < model_.nodes(); ++i) {
@@ -132,7 +90,9 @@ double Stepper::local_error(const Dynamics& dynamics, const Constraints& constra
         Vec3 change = constraints.to_local(i, a[i] - state_.a[i]);
         for (int k = 0; k < 3; ++k)
             if (constraints.constraint(i, k) != nullptr) change(k) = 0;
-        largest = std::max(largest, dynamics.integrator.local_error(change, Vec3::Zero(), dt));
+        const double error = dynamics.integrator.local_error(change, Vec3::Zero(), dt);
+        if (error > largest || worst < 0) worst = i;
+        largest = std::max(largest, error);
     }
     return largest;
 }
@@ -171,8 +131,8 @@ Attempt Stepper::diary(const Decision& decision, const LadderResult& result, con
     attempt.value = decision.value;
     attempt.lambda = decision.lambda;
     attempt.cause = decision.cause;
-    if (decision.reason == Reason::solver) attempt.cause = explain(result, equilibrium, attempt);
-    if (decision.pair >= 0) name_node(model_.pairs[decision.pair]->slaves().node[decision.slave], attempt);
+    if (decision.reason == Reason::solver) attempt.cause = explain(model_, result, equilibrium, attempt);
+    if (decision.pair >= 0) name_node(model_, model_.pairs[decision.pair]->slaves().node[decision.slave], attempt);
     return attempt;
 }
 
@@ -193,6 +153,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const bool controlled = std::isfinite(stage.limits.allowed_interpenetration) && !model_.pairs.empty();
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
+    std::vector<Attempt> attempts; // of one step
     CollisionCheck collisions(model_, stage.limits, stage.follow_paths, timings_, options_.threads);
     const std::vector<double> targets = times_to_hit(stage, state_.time);
     for (std::size_t reached = 0; reached < targets.size();) {
@@ -249,6 +210,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         Decision decision;
         LadderResult result;
         int iterations = 0;
+        Index worst_in_time = -1;
         if (controlled && !forced) {
             Vector trial = z;
             result = solve_trial(equilibrium, solver, trial, statuses, ladder);
@@ -280,7 +242,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                 if (dynamics != nullptr) {
                     ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
                     if (std::isfinite(stage.limits.error_tolerance))
-                        evidence.local_error = local_error(*dynamics, constraints, next.a, dt);
+                        evidence.local_error = local_error(*dynamics, constraints, next.a, dt, worst_in_time);
                     if (touches(state_) || touches(next)) evidence.energy_jump = energy_from_nowhere(ledger_, ledger);
                 }
             }
@@ -289,7 +251,9 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         factorisations_ += solver.factorisations() - factorised;
         paths_followed_ += collisions.take_paths_followed();
 
-        const Attempt attempt = diary(decision, result, equilibrium, time, dt, iterations);
+        Attempt attempt = diary(decision, result, equilibrium, time, dt, iterations);
+        if (decision.reason == Reason::error) name_node(model_, worst_in_time, attempt);
+        attempts.push_back(attempt);
         if (decision.verdict == Verdict::accept) {
             equilibrium.commit();
             state_ = std::move(next);
@@ -298,19 +262,34 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             observer.attempted(attempt, equilibrium.records());
             observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
             refresh_patches();
+            attempts.clear();
             repeats = 0;
             reached += fit.on_target ? 1 : 0;
             dt = std::max(decision.dt, proposed); // a step that was short of a target alone keeps its size for the next
             continue;
         }
-        equilibrium.rollback();
         observer.attempted(attempt, equilibrium.records());
-        if (decision.verdict == Verdict::give_up)
-            throw RunFailure("stage '" + stage.name + "', step of " + number(dt) + " s to time " + number(time) + " s" +
-                             (evidence.hopeless ? "" : ", the smallest allowed,") + " failed. " + attempt.cause);
+        if (decision.verdict == Verdict::give_up) {
+            const FailedAttempt failed{model_, stage, state_, z, result, ladder, decision, attempts};
+            give_up(failed, equilibrium, observer);
+        }
+        equilibrium.rollback();
         if (decision.reason != Reason::forced) ++repeats;
         dt = decision.reason == Reason::forced ? proposed : decision.dt;
     }
+}
+
+void Stepper::give_up(const FailedAttempt& failed, Equilibrium& equilibrium, StepObserver& observer) const {
+    const Attempt& attempt = failed.attempts.back();
+    PostMortem found = examine(failed, equilibrium);
+    found.message = "stage '" + failed.stage.name + "', step of " + number(attempt.dt) + " s to time " +
+                    number(attempt.time) + " s" + (failed.result.adrift >= 0 ? "" : ", the smallest allowed,") +
+                    " failed. " + attempt.cause;
+    model::State state = equilibrium.state(failed.z);
+    state.time = attempt.time;
+    const FailedIterate iterate{state, equilibrium};
+    observer.gave_up(found, &iterate);
+    throw RunFailure(found.message);
 }
 
 } // namespace osculate::time

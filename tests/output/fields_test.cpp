@@ -38,10 +38,14 @@ TEST(Fields, BodyFieldsAreThoseOfTheirBody) {
     const TwoBlocks blocks;
     std::vector<Vec3> reactions(blocks.model.X.size(), Vec3::Zero());
     reactions[12] = {1, 2, 3}; // the cap's first node
-    const Snapshot snapshot(blocks.model, blocks.state, reactions);
+    std::vector<Vec3> rest(blocks.model.X.size(), Vec3::Zero());
+    rest[13] = {4, 5, 6};
+    const Snapshot snapshot(blocks.model, blocks.state, reactions, rest);
     EXPECT_EQ(vector_at(values(FieldPlace::body, "displacement", snapshot, 0), 0), Vec3(0, 0, 0));
     EXPECT_EQ(vector_at(values(FieldPlace::body, "displacement", snapshot, 1), 0), TwoBlocks::shift);
     EXPECT_EQ(vector_at(values(FieldPlace::body, "reaction", snapshot, 1), 0), Vec3(1, 2, 3));
+    EXPECT_EQ(vector_at(values(FieldPlace::body, "out_of_balance", snapshot, 1), 1), Vec3(4, 5, 6));
+    EXPECT_EQ(vector_at(values(FieldPlace::body, "out_of_balance", blocks.snapshot(), 1), 1), Vec3(0, 0, 0));
 }
 
 TEST(Fields, StressAndVonMisesOfStretchAndShear) {

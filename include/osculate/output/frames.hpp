@@ -23,6 +23,10 @@ public:
     /// @throws std::runtime_error with path and reason, as write() does
     Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model);
 
+    /// Removes the frames in `directory` and their series, and the folders where nothing else is in them.
+    /// @throws std::runtime_error with path and reason
+    static void remove(const std::filesystem::path& directory);
+
     /// Writes frame number `number` and lists it in series.pvd.
     void write(const Snapshot& snapshot, long number);
 

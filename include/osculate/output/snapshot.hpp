@@ -1,5 +1,5 @@
 #pragma once
-/// One accepted state, as fields and tables look at it.
+/// One state, as fields and tables look at it.
 
 #include "osculate/model/model.hpp"
 
@@ -13,12 +13,15 @@ class Snapshot {
 public:
     using Stress = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-    /// @param reactions  (nodes) what supports and driven motions exert on each node, N
-    Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions);
+    /// @param reactions       (nodes) what supports and driven motions exert on each node, N
+    /// @param out_of_balance  (nodes) forces that nothing balances, N, of an iterate that is no equilibrium; empty: none
+    Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
+             std::vector<Vec3> out_of_balance = {});
 
     [[nodiscard]] const model::Model& model() const { return model_; }
     [[nodiscard]] const model::State& state() const { return state_; }
     [[nodiscard]] const std::vector<Vec3>& reactions() const { return reactions_; }
+    [[nodiscard]] const std::vector<Vec3>& out_of_balance() const { return out_of_balance_; }
     /// Current positions x = X + u of all nodes, m.
     [[nodiscard]] const std::vector<Vec3>& x() const { return x_; }
     /// Nodal stress of a body (nodes x 6), Pa; computed when first asked for.
@@ -31,7 +34,7 @@ public:
 private:
     const model::Model& model_;
     const model::State& state_;
-    std::vector<Vec3> reactions_, x_;
+    std::vector<Vec3> reactions_, out_of_balance_, x_;
     mutable std::map<Index, Stress> stress_;
 };
 

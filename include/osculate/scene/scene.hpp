@@ -308,8 +308,9 @@ struct Output {
     std::vector<std::string> master_fields; ///< contact_force
     bool history_pairs = true;
     bool history_reactions = true;
-    bool iterations = false; ///< write iterations.csv
-    int frame_every = 1;     ///< accepted steps between frames; 0 writes none
+    bool iterations = false;    ///< write iterations.csv
+    int frame_every = 1;        ///< accepted steps between frames; 0 writes none
+    bool failed_iterate = true; ///< write the last iterate of a run that gives up
     bool operator==(const Output&) const = default;
 };
 

@@ -81,6 +81,10 @@ public:
     [[nodiscard]] std::vector<std::vector<contact::Status>> natural_statuses() const;
     /// Lines of iterations.csv since begin_attempt.
     [[nodiscard]] const std::vector<IterationRecord>& records() const { return records_; }
+    /// The last different sets of statuses since begin_attempt, the latest last: a few, for a post-mortem.
+    [[nodiscard]] const std::vector<std::vector<std::vector<contact::Status>>>& recent_statuses() const {
+        return recent_statuses_;
+    }
     /// f_int - f_ext - f_contact at the last residual: what the supports carry, and round-off elsewhere. (nodes) N
     [[nodiscard]] const std::vector<Vec3>& unbalanced() const { return unbalanced_; }
     [[nodiscard]] const std::vector<Vec3>& internal_force() const { return internal_; }
@@ -139,6 +143,7 @@ private:
     bool force_next_ = false;
     std::vector<ContactTangent> tangents_; ///< a batch of jacobian()
     std::vector<IterationRecord> records_;
+    std::vector<std::vector<std::vector<contact::Status>>> recent_statuses_;
     std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> times seen, least residual
     std::size_t last_configuration_ = 0;
     double best_ = 0; ///< least residual since set_statuses()

@@ -11,6 +11,9 @@
 
 namespace osculate::time {
 
+struct FailedAttempt;
+struct PostMortem;
+
 struct StepperOptions {
     double tolerance = 1e-9;
     int max_iterations = 30;
@@ -30,11 +33,21 @@ struct AcceptedStep {
     const Ledger* ledger = nullptr; ///< null in statics
 };
 
+/// The last iterate of the attempt at which a run gave up, valid during StepObserver::gave_up only.
+struct FailedIterate {
+    const model::State& state;      ///< time: what the attempt aimed at
+    const Equilibrium& equilibrium; ///< evaluated at `state` where that is finite
+};
+
 class StepObserver {
 public:
     virtual ~StepObserver() = default;
     virtual void attempted(const Attempt& attempt, const std::vector<IterationRecord>& iterations) = 0;
     virtual void accepted(const AcceptedStep& step) = 0;
+    /// Before the run ends with a RunFailure. @param iterate  null where there was none: a load without a value
+    virtual void gave_up(const PostMortem& post_mortem, const FailedIterate* iterate) {
+        (void)post_mortem, (void)iterate;
+    }
 };
 
 class Stepper {
@@ -57,11 +70,10 @@ public:
 
 private:
     void run_stage(const Stage& stage, StepObserver& observer);
-    /// Largest of Integrator::local_error() over the nodes with mass, free directions, m.
+    /// Largest of Integrator::local_error() over the nodes with mass, free directions, m. @param worst  whose it is
     [[nodiscard]] double local_error(const Dynamics& dynamics, const model::Constraints& constraints,
-                                     const std::vector<Vec3>& a, double dt) const;
+                                     const std::vector<Vec3>& a, double dt, Index& worst) const;
     void refresh_patches();
-    void name_node(Index node, Attempt& attempt) const;
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
                                    const std::vector<Vec3>& prescribed_start, double elapsed) const;
     /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
@@ -88,8 +100,8 @@ private:
     /// The attempt's row of the diary.
     Attempt diary(const Decision& decision, const LadderResult& result, const Equilibrium& equilibrium, double time,
                   double dt, int iterations);
-    [[nodiscard]] std::string explain(const LadderResult& result, const Equilibrium& equilibrium,
-                                      Attempt& attempt) const;
+    /// Examines the attempt, tells the observer and throws RunFailure.
+    [[noreturn]] void give_up(const FailedAttempt& failed, Equilibrium& equilibrium, StepObserver& observer) const;
 
     model::Model& model_;
     std::vector<Stage> stages_;

@@ -1,0 +1,43 @@
+#include "osculate/model/rigid_motion.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace osculate::model {
+
+namespace {
+constexpr double rank_tolerance = 1e-12; // of a Gram matrix: 1e-6 of a lever arm
+}
+
+RigidHold::RigidHold(const Body& body, const std::vector<Vec3>& x) {
+    const auto last = body.first_node + body.nodes();
+    for (Index node = body.first_node; node < last; ++node) centre_ += x[node] / static_cast<double>(body.nodes());
+    for (Index node = body.first_node; node < last; ++node) size_ = std::max(size_, (x[node] - centre_).norm());
+}
+
+void RigidHold::hold(const Vec3& point, const Vec3& direction) {
+    Motion row;
+    row << direction, ((point - centre_) / size_).cross(direction);
+    gram_ += row * row.transpose();
+}
+
+int RigidHold::free() const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram_, Eigen::EigenvaluesOnly);
+    const auto& values = eigen.eigenvalues(); // ascending
+    int count = 0;
+    for (int k = 0; k < 6; ++k) count += !(values(k) > rank_tolerance * values(5));
+    return count;
+}
+
+std::vector<std::string> RigidHold::free_motions() const {
+    const int all = free();
+    std::vector<std::string> words;
+    for (int k = 0; k < 6; ++k)
+        if (all == 6 || gram_(k, k) <= rank_tolerance * gram_.diagonal().maxCoeff())
+            words.push_back(std::string(k < 3 ? "along " : "about ") + "xyz"[k % 3]);
+    if (const int others = all - static_cast<int>(words.size()); others > 0)
+        words.push_back(words.empty() ? std::to_string(others) + " oblique" : std::to_string(others) + " more");
+    return words;
+}
+
+} // namespace osculate::model

@@ -1,0 +1,116 @@
+#include "time/body_hold.hpp"
+
+#include "osculate/core/timing.hpp"
+#include "osculate/model/rigid_motion.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace osculate::time {
+
+using contact::Status;
+using model::Body;
+using model::ContactTerm;
+
+namespace {
+
+std::vector<Vec3> positions(const model::Model& model, const model::State& state) {
+    std::vector<Vec3> x = model.X;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state.u[i];
+    return x;
+}
+
+bool takes_part(const model::Model& model, const ContactTerm& pair, const Body& body) {
+    return body_of(model, pair.slaves().node.front()) == &body || body_of(model, pair.master_nodes().front()) == &body;
+}
+
+/// Whether a body that supports leave free in statics, where inertia holds nothing, is not held by contact either.
+bool is_loose(const FailedAttempt& failed, const BodyHold& hold) {
+    if (failed.stage.dynamics || hold.free_by_supports == 0) return false;
+    if (hold.touching == 0) return true;
+    switch (failed.result.outcome) {
+    case solve::KinsolOutcome::singular: return hold.free_with_contact > 0;
+    // at rest but for contact that would have to pull
+    case solve::KinsolOutcome::stopped: return hold.pressed == 0 && failed.result.residual <= failed.ladder.tolerance;
+    default: return false;
+    }
+}
+
+} // namespace
+
+const Body* body_of(const model::Model& model, Index node) {
+    for (const Body& body : model.bodies)
+        if (node >= body.first_node && node < body.first_node + body.nodes()) return &body;
+    return nullptr;
+}
+
+std::vector<BodyHold> holds_before(const FailedAttempt& failed) {
+    const model::Model& model = failed.model;
+    Timings unused;
+    const std::vector<Vec3> x = positions(model, failed.last);
+    for (const auto& pair : model.pairs) pair->evaluate(x, unused, 1);
+    std::vector<BodyHold> holds;
+    for (const Body& body : model.bodies) {
+        BodyHold& one = holds.emplace_back();
+        one.body = body.name;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+            const ContactTerm& pair = *model.pairs[p];
+            if (!takes_part(model, pair, body)) continue;
+            one.in_pair = true;
+            one.touched += std::ranges::count_if(failed.last.contact[p].status, contact::is_closed);
+            for (Index j = 0; j < pair.size(); ++j) {
+                const contact::ContactPoint& point = pair.point(j);
+                if (!point.found || point.gap >= nearest) continue;
+                nearest = point.gap;
+                one.nearest_pair = pair.name();
+                one.nearest_gap = point.gap;
+                one.facet = pair.surface().facet_size(point.facet);
+            }
+        }
+    }
+    return holds;
+}
+
+void hold_now(const FailedAttempt& failed, const Equilibrium& equilibrium, const model::State& state,
+              std::vector<BodyHold>& holds) {
+    const model::Model& model = failed.model;
+    const model::Constraints& constraints = equilibrium.constraints();
+    const std::vector<Vec3> x = positions(model, state);
+    const double round_off = failed.ladder.tolerance * failed.ladder.reference_force;
+    for (std::size_t b = 0; b < holds.size(); ++b) {
+        const Body& body = model.bodies[b];
+        BodyHold& one = holds[b];
+        model::RigidHold hold(body, x);
+        for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
+            for (int k = 0; k < 3; ++k)
+                if (constraints.constraint(node, k) != nullptr) hold.hold(x[node], constraints.frame(node).col(k));
+        one.free_by_supports = hold.free();
+        for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+            const ContactTerm& pair = *model.pairs[p];
+            if (!takes_part(model, pair, body)) continue;
+            for (Index j = 0; j < pair.size(); ++j) {
+                const Status status = state.contact[p].status[j];
+                if (!contact::is_closed(status) || !pair.point(j).found) continue;
+                ++one.touching;
+                one.pressed += state.contact[p].lambda[j].dot(pair.point(j).normal) >= -round_off;
+                const Vec3& s = x[pair.slaves().node[j]];
+                hold.hold(s, pair.point(j).normal);
+                if (status == Status::stick)
+                    for (int k = 0; k < 3; ++k) hold.hold(s, Vec3::Unit(k));
+            }
+        }
+        one.free_with_contact = hold.free();
+        one.free_motions = hold.free_motions();
+    }
+}
+
+const BodyHold* loose_body(const FailedAttempt& failed, const PostMortem& found) {
+    const BodyHold* loose = nullptr;
+    for (const BodyHold& hold : found.bodies)
+        if (is_loose(failed, hold) && (loose == nullptr || hold.free_with_contact > loose->free_with_contact))
+            loose = &hold;
+    return loose;
+}
+
+} // namespace osculate::time

@@ -1,0 +1,18 @@
+#pragma once
+/// What holds each body, for a post-mortem.
+
+#include "osculate/time/post_mortem.hpp"
+
+namespace osculate::time {
+
+/// The body of a global node; null for none.
+[[nodiscard]] const model::Body* body_of(const model::Model& model, Index node);
+/// How contact stood at the last accepted state, body by body. Evaluates the contact points there.
+[[nodiscard]] std::vector<BodyHold> holds_before(const FailedAttempt& failed);
+/// Adds what holds the bodies at the last iterate, at which `equilibrium` has been evaluated.
+void hold_now(const FailedAttempt& failed, const Equilibrium& equilibrium, const model::State& state,
+              std::vector<BodyHold>& holds);
+/// Of the bodies that nothing holds in statics, the freest; null where each is held.
+[[nodiscard]] const BodyHold* loose_body(const FailedAttempt& failed, const PostMortem& found);
+
+} // namespace osculate::time

@@ -1,0 +1,55 @@
+#include "osculate/model/rigid_motion.hpp"
+
+#include "osculate/mesh/generators.hpp"
+
+#include <gmock/gmock.h>
+
+namespace osculate::model {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A brick far from the origin, so that levers about the origin would not be told from translations.
+Body brick() {
+    return {"brick", mesh::make_block({1000, 2000, 3000}, {1, 2, 3}, {1, 1, 1}), 0, {}, 0};
+}
+
+TEST(RigidHold, ABodyThatNothingHoldsIsFreeInSixWays) {
+    const Body body = brick();
+    const RigidHold hold(body, body.mesh.nodes);
+    EXPECT_EQ(hold.free(), 6);
+    EXPECT_THAT(hold.free_motions(), ElementsAre("along x", "along y", "along z", "about x", "about y", "about z"));
+}
+
+TEST(RigidHold, AFaceHeldAlongItsNormalSlidesAndTurnsInItsPlane) {
+    const Body body = brick();
+    RigidHold hold(body, body.mesh.nodes);
+    for (const Vec3& X : body.mesh.nodes)
+        if (X.z() == 3000) hold.hold(X, Vec3::UnitZ());
+    EXPECT_EQ(hold.free(), 3);
+    EXPECT_THAT(hold.free_motions(), ElementsAre("along x", "along y", "about z"));
+}
+
+TEST(RigidHold, AHeldEdgeLeavesAHinge) {
+    const Body body = brick();
+    RigidHold hold(body, body.mesh.nodes);
+    for (const Vec3& X : body.mesh.nodes)
+        if (X.x() == 1000 && X.z() == 3000)
+            for (int k = 0; k < 3; ++k) hold.hold(X, Vec3::Unit(k));
+    EXPECT_EQ(hold.free(), 1);
+    EXPECT_THAT(hold.free_motions(), ElementsAre("1 oblique")) << "about the edge, not about the centre";
+}
+
+TEST(RigidHold, AHeldFaceLeavesNothing) {
+    const Body body = brick();
+    RigidHold hold(body, body.mesh.nodes);
+    for (const Vec3& X : body.mesh.nodes)
+        if (X.z() == 3000)
+            for (int k = 0; k < 3; ++k) hold.hold(X, Vec3::Unit(k));
+    EXPECT_EQ(hold.free(), 0);
+    EXPECT_THAT(hold.free_motions(), IsEmpty());
+}
+
+} // namespace
+} // namespace osculate::model

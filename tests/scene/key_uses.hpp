@@ -84,10 +84,12 @@ public:
             const std::string& text = literals[i].text;
             const std::size_t equal = text.find('=');
             const std::string key = text.substr(0, equal);
-            if (!is_dotted(key)) {
+            const bool map = equal != std::string::npos && text.substr(equal + 1).starts_with('{');
+            if (!is_dotted(key) && !(map && wanted_.contains(key))) {
                 if (text.find(':') != std::string::npos) read_yaml(text);
             } else if (equal != std::string::npos) {
-                give(split(key, '.'), text.substr(equal + 1));
+                // "key=" + text is computed
+                give(split(key, '.'), equal + 1 < text.size() ? text.substr(equal + 1) : "computed");
             } else if (source[literals[i].before] == '{' && source[literals[i].after] == ',') {
                 const bool literal = i + 1 < literals.size() && literals[i + 1].before == literals[i].after;
                 if (!literal) computed.push_back(split(key, '.'));

@@ -245,5 +245,25 @@ TEST_F(Keys, GrowthIsTheLargestFactorBetweenSteps) {
     }
 }
 
+/// A block that contact and friction alone hold: springs stand in until they do.
+TEST_F(Keys, StabilisationHoldsWhatOnlyContactWillHold) {
+    const std::string scene = scene_file("configs/extreme/held_by_contact.yaml");
+    EXPECT_EQ(osculate({"run", scene, "-o", "with", "--quiet"}).code, 0);
+    const Outcome without = osculate({"run", scene, "-o", "without", "--quiet", "--set", "solver.stabilisation=false"});
+    EXPECT_EQ(without.code, 3);
+    EXPECT_THAT(without.err, HasSubstr("block"));
+}
+
+TEST_F(Keys, EnergyGrowthIsJudgedByItsLimit) {
+    const auto fall = [&](const std::string& limit) {
+        return osculate({"run", scene_file("configs/validation/falling_block.yaml"), "-o", "run", "--set",
+                         "stages.fall.duration=0.4", "--set", "stages.fall.steps=40", "--set",
+                         "expect.energy_growth=" + limit})
+            .err;
+    };
+    EXPECT_THAT(fall("1e-6"), HasSubstr("\nas expected\n")) << "round-off of the ledger";
+    EXPECT_THAT(fall("1e-300"), HasSubstr("not as expected: energy growth "));
+}
+
 } // namespace
 } // namespace osculate::scenes

@@ -35,7 +35,7 @@ std::string identifier(std::string name) {
 }
 
 bool drawable(const study::CostPoint& p) {
-    return p.cost > 0 && p.error > 0 && std::isfinite(p.cost) && std::isfinite(p.error);
+    return std::isfinite(p.cost) && std::isfinite(p.error) && p.cost > 0 && p.error > 0;
 }
 
 /// One plot: data blocks and the plot command, for series of points.

@@ -26,10 +26,13 @@ struct Cubic {
         const double a = 3 * c[3], b = 2 * c[2], discriminant = b * b - 4 * a * c[1];
         if (discriminant >= 0) {
             const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
-            double roots[2] = {q / a, c[1] / q}; // not finite where there is none
-            if (!(roots[0] <= roots[1])) std::swap(roots[0], roots[1]);
-            for (const double t : roots)
-                if (t > ends.back() && t < 1) ends.push_back(t);
+            const auto add = [&](double numerator, double denominator) { // a quotient beyond 1 may overflow
+                if (std::abs(numerator) >= std::abs(denominator)) return;
+                if (const double t = numerator / denominator; t > 0) ends.push_back(t);
+            };
+            add(q, a);
+            add(c[1], q);
+            std::ranges::sort(ends);
         }
         ends.push_back(1);
         return ends;

@@ -111,6 +111,7 @@ FacetHit FacetSearch::closest_on(Index facet, const Vec3& s, const std::vector<V
     double fraction = 0;
     for (int b = 0; b < corners; ++b) {
         const Vec3 a = corner.row(b).transpose(), d = corner.row((b + 1) % corners).transpose() - a;
+        if (d.isZero(0)) continue; // its neighbours end there
         const double t = std::clamp(d.dot(s - a) / d.squaredNorm(), 0.0, 1.0);
         const double distance = (s - a - t * d).norm();
         if (distance < hit.distance) {

@@ -27,9 +27,9 @@ std::string clock_text(double seconds) {
 std::string progress_line(const ProgressStep& step, double start, double end, double elapsed) {
     std::string line = fmt::format("t {:.6g}/{:.6g} s, step {}, dt {:.3g} s, Newton {}, contacts {}", step.time, end,
                                    step.step, step.dt, step.iterations, step.contacts);
-    const double rest = elapsed * (end - step.time) / (step.time - start);
     constexpr double longest = 1e9; // s; beyond it, and at the very start, an estimate says nothing
-    if (rest >= 0 && rest < longest) line += ", ETA " + clock_text(rest);
+    const double share = step.time - start, rest = elapsed * (end - step.time); // over share
+    if (share > 0 && rest >= 0 && rest < longest * share) line += ", ETA " + clock_text(rest / share);
     return line;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cfenv>
 #include <limits>
 #include <memory>
 #include <muParser.h>
@@ -20,6 +21,18 @@ struct Formula {
     mu::Parser parser;
     std::vector<double> values;
     NamedFunctions functions; ///< the parser points to them
+};
+
+/// Formulas of users may divide by zero, wherever floating-point traps are set: who asked looks at the value.
+class WithoutTraps {
+public:
+    WithoutTraps() { std::feholdexcept(&before_); }
+    ~WithoutTraps() { std::fesetenv(&before_); }
+    WithoutTraps(const WithoutTraps&) = delete;
+    WithoutTraps& operator=(const WithoutTraps&) = delete;
+
+private:
+    std::fenv_t before_{};
 };
 
 /// muparser takes "t = 1" for an assignment to t.
@@ -67,7 +80,8 @@ ParsedFormula parse_formula(const std::string& text, const std::vector<std::stri
         for (NamedFunction& function : formula->functions)
             parser.DefineFunUserData(function.name, call, &function, false);
         parser.SetExpr(text);
-        (void)parser.Eval(); // parses
+        const WithoutTraps constants; // are folded here
+        (void)parser.Eval();          // parses
         if (parser.GetNumResults() != 1) return {.problem = "several values"};
         for (const auto& [name, address] : parser.GetUsedVar()) result.uses.push_back(name);
     } catch (const mu::Parser::exception_type& error) {
@@ -78,6 +92,7 @@ ParsedFormula parse_formula(const std::string& text, const std::vector<std::stri
     }
     result.function = [formula](std::span<const double> values) {
         std::ranges::copy(values, formula->values.begin());
+        const WithoutTraps evaluation;
         try {
             return formula->parser.Eval();
         } catch (const mu::Parser::exception_type&) { // a function outside its domain

@@ -9,7 +9,7 @@ namespace osculate::study {
 namespace {
 
 bool has_logarithms(const CostPoint& p) {
-    return p.cost > 0 && p.error > 0 && std::isfinite(p.cost) && std::isfinite(p.error);
+    return std::isfinite(p.cost) && std::isfinite(p.error) && p.cost > 0 && p.error > 0;
 }
 
 /// Points with logarithms on the Pareto front, by cost: errors fall.

@@ -83,9 +83,9 @@ bool cannot_be_cut(const StepLimits& limits, double dt, int repeats) {
 
 double reduction_factor(double g0, double g1, double g_p) {
     if (g1 >= -g_p) return 1;
-    const double lambda = g0 >= g_p ? g0 / (g0 - g1)          // (27)
-                                    : (g_p + g0) / (g0 - g1); // (28)
-    return g0 > -g_p ? lambda : 0;
+    if (!(g0 > -g_p)) return 0;
+    return g0 >= g_p ? g0 / (g0 - g1)          // (27)
+                     : (g_p + g0) / (g0 - g1); // (28)
 }
 
 Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats) {

@@ -1,5 +1,6 @@
 #include "element_cases.hpp"
 #include "support/differences.hpp"
+#include "support/floating_point_traps.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -212,6 +213,7 @@ TEST_P(FiniteStrain, StretchesABarAsItsMaterialsClosedFormulaSays) {
 }
 
 TEST_P(FiniteStrain, ReportsAnInvertedElementWithItsSmallestVolumeRatioAndZeros) {
+    const support::FloatingPointTraps suspended(false); // NaN and overflow are the point
     const double nan = std::numeric_limits<double>::quiet_NaN();
     double W = nan;
     Eigen::Matrix3Xd f = Eigen::Matrix3Xd::Constant(3, n, nan);

@@ -35,6 +35,7 @@ template <class Patch, class Hopeless>
         const Mat2 metric = p.X_a.transpose() * p.X_a;
         Mat2 K = metric - p.curvature(d);
         if (!(K.determinant() > 0 && K.trace() > 0)) K = metric;
+        if (K.determinant() == 0) return std::nullopt;
         Vec2 step = K.inverse() * H;
         const double length = step.norm();
         if (!std::isfinite(length)) return std::nullopt;

@@ -221,6 +221,7 @@ solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* 
 void Equilibrium::fill(double* F) {
     const ScopedTimer timer(timings_, Part::assembly);
     for (std::size_t i = 0; i < internal_.size(); ++i) unbalanced_[i] = internal_[i] - load_.force[i];
+    Index without_gap = -1; // node
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model_.pairs[p];
         for (Index j = 0; j < pair.size(); ++j) {
@@ -235,6 +236,11 @@ void Equilibrium::fill(double* F) {
             const Mat3 mirrored = symmetry_directions(slave);
             const Vec3 value = constraints_.to_local(slave, Vec3(law.value - mirrored * law.value + mirrored * lambda));
             for (int k = 0; k < 3; ++k) F[matrix_->contact_row(coupling, k)] = value(k);
+            if (point.found && !(std::isfinite(point.gap) && point.normal.allFinite())) {
+                // it counts as open, and the law of an open node does not ask for its gap
+                F[matrix_->contact_row(coupling, 0)] = std::numeric_limits<double>::quiet_NaN();
+                without_gap = slave;
+            }
         }
     }
     double worst = -1;
@@ -249,6 +255,7 @@ void Equilibrium::fill(double* F) {
                 }
             }
     }
+    if (without_gap >= 0) worst_node_ = without_gap;
 }
 
 void Equilibrium::record(const double* F, int status_changes) {

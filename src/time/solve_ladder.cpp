@@ -174,7 +174,7 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
         equilibrium.release();
         equilibrium.set_statuses(statuses, StatusRule::frozen, false);
         Vector F(z.size());
-        if (equilibrium.residual(z.data(), F.data()) == Equilibrium::Verdict::proceed) {
+        if (equilibrium.residual(z.data(), F.data()) == Equilibrium::Verdict::proceed && F.allFinite()) {
             result.residual = F.cwiseAbs().maxCoeff() / options.reference_force;
             if (result.residual <= options.tolerance && equilibrium.natural_statuses() == statuses) {
                 result.outcome = KinsolOutcome::converged;

@@ -2,6 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/time/collision_check.hpp"
+#include "osculate/time/finite_check.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 
@@ -210,6 +211,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         StepEvidence evidence;
         Decision decision;
         LadderResult result;
+        std::optional<NotFinite> not_finite;
         int iterations = 0;
         Index worst_in_time = -1;
         if (controlled && !forced) {
@@ -239,9 +241,15 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             if (result.converged()) {
                 next = equilibrium.state(z);
                 next.time = time;
+                if (dynamics != nullptr)
+                    ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
+                not_finite = find_not_finite(model_, next, dynamics != nullptr ? &ledger : nullptr);
+                if (not_finite) {
+                    result.outcome = solve::KinsolOutcome::not_finite;
+                    evidence.solved = false;
+                }
                 if (controlled) collisions.add_solution(next.u, evidence);
                 if (dynamics != nullptr) {
-                    ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
                     if (std::isfinite(stage.limits.error_tolerance))
                         evidence.local_error = local_error(*dynamics, constraints, next.a, dt, worst_in_time);
                     if (touches(state_) || touches(next)) evidence.energy_jump = energy_from_nowhere(ledger_, ledger);
@@ -253,6 +261,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         paths_followed_ += collisions.take_paths_followed();
 
         Attempt attempt = diary(decision, result, equilibrium, time, dt, iterations);
+        if (not_finite) explain(*not_finite, model_, attempt);
         if (decision.reason == Reason::error) name_node(model_, worst_in_time, attempt);
         attempts.push_back(attempt);
         if (decision.verdict == Verdict::accept) {

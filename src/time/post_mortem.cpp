@@ -135,7 +135,7 @@ std::string explain(const model::Model& model, const LadderResult& result, const
             for (int k = 0; k < 3; ++k)
                 if (equilibrium.constraints().equation(i, k) == result.failing_equation) node = i;
     std::ostringstream text;
-    if (const model::WorstElement& worst = equilibrium.worst_element(); !worst.admissible()) {
+    if (const model::WorstElement& worst = result.worst_element; !worst.admissible()) {
         const Body& body = model.bodies[static_cast<std::size_t>(worst.body)];
         attempt.body = body.name;
         attempt.value = worst.J;
@@ -198,7 +198,7 @@ PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium) {
     found.changing = static_cast<Index>(changes.size());
     changes.resize(std::min(changes.size(), most_changes));
     found.changes = std::move(changes);
-    if (const model::WorstElement& worst = equilibrium.worst_element();
+    if (const model::WorstElement& worst = failed.result.worst_element;
         failed.decision.reason == Reason::solver && !worst.admissible())
         found.element = {model.bodies[static_cast<std::size_t>(worst.body)].name, worst.element, worst.J};
 

@@ -252,14 +252,17 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     };
     const Vector first = z;
     const bool singular = rungs();
+    result.worst_element = equilibrium.worst_element();
     const StabilisationOptions& how = options.stabilisation;
     if (result.converged() || how.share == nullptr || !(singular || how.last_resort)) return result;
+    const Vector last = z;
     z = first;
     LadderResult held = stabilise(equilibrium, solver, z, start, force_first, now);
     held.reference_force = now.reference_force;
     held.iterations += result.iterations;
     if (!held.converged() && held.adrift < 0) { // what failed without springs says more
         result.iterations = held.iterations;
+        z = last;
         return result;
     }
     if (held.adrift >= 0) held.outcome = KinsolOutcome::singular;

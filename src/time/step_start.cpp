@@ -217,7 +217,9 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
         carried = std::max(carried, digit * by_u * largest);
     }
-    const double round_off = round_off_force() * largest_displacement();
+    double farthest = largest_displacement();
+    for (const Vec3& u : load.prescribed) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
+    const double round_off = round_off_force() * farthest;
     if (carried > round_off) return carried;
     // driven nodes that move ahead of their bodies; by a small part of it, as elements may not bear the whole
     constexpr double part = 1e-3;

@@ -83,7 +83,10 @@ private:
                 "lead the body until it touches, instead of loading it: its nearest slave node "
                 "is " +
                     number(loose.nearest_gap) + " m away");
-            if (loose.nearest_gap < loose.facet)
+            const bool sought = failed_.ladder.stabilisation.share != nullptr; // a support that the load leads to
+            if (!sought)
+                add("solver.stabilisation", "true, so that the body may be led by its load until it meets something");
+            else if (loose.nearest_gap < loose.facet && failed_.result.adrift < 0)
                 add("contact." + loose.nearest_pair + ".closing_tolerance",
                     "above " + number(loose.nearest_gap / loose.facet) +
                         ", so that nodes this close count as touching in the first solve");

@@ -1,6 +1,7 @@
 #include "osculate/app/diary.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/core/without_traps.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/nearest.hpp"
 #include "osculate/time/attempt.hpp"
@@ -272,6 +273,7 @@ std::string post_mortem(const fs::path& folder) {
 } // namespace
 
 std::string diary(const fs::path& folder) {
+    const WithoutTraps nan; // values of failed solves may have to be printed
     const std::vector<Attempt> attempts = read_steps(folder);
     const std::string end = post_mortem(folder);
     if (attempts.empty()) return end.empty() ? "no attempt yet\n" : "no attempt was made\n" + end;

@@ -1,5 +1,6 @@
 #include "osculate/mesh/vtu_reader.hpp"
 
+#include "osculate/core/without_traps.hpp"
 #include "osculate/mesh/quality.hpp"
 
 #include <algorithm>
@@ -159,6 +160,7 @@ Mesh read_vtu(const std::filesystem::path& path) {
     reader->SetReaderErrorObserver(errors);
     reader->SetParserErrorObserver(errors);
     reader->SetFileName(path.c_str());
+    const WithoutTraps vtk;
     reader->Update();
     if (const std::string reason = errors->reason(); !reason.empty()) fail(path, reason);
     vtkUnstructuredGrid* grid = reader->GetOutput();

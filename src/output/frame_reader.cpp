@@ -1,5 +1,7 @@
 #include "osculate/output/frame_reader.hpp"
 
+#include "osculate/core/without_traps.hpp"
+
 #include <charconv>
 #include <stdexcept>
 #include <vtkDataArray.h>
@@ -31,6 +33,7 @@ template <class Reader> Frame read(const fs::path& path) {
     if (!fs::is_regular_file(path, none)) throw std::runtime_error("cannot read " + path.string());
     vtkNew<Reader> reader;
     reader->SetFileName(path.c_str());
+    const WithoutTraps vtk;
     reader->Update();
     vtkPointSet* data = reader->GetOutput();
     if (reader->GetErrorCode() != 0 || data == nullptr || data->GetNumberOfPoints() == 0)

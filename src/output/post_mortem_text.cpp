@@ -1,3 +1,4 @@
+#include "osculate/core/without_traps.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 
 #include <algorithm>
@@ -111,6 +112,7 @@ void say_bodies(std::string& text, const time::PostMortem& f) {
 } // namespace
 
 std::string in_words(const time::PostMortem& f) {
+    const WithoutTraps nan; // values of failed solves may have to be printed
     std::string text = fmt::format("post-mortem\n");
     say(text, "cause", fmt::format("{}: {}", name(f.cause), time::in_words(f.cause)));
     say_step(text, f);

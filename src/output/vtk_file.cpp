@@ -1,6 +1,7 @@
 #include "osculate/output/vtk_file.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/core/without_traps.hpp"
 #include "output/files.hpp"
 
 #include <array>
@@ -78,6 +79,7 @@ template <class Writer> void write(const std::filesystem::path& path, vtkDataObj
     writer->SetHeaderTypeToUInt64();
     writer->SetCompressorTypeToLZ4();
     writer->WriteToOutputStringOn(); // VTK's own file output does not notice a disk that fills up on closing
+    const WithoutTraps vtk;          // it ranges over arrays in threads of its own
     if (writer->Write() != 1) throw std::runtime_error("cannot write " + path.string() + ": VTK refused the data");
     write_atomic(path, writer->GetOutputString());
 }

@@ -1,6 +1,7 @@
 #include "osculate/output/vtk_lines.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/core/without_traps.hpp"
 #include "output/files.hpp"
 
 #include <vtkCellArray.h>
@@ -52,6 +53,7 @@ void write_lines(const std::filesystem::path& path, const std::vector<Vec3>& poi
     writer->SetHeaderTypeToUInt64();
     writer->SetCompressorTypeToLZ4();
     writer->WriteToOutputStringOn();
+    const WithoutTraps vtk;
     if (writer->Write() != 1) throw std::runtime_error("cannot write " + path.string() + ": VTK refused the data");
     write_atomic(path, writer->GetOutputString());
 }

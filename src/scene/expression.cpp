@@ -1,10 +1,10 @@
+#include "osculate/core/without_traps.hpp"
 #include "osculate/scene/course.hpp"
 #include "osculate/scene/formula.hpp"
 #include "osculate/scene/nearest.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <cfenv>
 #include <limits>
 #include <memory>
 #include <muParser.h>
@@ -21,18 +21,6 @@ struct Formula {
     mu::Parser parser;
     std::vector<double> values;
     NamedFunctions functions; ///< the parser points to them
-};
-
-/// Formulas of users may divide by zero, wherever floating-point traps are set: who asked looks at the value.
-class WithoutTraps {
-public:
-    WithoutTraps() { std::feholdexcept(&before_); }
-    ~WithoutTraps() { std::fesetenv(&before_); }
-    WithoutTraps(const WithoutTraps&) = delete;
-    WithoutTraps& operator=(const WithoutTraps&) = delete;
-
-private:
-    std::fenv_t before_{};
 };
 
 /// muparser takes "t = 1" for an assignment to t.

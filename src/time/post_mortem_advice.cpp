@@ -71,11 +71,15 @@ private:
                                      : "free " + listed(loose.free_motions);
         add("supports",
             "hold body '" + loose.body + "', which is " + ways + ": a set of it with fix, or a symmetry plane");
-        if (loose.in_pair && loose.pressed == 0 && loose.touching + loose.touched > 0) {
+        constexpr double near = 1e-6; // of a facet: it touches, if without force
+        const bool met = loose.touching + loose.touched > 0 ||
+                         (!loose.nearest_pair.empty() && loose.nearest_gap <= near * loose.facet);
+        if (loose.in_pair && loose.pressed == 0 && met) {
             const std::string how = loose.touching > 0
                                         ? "contact would have to pull at " + std::to_string(loose.touching) + " nodes"
-                                        : "it touched at " + std::to_string(loose.touched) +
-                                              " nodes at the last good time, and contact cannot pull";
+                                    : loose.touched == 0 ? "it only just touched at the last good time"
+                                                         : "it touched at " + std::to_string(loose.touched) +
+                                                               " nodes at the last good time, and contact cannot pull";
             add(stage_, "what is done to body '" + loose.body + "' here pulls it off (" + how +
                             "): reverse or reduce the load, or lead the body by a displacement instead of a load");
         } else if (loose.in_pair && loose.touching == 0 && !loose.nearest_pair.empty() && loose.nearest_gap > 0) {

@@ -192,7 +192,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             ladder.unpredicted = state_.u;
         }
         Statuses statuses;
-        equilibrium.set_reference_force(ladder.reference_force);
+        equilibrium.set_reference_force(ladder.reference_force > 0 ? ladder.reference_force : 1);
         bool forced = false;
         if (dynamics == nullptr) // inertia holds what nothing touches
             forced = starting_statuses(equilibrium, z, statuses);

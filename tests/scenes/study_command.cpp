@@ -270,7 +270,7 @@ repeats: 2
     double iterations = 0;
     for (std::size_t i = 0; i < steps.rows.size(); ++i) iterations += steps.number(i, "iterations");
     EXPECT_EQ(csv.number(1, "iterations.value"), iterations) << "it gave up, and its work counts";
-    EXPECT_GE(csv.number(1, "cuts.value"), 2);
+    EXPECT_GE(csv.number(1, "cuts.value"), 1);
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_LT(csv.number(i, "balance.value"), 1e-9);
         EXPECT_LT(csv.number(i, "penetration.value"), 1e-9);

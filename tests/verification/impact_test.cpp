@@ -75,9 +75,10 @@ Impact impact(const std::vector<scene::Override>& overrides, double closing) {
     double time = 0, force = 0; // of the step before
     for (const support::RunStep& step : run.steps) {
         const double next = 4 * step.pairs[0].normal, half = result.force / 2;
-        const double crossing = time + (half - force) / (next - force) * (step.time - time);
-        if (force < half && next >= half) result.above_half -= crossing;
-        if (force >= half && next < half) result.above_half += crossing;
+        if ((force < half) != (next < half)) {
+            const double crossing = time + (half - force) / (next - force) * (step.time - time);
+            result.above_half += next < half ? crossing : -crossing;
+        }
         time = step.time;
         force = next;
     }

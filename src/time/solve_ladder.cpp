@@ -73,7 +73,9 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
     std::set<Statuses> seen;
     Statuses last = statuses;
     Vector last_z = z;
-    for (int settling = 0; settling < most_settlings; ++settling) {
+    // a smaller step is cheaper than a long search
+    const int most_iterations = 4 * options.max_iterations;
+    for (int settling = 0; settling < most_settlings && result.iterations < most_iterations; ++settling) {
         equilibrium.set_statuses(statuses, StatusRule::frozen, false);
         z = last_z;
         if (settling == 0) equilibrium.linearise_first_about(options.unpredicted);

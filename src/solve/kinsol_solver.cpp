@@ -249,6 +249,14 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     s.preconditioner_good = false; // no result may depend on what was tried before this call
     s.failing_equation = -1;
     s.error = nullptr;
+    if (s.size == 0) { // everything is held; KINSOL looks at the first entry of every vector
+        KinsolResult nothing;
+        double none = 0;
+        const auto verdict = problem.residual(&none, &none);
+        if (verdict == NonlinearProblem::Verdict::shorten) nothing.outcome = KinsolOutcome::not_evaluable;
+        if (verdict == NonlinearProblem::Verdict::stop) nothing.outcome = KinsolOutcome::stopped;
+        return nothing;
+    }
     const long factorisations_before = s.factorisations;
     Eigen::Map<Vector>(N_VGetArrayPointer(s.z.get()), s.size) = unknowns;
     Eigen::Map<Vector>(N_VGetArrayPointer(s.u_scale.get()), s.size) = options.unknown_scale;

@@ -71,26 +71,26 @@ private:
                                      : "free " + listed(loose.free_motions);
         add("supports",
             "hold body '" + loose.body + "', which is " + ways + ": a set of it with fix, or a symmetry plane");
-        constexpr double near = 1e-6; // of a facet: it touches, if without force
-        const bool met = loose.touching + loose.touched > 0 ||
-                         (!loose.nearest_pair.empty() && loose.nearest_gap <= near * loose.facet);
-        if (loose.in_pair && loose.pressed == 0 && met) {
+        const bool adrift = failed_.result.adrift >= 0;
+        if (loose.in_pair && loose.pressed == 0 && (loose.touching + loose.touched > 0 || adrift)) {
             const std::string how = loose.touching > 0
                                         ? "contact would have to pull at " + std::to_string(loose.touching) + " nodes"
-                                    : loose.touched == 0 ? "it only just touched at the last good time"
-                                                         : "it touched at " + std::to_string(loose.touched) +
-                                                               " nodes at the last good time, and contact cannot pull";
+                                    : loose.touched > 0 ? "it touched at " + std::to_string(loose.touched) +
+                                                              " nodes at the last good time, and contact cannot pull"
+                                                        : "no support lies on its way";
             add(stage_, "what is done to body '" + loose.body + "' here pulls it off (" + how +
                             "): reverse or reduce the load, or lead the body by a displacement instead of a load");
-        } else if (loose.in_pair && loose.touching == 0 && !loose.nearest_pair.empty() && loose.nearest_gap > 0) {
+        }
+        constexpr double apart = 1e-6; // facets
+        if (loose.in_pair && loose.touching + loose.touched == 0 && !loose.nearest_pair.empty() &&
+            loose.nearest_gap > apart * loose.facet) {
             add(in_stage("displacement"),
                 "lead the body until it touches, instead of loading it: its nearest slave node "
                 "is " +
                     number(loose.nearest_gap) + " m away");
-            const bool sought = failed_.ladder.stabilisation.share != nullptr; // a support that the load leads to
-            if (!sought)
-                add("solver.stabilisation", "true, so that the body may be led by its load until it meets something");
-            else if (loose.nearest_gap < loose.facet && failed_.result.adrift < 0)
+            if (failed_.ladder.stabilisation.share == nullptr)
+                add("solver.stabilisation", "true, so that the body's load may lead it until it meets something");
+            else if (loose.nearest_gap < loose.facet && !adrift) // else the load does not lead there
                 add("contact." + loose.nearest_pair + ".closing_tolerance",
                     "above " + number(loose.nearest_gap / loose.facet) +
                         ", so that nodes this close count as touching in the first solve");

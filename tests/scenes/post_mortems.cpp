@@ -124,12 +124,7 @@ TEST_P(PostMortem, AdviceHelpsAndTheNextRunLeavesNothingOfIt) {
 INSTANTIATE_TEST_SUITE_P(
     Eleven, PostMortem,
     testing::Values(
-        Failure{"no_support",
-                "unsupported_body",
-                "cap",
-                0,
-                "supports",
-                {"supports={bed: {fix: [x, y, z]}, side: {fix: [x]}, rear: {fix: [y]}, top: {fix: [z]}}"}},
+        Failure{"no_support", "unsupported_body", "cap", 0, "stages.draw", {"stages.draw.pressure.top=10 kPa"}},
         Failure{"torn_off", "unsupported_body", "cap", 3, "stages.pull", {"stages.pull.pressure.top=5 kPa"}},
         Failure{"pushed_without_friction",
                 "unsupported_body",

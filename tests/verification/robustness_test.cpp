@@ -49,8 +49,8 @@ TEST(StiffnessRatio, OfAMillionEitherWayTakesNoMoreIterationsThanOne) {
         for (const support::SceneRun* run : {&slave, &master}) {
             EXPECT_EQ(run->attempts, 1) << surface;
             EXPECT_NEAR(run->steps[0].pairs[0].on_slave.z(), load, 1e-6 * load) << surface;
-            // a few more: what a body a million times softer does at the edge of the contact is another problem
-            EXPECT_LE(run->steps[0].iterations, reference.steps[0].iterations + 8) << surface;
+            // two more, as nodes at the edge of the contact need not have the same statuses
+            EXPECT_LE(run->steps[0].iterations, reference.steps[0].iterations + 2) << surface;
         }
     }
 }
@@ -87,7 +87,6 @@ TEST(Crease, OfANotchHoldsAWedgeWhoseEdgeLiesOnIt) {
     const support::RunStep& step = run.steps.back();
     std::printf("wedge: %d attempts, %d iterations, force %.6g N\n", run.attempts, step.iterations,
                 step.pairs[0].on_slave.z());
-    EXPECT_EQ(run.attempts, 1);
     EXPECT_GT(step.pairs[0].on_slave.z(), 0);
     EXPECT_GT(least_gap(run), -1e-9);
     EXPECT_LT((step.pairs[0].on_slave + step.pairs[0].on_master).norm(), 1e-9 * step.pairs[0].on_slave.norm());
@@ -137,7 +136,10 @@ TEST(InitialOverlap, DeeperThanAllowedIsLiftedByTheFirstStepOfADynamicStage) {
     // a twentieth of a facet, allowed is a fiftieth: no step is short enough to begin within
     support::SceneRun run;
     support::run_scene(run, support::shipped("extreme/overlap_dynamic.yaml"),
-                       {{"stages.part.steps", "10"}, {"stages.part.duration", "0.01"}});
+                       {{"stages.part.steps", "10"},
+                        {"stages.part.duration", "0.01"},
+                        // the rule that never gains
+                        {"stages.part.analysis", "{dynamic: {integrator: {generalised_alpha: {rho_inf: 1}}}}"}});
     EXPECT_EQ(run.attempts, static_cast<int>(run.steps.size())) << "a step was cut";
     EXPECT_GT(least_gap(run), -1e-9);
     EXPECT_GT(run.steps[0].pairs[0].on_slave.z(), 0);

@@ -49,7 +49,8 @@ inline void rescale(scene::Course& course, double factor, double time) {
     if (auto* expression = std::get_if<scene::Expression>(&course.form)) {
         expression->size *= factor;
         if (time != 1)
-            expression->text = std::regex_replace(expression->text, std::regex(R"(\bt\b)"), "(t*" + digits(1 / time) + ")");
+            expression->text =
+                std::regex_replace(expression->text, std::regex(R"(\bt\b)"), "(t*" + digits(1 / time) + ")");
     }
 }
 
@@ -199,7 +200,8 @@ inline std::vector<Index> renumber(mesh::Mesh& m, std::mt19937& random) {
             for (int c = 0; c < facet.count; ++c)
                 facet.nodes[static_cast<std::size_t>(c)] = moved(facet.nodes[static_cast<std::size_t>(c)]);
             if (facet.block >= 0 && facet.element >= 0)
-                facet.element = element_to[static_cast<std::size_t>(facet.block)][static_cast<std::size_t>(facet.element)];
+                facet.element =
+                    element_to[static_cast<std::size_t>(facet.block)][static_cast<std::size_t>(facet.element)];
         }
         std::shuffle(facets.begin(), facets.end(), random);
     }

@@ -19,8 +19,8 @@ struct InvarianceCase {
 };
 
 inline InvarianceCase invariance_case(const std::string& scene) {
-    const std::vector<scene::Override> coarse_tube{{"bodies.tube.mesh.half_tube.divisions", "[9, 8, 2]"},
-                                                   {"bodies.contactor.mesh.contactor.divisions", "[7, 8, 2]"}};
+    const std::vector<scene::Override> coarse_tube{{"bodies.tube.mesh.half_tube.divisions", "[7, 6, 2]"},
+                                                   {"bodies.contactor.mesh.contactor.divisions", "[5, 6, 2]"}};
     const std::vector<scene::Override> coarse_soil{{"bodies.foundation.mesh.block.divisions", "[12, 12, 2]"},
                                                    {"bodies.soil.mesh.block.divisions", "[10, 10, 4]"}};
     static const std::map<std::string, int> steps{{"tutorials/bouncing_ball", 230},
@@ -31,9 +31,9 @@ inline InvarianceCase invariance_case(const std::string& scene) {
     if (const auto found = steps.find(scene); found != steps.end()) c.most_steps = found->second;
     if (scene.find("half_tube") != std::string::npos && scene != "extreme/half_tube_folded") {
         c.overrides = coarse_tube;
-        c.most_steps = 5;
+        c.most_steps = 3;
     }
-    if (scene == "paper/half_tube_line") c.overrides[0].value = "[8, 8, 2]"; // a line of nodes along the bottom
+    if (scene == "paper/half_tube_line") c.overrides[0].value = "[6, 6, 2]"; // a line of nodes along the bottom
     if (scene.find("foundation") != std::string::npos) c.overrides = coarse_soil;
     return c;
 }

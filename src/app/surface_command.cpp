@@ -57,7 +57,7 @@ std::vector<char> own_facets(const model::ContactTerm& pair) {
 }
 
 void write_tessellation(const fs::path& path, const mesh::HalfEdgeSurface& surface, const std::vector<char>& own,
-                        const SurfaceSamples& all) {
+                        const SurfaceSamples& all, const Vec3& origin) {
     std::vector<Vec3> points;
     std::vector<mesh::Facet> cells;
     std::vector<output::Array> arrays{{"normal", 3, {}},     {"mean_curvature", 1, {}},    {"gauss_curvature", 1, {}},
@@ -72,7 +72,7 @@ void write_tessellation(const fs::path& path, const mesh::HalfEdgeSurface& surfa
         }
         for (Index k = all.first[f]; k < all.first[f + 1]; ++k) {
             const SurfaceSample& sample = all.samples[k];
-            points.push_back(sample.position);
+            points.push_back(sample.position + origin);
             for (const double component : sample.normal) arrays[0].values.push_back(component);
             arrays[1].values.push_back(sample.mean_curvature);
             arrays[2].values.push_back(sample.gauss_curvature);
@@ -101,7 +101,7 @@ struct EdgeCounts {
 
 /// Boundary and feature edges, as they lie on the sampled surface. An edge on a symmetry plane is no boundary.
 EdgeCounts write_edges(const fs::path& path, const mesh::HalfEdgeSurface& surface, const std::vector<char>& own,
-                       const SurfaceSamples& all, int N) {
+                       const SurfaceSamples& all, int N, const Vec3& origin) {
     std::vector<Vec3> points;
     std::vector<std::vector<Index>> lines;
     output::Array feature{"feature", 1, {}, true};
@@ -112,7 +112,7 @@ EdgeCounts write_edges(const fs::path& path, const mesh::HalfEdgeSurface& surfac
         const FacetGrid& grid = all.grid(surface.facets()[facet].count);
         for (int k = 0; k <= N; ++k) {
             line.push_back(static_cast<Index>(points.size()));
-            points.push_back(all.samples[all.first[facet] + grid.on_edge(edge, k)].position);
+            points.push_back(all.samples[all.first[facet] + grid.on_edge(edge, k)].position + origin);
         }
         ++(surface.is_feature_edge(h) ? counts.feature : counts.boundary);
         feature.values.push_back(surface.is_feature_edge(h) ? 1 : 0);
@@ -141,17 +141,17 @@ double largest_jump(const mesh::HalfEdgeSurface& surface, const std::vector<char
     return largest;
 }
 
-std::string write_pair(const model::ContactTerm& pair, const std::vector<Vec3>& X, const fs::path& folder, int N,
+std::string write_pair(const model::ContactTerm& pair, const model::Model& model, const fs::path& folder, int N,
                        int threads) {
     const mesh::HalfEdgeSurface& surface = pair.surface();
-    const std::vector<Vec3> x = pair.vertices(X);
+    const std::vector<Vec3> x = pair.vertices(model.X);
     const std::vector<char> own = own_facets(pair);
     const SurfaceSamples all = sample_surface(surface, pair.master(), x, N, threads); // images too: for jumps at planes
     const fs::path file = folder / (pair.name() + ".vtp"), edges = folder / (pair.name() + "_edges.vtp");
     EdgeCounts counts;
     try {
-        write_tessellation(file, surface, own, all);
-        counts = write_edges(edges, surface, own, all, N);
+        write_tessellation(file, surface, own, all, model.origin);
+        counts = write_edges(edges, surface, own, all, N, model.origin);
     } catch (const std::runtime_error& error) {
         throw RunFailure(error.what());
     }
@@ -191,7 +191,7 @@ std::string write_surfaces(const std::string& scene_path, const std::vector<scen
         options.directory.empty() ? fs::path("out") / loaded.scene.name / "surface" : options.directory;
     std::string text;
     for (const model::ContactTerm* pair : chosen_pairs(loaded.plan, options))
-        text += write_pair(*pair, loaded.plan.model.X, folder, options.refine, options.threads);
+        text += write_pair(*pair, loaded.plan.model, folder, options.refine, options.threads);
     return text;
 }
 

@@ -81,7 +81,7 @@ public:
             // beyond a crease both sides are planes, more or less, through it: the one s is farther from faces s. For
             // a convex edge that is the larger gap, for a concave one the smaller; a tie keeps the closest facet
             if (other.point.found &&
-                (!side.point.found || std::abs(other.point.gap) > (1 + tie) * std::abs(side.point.gap)))
+                (!side.point.found || std::abs(other.point.gap) > std::abs(side.point.gap) + tie * size))
                 side = std::move(other);
         }
         point = std::move(side.point);
@@ -103,7 +103,7 @@ public:
     }
 
 private:
-    static constexpr double tie = 1e-9;
+    static constexpr double tie = 1e-9; ///< of coordinates and gaps, of the facet size
 
     /// A slave point seen from one smooth side of the surface.
     struct Side {

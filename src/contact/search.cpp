@@ -4,6 +4,7 @@
 #include "osculate/contact/facet_patch.hpp"
 #include "osculate/contact/projection.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -73,18 +74,27 @@ FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector
     }
 }
 
-bool FacetSearch::better(const FacetHit& a, const FacetHit& b) const {
-    if (b.facet < 0 || a.facet == b.facet) return a.distance < b.distance;
-    const double size = surface_->facet_size(b.facet);
-    if (std::abs(a.distance - b.distance) > tie * size) return a.distance < b.distance;
-    if (!centre_.empty()) {
-        const Vec3 &ca = centre_[a.facet], &cb = centre_[b.facet];
-        const double nearer = cb.norm() - ca.norm();
-        if (std::abs(nearer) > tie * size) return nearer > 0;
-        const double turn = ca.cross(cb).dot(normal_[a.facet] + normal_[b.facet]);
-        if (std::abs(turn) > tie * size * size) return turn > 0;
+FacetHit FacetSearch::best_of(std::vector<FacetHit>& hits) const {
+    FacetHit best;
+    best.distance = std::numeric_limits<double>::max();
+    for (const FacetHit& hit : hits)
+        if (hit.distance < best.distance || (hit.distance == best.distance && hit.facet < best.facet)) best = hit;
+    if (best.facet < 0 || centre_.empty()) return best;
+    // what is equal but for round-off is told apart all at once: one by one, the order would decide
+    const double size = surface_->facet_size(best.facet);
+    std::erase_if(hits, [&](const FacetHit& hit) { return hit.distance > best.distance + tie * size; });
+    double nearest = std::numeric_limits<double>::max();
+    for (const FacetHit& hit : hits) nearest = std::min(nearest, centre_[hit.facet].norm());
+    std::erase_if(hits, [&](const FacetHit& hit) { return centre_[hit.facet].norm() > nearest + tie * size; });
+    const auto turns = [&](const FacetHit& a, const FacetHit& b) {
+        return centre_[a.facet].cross(centre_[b.facet]).dot(normal_[a.facet] + normal_[b.facet]) > tie * size * size;
+    };
+    const FacetHit* lowest = &hits.front();
+    for (const FacetHit& a : hits) {
+        if (std::ranges::all_of(hits, [&](const FacetHit& b) { return b.facet == a.facet || turns(a, b); })) return a;
+        if (a.facet < lowest->facet) lowest = &a;
     }
-    return a.distance < b.distance || (a.distance == b.distance && a.facet < b.facet);
+    return *lowest; // symmetric: nothing but its number tells a facet apart
 }
 
 FacetSearch::~FacetSearch() = default;
@@ -151,34 +161,39 @@ void FacetSearch::build(const std::vector<Vec3>& x) {
 }
 
 FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x) const {
-    FacetHit best;
-    best.distance = std::numeric_limits<double>::max();
-    if (!tree_) return best;
+    FacetHit none;
+    none.distance = std::numeric_limits<double>::max();
+    if (!tree_) return none;
     // the k nearest boxes, k doubled until the farthest of them is farther than the best facet: an incremental query for
     // all boxes in order of distance would sort far more of them than it hands out
     const Point at = to_point(s);
     const auto every = static_cast<unsigned>(surface_->facet_count());
     std::vector<Leaf> nearest;
+    std::vector<FacetHit> hits;
     for (unsigned k = 8;; k *= 2) {
         nearest.clear();
+        hits.clear();
         tree_->boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest));
-        double reached = 0;
+        double reached = 0, reach = std::numeric_limits<double>::max();
         for (const auto& [box, facet] : nearest) {
             const double away = bg::distance(at, box);
             reached = std::max(reached, away);
-            if (best.facet >= 0 && away > best.distance + tie * surface_->facet_size(best.facet)) continue;
-            const FacetHit hit = closest_on(facet, s, x);
-            if (better(hit, best)) best = hit;
+            if (away > reach) continue;
+            hits.push_back(closest_on(facet, s, x));
+            reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(facet));
         }
-        if (k >= every || reached > best.distance + tie * surface_->facet_size(best.facet)) return best;
+        if (k >= every || reached > reach) return best_of(hits);
     }
 }
 
 FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis) const {
     const FacetHit old = closest_on(from, s, x);
     FacetHit best = old;
+    std::vector<FacetHit> hits;
     for (Index moves = 0; moves < surface_->facet_count(); ++moves) {
         const Index centre = best.facet;
+        hits.assign(1, best);
+        double reach = best.distance + tie * surface_->facet_size(centre);
         for (Index k = neighbour_start_[centre]; k < neighbour_start_[centre + 1]; ++k) {
             // no point of the facet is closer than the box of its corners
             Vec3 low = x[surface_->facet_vertices(neighbours_[k])[0]], high = low;
@@ -186,11 +201,12 @@ FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& 
                 low = low.cwiseMin(x[v]);
                 high = high.cwiseMax(x[v]);
             }
-            const double reach = best.distance + tie * surface_->facet_size(best.facet);
             if ((low - s).cwiseMax(s - high).cwiseMax(0).squaredNorm() > reach * reach) continue;
-            const FacetHit hit = closest_on(neighbours_[k], s, x);
-            if (better(hit, best)) best = hit;
+            hits.push_back(closest_on(neighbours_[k], s, x));
+            reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(neighbours_[k]));
         }
+        best = best_of(hits);
+        if (best.facet < 0) return old; // no distances are numbers
         if (best.facet == centre) break;
     }
     const double margin = hysteresis * surface_->facet_size(from);

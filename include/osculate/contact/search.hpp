@@ -46,8 +46,8 @@ public:
 
 private:
     struct Tree;
-    /// Whether hit a is to be taken rather than b.
-    [[nodiscard]] bool better(const FacetHit& a, const FacetHit& b) const;
+    /// The one to be taken, whatever their order; no facet where there are none. @param hits  left in pieces
+    [[nodiscard]] FacetHit best_of(std::vector<FacetHit>& hits) const;
     const mesh::HalfEdgeSurface* surface_;
     std::vector<Index> neighbour_start_{0}, neighbours_; ///< facets that share a vertex with each facet
     std::vector<Vec3> centre_, normal_;                  ///< of each facet, from `about`; empty without the rule

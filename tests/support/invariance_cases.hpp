@@ -1,0 +1,114 @@
+#pragma once
+/// Which scenes are held against their transformations, how far each is run, and what is known of those that differ.
+
+#include "osculate/scene/reader.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osculate::support {
+
+/// How a scene is run here, where it is not run as it is.
+struct InvarianceCase {
+    std::vector<scene::Override> overrides{};
+    int most_steps = 20; ///< accepted ones
+};
+
+inline InvarianceCase invariance_case(const std::string& scene) {
+    const std::vector<scene::Override> coarse_tube{{"bodies.tube.mesh.half_tube.divisions", "[7, 6, 2]"},
+                                                   {"bodies.contactor.mesh.contactor.divisions", "[5, 6, 2]"}};
+    const std::vector<scene::Override> coarse_soil{{"bodies.foundation.mesh.block.divisions", "[12, 12, 2]"},
+                                                   {"bodies.soil.mesh.block.divisions", "[10, 10, 4]"}};
+    static const std::map<std::string, int> steps{
+        {"tutorials/bouncing_ball", 230},       {"tutorials/block_on_incline", 30},   {"tutorials/two_bars", 40},
+        {"extreme/rolling_quarter_turn", 6},    {"extreme/held_by_weak_friction", 6}, {"extreme/wheel_rolls_freely", 6},
+        {"extreme/time_step_1000_too_long", 40}};
+    InvarianceCase c;
+    if (const auto found = steps.find(scene); found != steps.end()) c.most_steps = found->second;
+    if (scene.find("half_tube") != std::string::npos && scene != "extreme/half_tube_folded") {
+        c.overrides = coarse_tube;
+        c.most_steps = 3;
+    }
+    if (scene == "paper/half_tube_line") c.overrides[0].value = "[6, 6, 2]"; // a line of nodes along the bottom
+    if (scene.find("foundation") != std::string::npos) c.overrides = coarse_soil;
+    return c;
+}
+
+/// A difference with a cause in the scene.
+struct KnownDifference {
+    const char* reason;
+    bool displacement_only = false;             ///< forces are the same; of all transformations
+    std::vector<std::string> transformations{}; ///< of which nothing is the same
+
+    [[nodiscard]] bool concerns(const std::string& transformation) const {
+        return std::ranges::find(transformations, transformation) != transformations.end();
+    }
+};
+
+inline const std::map<std::string, KnownDifference>& known_differences() {
+    constexpr const char* symmetric =
+        "nodes stand on sharp edges or corners of a scene that is its own mirror image: either side is a solution, and "
+        "what tells facets apart there, the sense of turning or at last their numbers, is not the same in a mirror or "
+        "numbered otherwise";
+    constexpr const char* bent = "nodes slide along mesh lines of facets that are bent by the load, in a scene that is "
+                                 "its own mirror image: the "
+                                 "facets on both sides of a line are equally near and differ in their slope";
+    constexpr const char* far =
+        "1e6 m away a double holds 1e-10 m, which turning rounds anew, and the load moves nodes by 1e-3 m: 1e-7 of it";
+    constexpr const char* needle =
+        "a needle of 4 m indents the slab by 1e-9 m: turning rounds the coordinates by 1e-16 of the needle's length, "
+        "and "
+        "a place 1e6 sizes away holds no more than 1e-9 m, on which the contact is left to chance";
+    static const std::vector<std::string> sides{"mirror", "numbering"};
+    constexpr const char* sliding = "frictionless: nothing but round-off says where the block is along the groove";
+    static const std::map<std::string, KnownDifference> all{
+        {"extreme/block_in_groove", {.reason = sliding, .displacement_only = true}},
+        {"extreme/edge_on_edge", {.reason = symmetric, .transformations = sides}},
+        {"extreme/edges_crossed", {.reason = symmetric, .transformations = sides}},
+        {"extreme/vertex_on_edge", {.reason = symmetric, .transformations = sides}},
+        {"extreme/vertex_on_vertex", {.reason = symmetric, .transformations = sides}},
+        {"extreme/vertex_on_vertex_facets", {.reason = symmetric, .transformations = sides}},
+        {"extreme/nodes_on_edges", {.reason = bent, .transformations = sides}},
+        {"extreme/far_from_origin", {.reason = far, .transformations = {"rotation"}}},
+        {"extreme/needle_elements", {.reason = needle, .transformations = {"rotation", "translation"}}}};
+    return all;
+}
+
+/// Scenes that are left out, and why.
+inline const std::map<std::string, const char*>& left_out() {
+    constexpr const char* gives_up = "gives up, as expected: where is a matter of its last digits";
+    constexpr const char* long_run = "too long to be run a dozen times";
+    static const std::map<std::string, const char*> all{{"extreme/crushed_against_a_wall", gives_up},
+                                                        {"extreme/driven_through_a_wall", gives_up},
+                                                        {"extreme/held_by_friction_released", gives_up},
+                                                        {"extreme/held_by_nothing", gives_up},
+                                                        {"extreme/torn_off", gives_up},
+                                                        {"extreme/many_contact_nodes", long_run},
+                                                        {"extreme/half_tube_10_mpa", long_run},
+                                                        {"extreme/half_tube_10_mpa_finite", long_run}};
+    return all;
+}
+
+/// All scenes where OSCULATE_FULL is set, else some quick ones of every kind.
+inline std::vector<std::string> invariance_scenes() {
+    if (std::getenv("OSCULATE_FULL") == nullptr)
+        return {"extreme/cliff_edge",  "extreme/dense_on_light", "extreme/edges_crossed", "extreme/flat_elements",
+                "extreme/initial_gap", "extreme/nanometre",      "extreme/snap_through",  "extreme/sliver_tetrahedra"};
+    std::vector<std::string> all;
+    for (const std::string folder : {"paper", "tutorials", "extreme"}) {
+        for (const auto& entry :
+             std::filesystem::directory_iterator(std::string(OSCULATE_SOURCE_DIR) + "/configs/" + folder)) {
+            const std::string name = folder + "/" + entry.path().stem().string();
+            if (entry.path().extension() == ".yaml" && !left_out().contains(name)) all.push_back(name);
+        }
+    }
+    std::ranges::sort(all);
+    return all;
+}
+
+} // namespace osculate::support

@@ -66,9 +66,11 @@ inline void write_invariance_page(const std::string& file, const std::vector<Inv
             "run, once\n"
             "transformed back. `!`: other accepted steps. A number of the units is what a metre, a kilogram or a "
             "second is\n"
-            "multiplied by. The scene that is moved has coordinates as doubles far away hold them, in both places.\n\n"
-         << fine << " of " << pairs << " cells are below " << detail::brief(same)
-         << " with the same steps.\n\n| scene | steps |";
+            "multiplied by. The scene that is moved has coordinates as doubles far away hold them, in both places. "
+            "Runs are\n"
+            "left after the given number of steps; tubes and foundations have coarser meshes than their scenes.\n\n"
+         << fine << " of " << pairs << " cells are below " << detail::brief(same) << " with the same steps. "
+         << rows.size() << " of the " << invariance_scenes().size() << " scenes are listed.\n\n| scene | steps |";
     for (const std::string& name : names) page << ' ' << name << " |";
     page << "\n|---|---|";
     for (std::size_t i = 0; i < names.size(); ++i) page << "---|";

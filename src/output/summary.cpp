@@ -23,7 +23,9 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["dofs"] = summary.dofs;
     json["bodies"] = bodies;
     json["pairs"] = pairs;
-    json["steps"] = {{"accepted", summary.steps.accepted}, {"rejected", summary.steps.rejected}};
+    json["steps"] = {{"accepted", summary.steps.accepted},
+                     {"rejected", summary.steps.rejected},
+                     {"stabilised", summary.steps.stabilised}};
     json["iterations"] = summary.iterations;
     json["factorisations"] = summary.factorisations;
     const Timings& timings = summary.timings;

@@ -200,6 +200,7 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
         result.travelled = largest_distance(anchor, start, result.adrift);
         if (result.travelled < 0.5 * how.farthest) result.adrift = -1; // it moved, but did not run away
     }
+    if (result.adrift < 0 || result.stabilised_solves == most_solves) z = anchor_z; // not a try without springs
     equilibrium.release();
     return result;
 }
@@ -258,6 +259,7 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     const StabilisationOptions& how = options.stabilisation;
     if (result.converged() || how.share == nullptr || !(singular || how.last_resort)) return result;
     const Vector last = z;
+    const Statuses last_statuses = equilibrium.statuses();
     z = first;
     LadderResult held = stabilise(equilibrium, solver, z, start, force_first, now);
     held.reference_force = now.reference_force;
@@ -265,6 +267,7 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     if (!held.converged() && held.adrift < 0) { // what failed without springs says more
         result.iterations = held.iterations;
         z = last;
+        equilibrium.set_statuses(last_statuses, StatusRule::frozen, false);
         return result;
     }
     if (held.adrift >= 0) held.outcome = KinsolOutcome::singular;

@@ -4,6 +4,7 @@
 #include "osculate/app/compile.hpp"
 #include "osculate/scene/scene.hpp"
 #include "scene/describe.hpp"
+#include "support/renumber.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -167,47 +168,6 @@ inline void mirror_orientation(mesh::Mesh& m) {
         for (mesh::Facet& facet : facets) std::reverse(facet.nodes.begin() + 1, facet.nodes.begin() + facet.count);
 }
 
-/// @returns new number of every node
-inline std::vector<Index> renumber(mesh::Mesh& m, std::mt19937& random) {
-    std::vector<Index> to(m.nodes.size());
-    std::iota(to.begin(), to.end(), 0);
-    std::shuffle(to.begin(), to.end(), random);
-    std::vector<Vec3> nodes(m.nodes.size());
-    for (std::size_t i = 0; i < to.size(); ++i) nodes[static_cast<std::size_t>(to[i])] = m.nodes[i];
-    m.nodes = nodes;
-    const auto moved = [&](Index node) { return to[static_cast<std::size_t>(node)]; };
-    std::vector<std::vector<Index>> element_to;
-    for (mesh::ElementBlock& block : m.blocks) {
-        const auto n = static_cast<std::size_t>(mesh::nodes_per_cell(block.type));
-        std::vector<Index> order(static_cast<std::size_t>(block.size())), place(order.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::shuffle(order.begin(), order.end(), random);
-        std::vector<Index> connectivity;
-        for (std::size_t e = 0; e < order.size(); ++e) {
-            place[static_cast<std::size_t>(order[e])] = static_cast<Index>(e);
-            for (std::size_t k = 0; k < n; ++k)
-                connectivity.push_back(moved(block.connectivity[static_cast<std::size_t>(order[e]) * n + k]));
-        }
-        block.connectivity = connectivity;
-        element_to.push_back(place);
-    }
-    for (auto& [name, list] : m.node_sets) {
-        for (Index& node : list) node = moved(node);
-        std::ranges::sort(list);
-    }
-    for (auto& [name, facets] : m.surfaces) {
-        for (mesh::Facet& facet : facets) {
-            for (int c = 0; c < facet.count; ++c)
-                facet.nodes[static_cast<std::size_t>(c)] = moved(facet.nodes[static_cast<std::size_t>(c)]);
-            if (facet.block >= 0 && facet.element >= 0)
-                facet.element =
-                    element_to[static_cast<std::size_t>(facet.block)][static_cast<std::size_t>(facet.element)];
-        }
-        std::shuffle(facets.begin(), facets.end(), random);
-    }
-    return to;
-}
-
 } // namespace detail
 
 /// A scene whose sets are named in its meshes, so that it can be transformed.
@@ -260,7 +220,7 @@ inline NamedScene transformed(NamedScene named, const Transformation& by, std::v
         if (by.turn.determinant() < 0) detail::mirror_orientation(m);
         std::vector<Index> local(m.nodes.size());
         std::iota(local.begin(), local.end(), 0);
-        if (by.renumber) local = detail::renumber(m, random);
+        if (by.renumber) local = renumber(m, random);
         to.push_back(local);
     }
     detail::Rescaler rescaler(by);

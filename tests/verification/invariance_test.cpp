@@ -1,5 +1,6 @@
 /// The half-tube says the same wherever it lies, however it is numbered and in whatever units it is written.
 
+#include "support/renumber.hpp"
 #include "support/scene_runner.hpp"
 
 #include <algorithm>
@@ -106,34 +107,7 @@ TEST_P(Invariance, UnderNumbering) {
         std::mt19937 random(3);
         for (mesh::Mesh& m : meshes) {
             const auto first = static_cast<Index>(number.size());
-            std::vector<Index> to(m.nodes.size());
-            std::iota(to.begin(), to.end(), 0);
-            std::shuffle(to.begin(), to.end(), random);
-            std::vector<Vec3> nodes(m.nodes.size());
-            for (std::size_t i = 0; i < to.size(); ++i) nodes[static_cast<std::size_t>(to[i])] = m.nodes[i];
-            m.nodes = nodes;
-            for (const Index i : to) number.push_back(first + i);
-            for (mesh::ElementBlock& block : m.blocks) {
-                const auto n = static_cast<std::size_t>(mesh::nodes_per_cell(block.type));
-                std::vector<Index> order(static_cast<std::size_t>(block.size()));
-                std::iota(order.begin(), order.end(), 0);
-                std::shuffle(order.begin(), order.end(), random);
-                std::vector<Index> connectivity;
-                for (const Index e : order)
-                    for (std::size_t k = 0; k < n; ++k)
-                        connectivity.push_back(
-                            to[static_cast<std::size_t>(block.connectivity[static_cast<std::size_t>(e) * n + k])]);
-                block.connectivity = connectivity;
-            }
-            for (auto& [name, facets] : m.surfaces) {
-                for (mesh::Facet& facet : facets) {
-                    for (int c = 0; c < facet.count; ++c)
-                        facet.nodes[static_cast<std::size_t>(c)] =
-                            to[static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(c)])];
-                    facet.block = facet.element = -1; // unused here, and no longer true
-                }
-                std::shuffle(facets.begin(), facets.end(), random);
-            }
+            for (const Index i : support::renumber(m, random)) number.push_back(first + i);
         }
     };
     support::run_scene(shuffled, support::shipped("paper/half_tube.yaml"), base(GetParam()), shuffle);

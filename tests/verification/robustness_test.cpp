@@ -128,7 +128,7 @@ TEST(InitialOverlap, AloneStoresTheForceOfTwoBarsThatAreTooLong) {
             const support::RunStep& step = run.steps.back();
             EXPECT_EQ(run.attempts, 1);
             EXPECT_NEAR(step.pairs[0].on_slave.z(), scale * force, 1e-7 * scale * force) << surface << ", " << unit;
-            EXPECT_NEAR(step.reactions.empty() ? 0 : step.pairs[0].penetration, 0, 1e-9);
+            EXPECT_LT(step.pairs[0].penetration, 1e-9);
         }
 }
 
@@ -143,11 +143,14 @@ TEST(InitialOverlap, DeeperThanAllowedIsLiftedByTheFirstStepOfADynamicStage) {
     EXPECT_EQ(run.attempts, static_cast<int>(run.steps.size())) << "a step was cut";
     EXPECT_GT(least_gap(run), -1e-9);
     EXPECT_GT(run.steps[0].pairs[0].on_slave.z(), 0);
-    // the overlap stores energy in that step; later the normals turn with strains of 2 %, and forces do work along that: 0.2 %
-    constexpr double turning = 0.01;
-    const auto energy = [](const support::RunStep& step) { return step.ledger.kinetic + step.ledger.strain; };
-    for (const support::RunStep& step : run.steps)
-        EXPECT_LE(energy(step), energy(run.steps[0]) * (1 + turning)) << "at " << step.time;
+    // The overlap stores energy in that step, by contact's work. What follows is contact's work alone, too: with strains of
+    // 2 % it is small, and a bound of ten times the 0.2 % that was measured still tells it from a second lift.
+    constexpr double small = 0.02, solver = 1e-9;
+    const double lifted = run.steps[0].ledger.contact;
+    for (const support::RunStep& step : run.steps) {
+        EXPECT_NEAR(step.ledger.kinetic + step.ledger.strain, step.ledger.contact, solver * lifted) << step.time;
+        EXPECT_NEAR(step.ledger.contact, lifted, small * lifted) << "at " << step.time;
+    }
 }
 
 TEST(NothingToSolve, WhereEveryNodeIsHeldThereIsNoEquationAndStillAResult) {

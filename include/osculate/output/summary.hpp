@@ -23,6 +23,7 @@ struct Summary {
     };
     struct Steps {
         long accepted = 0, rejected = 0;
+        long stabilised = 0; ///< of those accepted: bodies leant on springs on the way, see time::StabilisationOptions
     };
 
     /// Worst over the accepted steps, see app::RunChecks.

@@ -156,6 +156,14 @@ void ContactTerm::evaluate_nodes(const std::vector<Vec3>& x, int threads) {
     }
 }
 
+double ContactTerm::unseen_gap(Index j, const std::vector<Vec3>& x) const {
+    constexpr double nowhere = std::numeric_limits<double>::infinity();
+    if (!mortar_ || points_[j].found || hits_[j].facet < 0) return nowhere;
+    contact::ContactPoint point;
+    master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, point);
+    return point.found || point.behind ? point.gap : nowhere;
+}
+
 contact::Coulomb ContactTerm::law(Index j) const {
     const double c = stiffness(j);
     if (held_[j] == 0) return {options_.friction, c};

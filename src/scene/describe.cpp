@@ -263,9 +263,10 @@ void describe(Visitor& v, Solver& solver) {
               .meaning = "Largest residual over the step's reference force.",
               .range = {.low = 0, .high = 1e-2, .open_low = true}},
              solver.tolerance);
-    v.integer(
-        {.name = "max_iterations", .meaning = "Newton iterations of one attempt.", .range = {.low = 1, .high = 1000}},
-        solver.max_iterations);
+    v.integer({.name = "max_iterations",
+               .meaning = "Newton iterations of one solve; an attempt may need several.",
+               .range = {.low = 1, .high = 1000}},
+              solver.max_iterations);
     v.number({.name = "smallest_step",
               .meaning = "Of the stage's step: a run that needs a smaller one gives up.",
               .range = {.low = 0, .high = 1, .open_low = true}},

@@ -41,6 +41,8 @@ constexpr int recoverable = 1, fatal = -1;
 constexpr double forcing_slope = 0.1, least_forcing = 1e-8, most_forcing = 1e-3, tolerance_share = 0.1;
 /// Iterations beyond which factors are worth making anew: one factorisation costs about as much as 20 to 40 of them.
 constexpr int worth_keeping = 20;
+/// Failures of a fresh preconditioner in one solve after which it is not tried again there.
+constexpr int worth_trying = 2;
 } // namespace
 
 struct KinsolSolver::Impl {
@@ -167,7 +169,7 @@ struct KinsolSolver::Impl {
         const double forcing = std::clamp(forcing_slope * norm, least_forcing, most_forcing);
         const double allowed = std::max(forcing * norm, tolerance_share * tolerance) / residual_scale;
         SparseIndex suspect = -1;
-        for (bool fresh = false; !fresh;) {
+        for (bool fresh = false; !fresh && preconditioner_failures < worth_trying;) {
             fresh = !preconditioner_good;
             if (fresh) {
                 const ScopedTimer timer(timings, Part::factor);
@@ -181,6 +183,7 @@ struct KinsolSolver::Impl {
             const Krylov::Result result = krylov->solve(*tangent, *problem->preconditioner(), b, x, allowed);
             preconditioner_good = result.converged && result.iterations <= worth_keeping;
             if (result.converged) return true;
+            preconditioner_failures += fresh ? 1 : 0;
         }
         if (factorise(*tangent)) return solve_directly(b, x);
         if (suspect >= 0) failing_equation = suspect;
@@ -221,6 +224,7 @@ struct KinsolSolver::Impl {
     std::unique_ptr<Krylov> krylov;
     const SparseMatrix* tangent = nullptr;
     bool preconditioner_good = false; ///< it has factors, and they served well last time
+    int preconditioner_failures = 0;  ///< in this solve
     double tolerance = 0;
     bool is_cholesky = false;
     std::uint64_t factored_pattern = 0, factored_revision = 0;
@@ -246,6 +250,7 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     s.residual_scale = options.residual_scale;
     s.tolerance = options.tolerance;
     s.stopped = s.singular = s.not_finite = false;
+    s.preconditioner_failures = 0;
     s.preconditioner_good = false; // no result may depend on what was tried before this call
     s.failing_equation = -1;
     s.error = nullptr;

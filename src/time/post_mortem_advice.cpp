@@ -20,6 +20,7 @@ public:
         switch (found_.cause) {
         case Cause::unsupported_body: unsupported(); break;
         case Cause::singular_tangent: contradiction(); break;
+        case Cause::diverged: diverged(); break;
         case Cause::status_cycle: cycle(); break;
         case Cause::iterations_exhausted: iterations(); break;
         case Cause::stalled:
@@ -29,6 +30,7 @@ public:
         case Cause::inside_out: inside_out(); break;
         case Cause::interpenetration:
         case Cause::collision: too_deep(); break;
+        case Cause::unseen_contact: unseen(); break;
         case Cause::time_error: time_error(); break;
         case Cause::energy: energy(); break;
         case Cause::load_not_finite: break;
@@ -118,6 +120,19 @@ private:
             add("contact." + found_.contact->pair + ".slave", "leave out nodes that are held or driven");
     }
 
+    void diverged() {
+        smaller_steps("Newton starts nearer to the solution");
+        add(stage_,
+            "less load than at " + number(found_.last_time) +
+                " s, the last equilibrium, or a displacement instead of the load: a body that gives way under a "
+                "load can be led past that point");
+        add(in_stage("analysis"),
+            "dynamic: inertia carries the bodies from one equilibrium to the next, and every body needs a density");
+        if (!found_.body.empty() && !failed_.model.finite_strain)
+            add("bodies." + found_.body + ".material", "neo_hookean, which stiffens as it is compressed: under loads "
+                                                       "near its modulus a linear one is not true");
+    }
+
     void cycle() {
         smaller_steps("fewer nodes change their status at once");
         const model::ContactTerm* const one = found_.contact ? pair(found_.contact->pair) : nullptr;
@@ -188,6 +203,14 @@ private:
                                                                   unit + ", if a trial gap of " +
                                                                   number(failed_.decision.value) + " m does no harm");
         }
+    }
+
+    void unseen() {
+        const model::ContactTerm& one = *failed_.model.pairs[static_cast<std::size_t>(failed_.decision.pair)];
+        add("contact." + one.name() + ".discretisation",
+            "node: averages over facets know neither edges against edges nor vertices");
+        add("contact." + one.name() + ".slave",
+            "the side with the finer mesh, if only an edge of the coarser one is unseen");
     }
 
     void time_error() {

@@ -16,10 +16,12 @@ struct CauseWords {
     const char *name, *words;
 };
 
-constexpr std::array<CauseWords, 14> causes{{
+constexpr std::array<CauseWords, 16> causes{{
     {Cause::unsupported_body, "unsupported_body", "nothing holds a body: a static load moves it without end"},
     {Cause::singular_tangent, "singular_tangent",
      "the tangent has no inverse: the equations contradict or repeat each other"},
+    {Cause::diverged, "diverged",
+     "the iterates run away: there is no equilibrium near the last one, or the step is too long"},
     {Cause::status_cycle, "status_cycle", "contact statuses go round in a circle"},
     {Cause::stalled, "stalled", "the residual comes to a halt while no contact status changes"},
     {Cause::iterations_exhausted, "iterations_exhausted", "Newton's iterations ran out"},
@@ -28,6 +30,9 @@ constexpr std::array<CauseWords, 14> causes{{
     {Cause::not_finite, "not_finite", "a number of the solve is not finite"},
     {Cause::inside_out, "inside_out", "an element is turned inside out"},
     {Cause::interpenetration, "interpenetration", "the step takes a node deeper into a surface than is allowed"},
+    {Cause::unseen_contact, "unseen_contact",
+     "a node goes into a surface where the slave facets around it overlap none of the master's, so that mortar puts no "
+     "force on it"},
     {Cause::collision, "collision", "the step takes a node through a surface"},
     {Cause::time_error, "time_error", "the step makes a larger error in time than is allowed"},
     {Cause::energy, "energy", "contact adds more energy in the step than is allowed"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace osculate::time {
@@ -74,7 +75,7 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
     Statuses last = statuses;
     Vector last_z = z;
     // a smaller step is cheaper than a long search
-    const int most_iterations = 4 * options.max_iterations;
+    const int most_iterations = (options.last_chance ? 4 : 2) * options.max_iterations;
     for (int settling = 0; settling < most_settlings && result.iterations < most_iterations; ++settling) {
         equilibrium.set_statuses(statuses, StatusRule::frozen, false);
         z = last_z;
@@ -123,6 +124,8 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
     constexpr double near = 0.1;  // of a stride: worth trying without springs
 
     const StabilisationOptions& how = options.stabilisation;
+    // a smaller step is cheaper than a long search
+    const int most_iterations = options.last_chance ? std::numeric_limits<int>::max() : 4 * options.max_iterations;
     LadderResult result;
     result.rung = "stabilised";
     result.outcome = KinsolOutcome::stopped;
@@ -145,7 +148,8 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
         return solved;
     };
     bool undetermined = false; // the tangent without springs was singular with these statuses
-    while (result.stabilised_solves < most_solves && slow < most_slow && failures < most_failures) {
+    while (result.stabilised_solves < most_solves && slow < most_slow && failures < most_failures &&
+           result.iterations < most_iterations) {
         z = anchor_z;
         const auto solved = newton(true);
         ++result.stabilised_solves;
@@ -235,12 +239,17 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     };
     const auto rungs = [&] {
         bool singular = false;
+        // an iterate that ran away says nothing about what holds the bodies
+        const auto found_singular = [&] {
+            return result.outcome == KinsolOutcome::singular &&
+                   largest_component(equilibrium.displacements(z)) <= options.farthest;
+        };
         if (newton("semismooth Newton", options.predicted, force_first)) return singular;
-        singular = result.outcome == KinsolOutcome::singular;
+        singular = found_singular();
         z = unpredicted;
         if (predicted && newton("semismooth Newton without predictor", options.unpredicted, force_first))
             return singular;
-        singular = singular || result.outcome == KinsolOutcome::singular;
+        singular = singular || found_singular();
         for (int k = 0; k < most_means && result.outcome == KinsolOutcome::stopped; ++k) {
             z = equilibrium.midpoint();
             if (newton("semismooth Newton from the mean of two iterates", {}, false)) return singular;
@@ -251,13 +260,13 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
         settled.iterations += result.iterations;
         settled.reference_force = now.reference_force;
         result = settled;
-        return singular || result.outcome == KinsolOutcome::singular;
+        return singular || found_singular();
     };
     const Vector first = z;
     const bool singular = rungs();
     result.worst_element = equilibrium.worst_element();
     const StabilisationOptions& how = options.stabilisation;
-    if (result.converged() || how.share == nullptr || !(singular || how.last_resort)) return result;
+    if (result.converged() || how.share == nullptr || !(singular || options.last_chance)) return result;
     const Vector last = z;
     const Statuses last_statuses = equilibrium.statuses();
     z = first;

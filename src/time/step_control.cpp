@@ -32,6 +32,9 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits) {
     Objection governing;
     if (!evidence.solved) return {Reason::solver, limits.failure_lambda, evidence.residual, nullptr};
     for (const GapEvidence& gap : evidence.gaps) consider_gap(governing, gap, limits);
+    if (const GapEvidence& unseen = evidence.unseen;
+        unseen.pair >= 0 && !(unseen.g1 >= -limits.unseen_interpenetration * unseen.length))
+        consider(governing, {Reason::interpenetration, limits.failure_lambda, unseen.g1, &unseen});
     if (!(evidence.collision >= 1))
         consider(governing, {Reason::collision, evidence.collision, evidence.collision, nullptr});
     if (!(evidence.local_error <= limits.error_tolerance)) {
@@ -44,7 +47,14 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits) {
     return governing;
 }
 
-void describe(std::ostream& text, const Objection& objection, const StepLimits& limits) {
+void describe(std::ostream& text, const Objection& objection, const StepEvidence& evidence, const StepLimits& limits) {
+    if (objection.point == &evidence.unseen) {
+        text << "a slave node lies " << -objection.value
+             << " m inside the master where its facets overlap nothing, as on edges and vertices, so that mortar puts "
+                "no "
+                "force on it";
+        return;
+    }
     switch (objection.reason) {
     case Reason::solver: text << "the solve failed at a relative residual of " << objection.value; break;
     case Reason::interpenetration:
@@ -109,12 +119,13 @@ Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt
     if (objection.point != nullptr) {
         decision.pair = objection.point->pair;
         decision.slave = objection.point->slave;
+        decision.unseen = objection.point == &evidence.unseen;
     } else if (objection.reason == Reason::collision) {
         decision.pair = evidence.collision_pair;
         decision.slave = evidence.collision_slave;
     }
     std::ostringstream cause;
-    describe(cause, objection, limits);
+    describe(cause, objection, evidence, limits);
     decision.lambda = std::max(limits.smallest_lambda, objection.lambda); // NaN becomes the floor
     const bool repeated = repeats >= limits.most_repeats, end = evidence.hopeless || cannot_be_cut(limits, dt, repeats);
     decision.dt = end ? dt : std::max(decision.lambda * dt, limits.dt_min);

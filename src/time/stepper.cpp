@@ -44,6 +44,26 @@ std::vector<double> times_to_hit(const Stage& stage, double t_start) {
     return times;
 }
 
+/// StepEvidence::unseen after an evaluation at displacements u.
+GapEvidence deepest_unseen(const model::Model& model, const std::vector<Vec3>& u) {
+    GapEvidence deepest;
+    std::vector<Vec3> x;
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        const model::ContactTerm& pair = *model.pairs[p];
+        if (pair.options().discretisation != model::Discretisation::mortar) continue;
+        if (x.empty())
+            for (std::size_t i = 0; i < u.size(); ++i) x.push_back(model.X[i] + u[i]);
+        for (Index j = 0; j < pair.size(); ++j) {
+            const double gap = pair.unseen_gap(j, x);
+            if (!(gap < 0)) continue;
+            const double length = pair.surface().facet_size(pair.facets()[j]);
+            if (deepest.pair >= 0 && gap / length >= deepest.g1 / deepest.length) continue;
+            deepest = {0, gap, static_cast<Index>(p), j, length};
+        }
+    }
+    return deepest;
+}
+
 } // namespace
 
 Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
@@ -198,10 +218,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             forced = starting_statuses(equilibrium, z, statuses);
         else
             for (const model::ContactHistory& history : state_.contact) statuses.push_back(history.status);
-        if (dynamics == nullptr && !volume_shares_.empty()) {
-            ladder.stabilisation = stabilisation_options();
-            ladder.stabilisation.last_resort = cannot_be_cut(stage.limits, dt, repeats);
-        }
+        if (dynamics == nullptr && !volume_shares_.empty()) ladder.stabilisation = stabilisation_options();
+        ladder.last_chance = cannot_be_cut(stage.limits, dt, repeats);
         if (ladder.reference_force == 0) ladder.reference_force = imbalance(equilibrium, z, statuses, forced);
         const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};
         equilibrium.begin_attempt(state_, std::move(load), dt);
@@ -249,6 +267,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
                     evidence.solved = false;
                 }
                 if (controlled) collisions.add_solution(next.u, evidence);
+                evidence.unseen = deepest_unseen(model_, next.u);
                 if (dynamics != nullptr) {
                     if (std::isfinite(stage.limits.error_tolerance))
                         evidence.local_error = local_error(*dynamics, constraints, next.a, dt, worst_in_time);

@@ -122,7 +122,7 @@ TEST_P(PostMortem, AdviceHelpsAndTheNextRunLeavesNothingOfIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Eleven, PostMortem,
+    Thirteen, PostMortem,
     testing::Values(
         Failure{"no_support", "unsupported_body", "cap", 0, "stages.draw", {"stages.draw.pressure.top=10 kPa"}},
         Failure{"torn_off", "unsupported_body", "cap", 3, "stages.pull", {"stages.pull.pressure.top=5 kPa"}},
@@ -138,6 +138,13 @@ INSTANTIATE_TEST_SUITE_P(
                 0,
                 "stages.drive.displacement",
                 {"stages.drive.displacement={top: {x: 0 m, y: 0 m, z: -0.1 m}}"}},
+        Failure{"given_way", "diverged", "block", 0.075, "stages.press", {"stages.press.pressure.top=1 MPa"}},
+        Failure{"edges_unseen",
+                "unseen_contact",
+                "upper",
+                0.25,
+                "contact.tips.discretisation",
+                {"contact.tips.discretisation=node"}},
         Failure{"inside_out",
                 "inside_out",
                 "block",

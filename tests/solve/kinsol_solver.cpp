@@ -219,7 +219,9 @@ TEST_F(PreconditionedNewton, FactorisesTheTangentWhereThePreconditionerFails) {
         KinsolSolver solver(p.size(), timings);
         const KinsolResult result = solver.solve(p, u, options);
         EXPECT_EQ(result.outcome, KinsolOutcome::converged);
-        EXPECT_EQ(result.factorisations, 2 * result.iterations);
+        constexpr int tried = 2; // preconditioners, then never again in this solve
+    EXPECT_GT(result.iterations, tried);
+    EXPECT_EQ(result.factorisations, result.iterations + tried);
         EXPECT_LT((u - exact()).cwiseAbs().maxCoeff(), 2 * options.tolerance);
     }
 }
@@ -233,7 +235,9 @@ TEST_F(PreconditionedNewton, FactorisesTheTangentWhereGmresDoesNotConverge) {
     KinsolSolver solver(p.size(), timings);
     const KinsolResult result = solver.solve(p, u, options);
     EXPECT_EQ(result.outcome, KinsolOutcome::converged);
-    EXPECT_EQ(result.factorisations, 2 * result.iterations);
+    constexpr int tried = 2; // preconditioners, then never again in this solve
+    EXPECT_GT(result.iterations, tried);
+    EXPECT_EQ(result.factorisations, result.iterations + tried);
 }
 
 TEST_F(PreconditionedNewton, DoesNotRememberEarlierSolves) {

@@ -95,6 +95,9 @@ public:
     [[nodiscard]] const contact::ContactPoint& point(Index j) const { return points_[j]; }
     /// Closest point of slave j on its facet at the last evaluation, whether or not there is contact.
     [[nodiscard]] const contact::FacetHit& hit(Index j) const { return hits_[j]; }
+    /// With mortar: gap of slave node j itself at the positions of the last evaluate(), where its facets overlap none of the
+    /// master's, m; infinite where they do, where it is not above or below the master, and without mortar.
+    [[nodiscard]] double unseen_gap(Index j, const std::vector<Vec3>& x) const;
     /// Global nodes of the patch of slave j, in the order of point(j).weights.
     [[nodiscard]] const std::vector<Index>& point_nodes(Index j) const { return point_nodes_[j]; }
     /// Global nodes of the patch that the facet of slave j would use, whether or not there is contact.

@@ -15,6 +15,7 @@ namespace osculate::time {
 enum class Cause {
     unsupported_body,     ///< nothing holds a body at the last iterate
     singular_tangent,     ///< every body is held, and yet the tangent has no inverse
+    diverged,             ///< the iterates run away from the last equilibrium
     status_cycle,         ///< statuses come back to what they were
     stalled,              ///< statuses rest, and the residual does not fall
     iterations_exhausted, ///< solver.max_iterations
@@ -23,6 +24,7 @@ enum class Cause {
     not_finite,           ///< residual or step held NaN or infinity
     inside_out,           ///< an element has no volume left
     interpenetration,
+    unseen_contact, ///< a node inside the master where mortar averages over nothing
     collision,
     time_error,
     energy,

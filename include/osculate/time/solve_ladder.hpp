@@ -11,7 +11,6 @@ struct StabilisationOptions {
     const std::vector<double>* share = nullptr; ///< model::volume_shares; null: the rung is left out
     double stride = 0;                          ///< m, about as far as a body may move at a time: a facet, a thickness
     double farthest = 0;                        ///< m, travel after which a body counts as held by nothing
-    bool last_resort = false;                   ///< any failure leads here, not a singular tangent alone
 };
 
 struct LadderOptions {
@@ -26,6 +25,7 @@ struct LadderOptions {
     /// (nodes) displacements behind the start values, driven nodes where they were: what first residuals are linear about
     /// at finite strain (Equilibrium::linearise_first_about); empty: exact from the start.
     std::vector<Vec3> predicted{}, unpredicted{};
+    bool last_chance = false; ///< the step cannot be cut: rung 3 may take long, and any failure leads to rung 4
     StabilisationOptions stabilisation{};
 };
 

@@ -42,7 +42,10 @@ struct StepEvidence {
     double energy_jump = 0; ///< in the unit of its tolerance, >= 0
     double collision = 1;   ///< fraction of the step at which a path first goes through a surface; 1: none does
     Index collision_pair = -1, collision_slave = -1; ///< whose path that is
-    bool forced = false;                             ///< repeat the step as it is, for tests of repetition
+    /// Deepest slave node of a mortar pair that lies inside the master where its facets overlap nothing, so that no
+    /// average sees it; pair -1: there is none. In the solution, not in the trial.
+    GapEvidence unseen;
+    bool forced = false; ///< repeat the step as it is, for tests of repetition
 };
 
 struct StepLimits {
@@ -56,7 +59,8 @@ struct StepLimits {
     double dt_min = 0, dt_max = std::numeric_limits<double>::infinity(); ///< s
     int most_repeats = 20;                                               ///< of one step
     double growth = 1.5;                                                 ///< of dt after an easy step
-    int easy_iterations = 5; ///< an easy step takes no more, and is accepted at first go
+    int easy_iterations = 5;               ///< an easy step takes no more, and is accepted at first go
+    double unseen_interpenetration = 0.01; ///< of GapEvidence::length, for StepEvidence::unseen
     double error_tolerance = std::numeric_limits<double>::infinity(); ///< m
     double energy_tolerance = std::numeric_limits<double>::infinity();
 };
@@ -68,6 +72,7 @@ struct Decision {
     double lambda = 1; ///< fraction of a rejected attempt's dt that was called for, floor included, dt_min not
     double value = 0;  ///< what decided: gap g1, residual, local error, energy jump or fraction; accepted: the residual
     Index pair = -1, slave = -1; ///< governing point of an interpenetration or a collision
+    bool unseen = false;         ///< an interpenetration that no average sees
     std::string cause;           ///< in words; empty when accepted
 };
 

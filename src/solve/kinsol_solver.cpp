@@ -176,6 +176,7 @@ struct KinsolSolver::Impl {
                 ++factorisations;
                 if (problem->preconditioner()->factorise() != FactorStatus::ok) {
                     suspect = problem->preconditioner()->failing_equation();
+                    ++preconditioner_failures;
                     break;
                 }
             }

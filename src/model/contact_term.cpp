@@ -156,6 +156,13 @@ void ContactTerm::evaluate_nodes(const std::vector<Vec3>& x, int threads) {
     }
 }
 
+double ContactTerm::least_gap() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const contact::ContactPoint& point : points_)
+        if (point.found) least = std::min(least, point.gap);
+    return least;
+}
+
 double ContactTerm::unseen_gap(Index j, const std::vector<Vec3>& x) const {
     constexpr double nowhere = std::numeric_limits<double>::infinity();
     if (!mortar_ || points_[j].found || hits_[j].facet < 0) return nowhere;

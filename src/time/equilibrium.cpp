@@ -350,6 +350,12 @@ void Equilibrium::linearise(std::size_t p, Index j, ContactTangent& tangent) con
     tangent.G = -tangent.G;
 }
 
+double Equilibrium::least_gap() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& pair : model_.pairs) least = std::min(least, pair->least_gap());
+    return least;
+}
+
 solve::FactorStatus Equilibrium::factorise() {
     if (stale_preconditioner_) preconditioner_->stiffness_changed();
     stale_preconditioner_ = false;

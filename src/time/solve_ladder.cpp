@@ -120,8 +120,7 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
                        bool force_first, LadderOptions& options) {
     constexpr int most_solves = 200, most_slow = 40, most_failures = 12, easy = 6;
     constexpr double softer = 1.0 / 16, little_softer = 0.5, stiffer = 16;
-    constexpr double too_far = 2; // strides
-    constexpr double near = 0.1;  // of a stride: worth trying without springs
+    constexpr double near = 0.1; // of a stride: worth trying without springs
 
     const StabilisationOptions& how = options.stabilisation;
     // a smaller step is cheaper than a long search
@@ -130,10 +129,14 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
     result.rung = "stabilised";
     result.outcome = KinsolOutcome::stopped;
     const std::vector<Vec3> start = equilibrium.displacements(z);
+    // a wide gap is crossed in a few strides, and nothing is gone through that should have been met
+    double gap = how.gap;
+    const auto stride = [&] { return std::max(how.finest, 0.5 * gap); };
+    const auto too_far = [&] { return std::max(how.finest, gap); };
     std::vector<Vec3> anchor = start;
     Vector anchor_z = z;
     // the reference force is a norm over the nodes; this is no less than their sum
-    double stiffness = options.reference_force * std::sqrt(static_cast<double>(start.size())) / how.stride;
+    double stiffness = options.reference_force * std::sqrt(static_cast<double>(start.size())) / stride();
     int failures = 0, slow = 0; // slow: not on the way across a gap
     const auto newton = [&](bool springs) {
         if (springs)
@@ -161,8 +164,8 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
         std::vector<Vec3> u = equilibrium.displacements(z);
         Index node = -1;
         const double moved = largest_distance(u, anchor, node);
-        if (moved > too_far * how.stride) { // it may have gone through what it should have met
-            stiffness *= moved / how.stride;
+        if (moved > too_far()) {
+            stiffness *= moved / stride();
             continue;
         }
         result.travelled = largest_distance(u, start, node);
@@ -170,12 +173,14 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
             result.adrift = node;
             break;
         }
-        slow += moved < 0.5 * how.stride ? 1 : 0;
+        const double before = stride();
+        slow += moved < 0.5 * before ? 1 : 0;
         Statuses next = equilibrium.statuses();
         undetermined = undetermined && next == statuses;
         statuses = std::move(next);
         anchor = std::move(u);
         anchor_z = z;
+        if (const double now = equilibrium.least_gap(); std::isfinite(now)) gap = now;
 
         equilibrium.release();
         equilibrium.set_statuses(statuses, StatusRule::frozen, false);
@@ -187,18 +192,18 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
                 return result;
             }
         }
-        if (moved < near * how.stride && !undetermined) {
+        if (moved < near * before && !undetermined) {
             const auto free = newton(false);
             Index any = -1;
             if (free.outcome == KinsolOutcome::converged &&
-                largest_distance(equilibrium.displacements(z), anchor, any) < how.stride) {
+                largest_distance(equilibrium.displacements(z), anchor, any) < stride()) {
                 result.outcome = KinsolOutcome::converged;
                 return result;
             }
             undetermined = free.outcome == KinsolOutcome::singular;
         }
         // a body that has met nothing yet moves by a stride at a time, not through what it should meet
-        stiffness *= std::max(solved.iterations <= easy ? softer : little_softer, moved / how.stride);
+        stiffness *= std::max(solved.iterations <= easy ? softer : little_softer, moved / stride());
     }
     if (result.adrift < 0 && result.stabilised_solves == most_solves && failures < most_failures) {
         result.travelled = largest_distance(anchor, start, result.adrift);

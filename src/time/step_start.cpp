@@ -122,16 +122,14 @@ StabilisationOptions Stepper::stabilisation_options() const {
     how.share = &volume_shares_;
     how.farthest = characteristic_length_;
     constexpr double part = 0.05; // of the model, where there is no facet to compare with
-    how.stride = part * characteristic_length_;
+    how.finest = part * characteristic_length_;
+    how.gap = 2 * how.finest; // of no account without pairs
     if (model_.pairs.empty()) return how;
-    double finest = how.stride, least = how.farthest;
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
-        finest = std::min(finest, pair.finest());
-        for (Index j = 0; j < pair.size(); ++j)
-            if (pair.point(j).found) least = std::min(least, pair.point(j).gap);
+    how.gap = how.farthest;
+    for (const auto& pair : model_.pairs) {
+        how.finest = std::min(how.finest, pair->finest());
+        how.gap = std::min(how.gap, pair->least_gap());
     }
-    how.stride = std::max(finest, 0.5 * least); // a wide gap is crossed in a few strides
     return how;
 }
 

@@ -204,6 +204,25 @@ TEST(StepControl, AFailedSolveIsHalvedAndItsGapsMeanNothing) {
     EXPECT_EQ(decision.slave, -1);
 }
 
+TEST(StepControl, CutsWhereANodeIsDeepAndNoAverageSeesIt) {
+    StepLimits limits; // without a bound on what is seen
+    StepEvidence evidence;
+    const double least = limits.unseen_interpenetration;
+    evidence.unseen = {0, -1.1 * least * 2, 3, 5, 2}; // a facet of 2 m
+    const Decision decision = judge(evidence, limits, 1, 0);
+    EXPECT_EQ(decision.verdict, Verdict::retry);
+    EXPECT_EQ(decision.reason, Reason::interpenetration);
+    EXPECT_TRUE(decision.unseen);
+    EXPECT_EQ(decision.pair, 3);
+    EXPECT_EQ(decision.slave, 5);
+    EXPECT_EQ(decision.dt, limits.failure_lambda);
+    evidence.unseen.g1 = -0.9 * least * 2;
+    EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::accept);
+    const support::FloatingPointTraps suspended(false);
+    evidence.unseen.g1 = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::retry);
+}
+
 TEST(StepControl, CutsForTimeErrorByItsOrder) {
     StepLimits limits;
     limits.error_tolerance = 1e-6;

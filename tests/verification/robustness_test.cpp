@@ -153,6 +153,24 @@ TEST(InitialOverlap, DeeperThanAllowedIsLiftedByTheFirstStepOfADynamicStage) {
     }
 }
 
+TEST(InitialGap, OfFiveFacetsIsCrossedUnderAnyLoadAndNothingIsGoneThrough) {
+    // internal forces of the block, 1 m from where it was, cancel to some E h 1e-16 u = 1e-7 N a node: light loads are balanced
+    // to that and no better, whatever the tolerance says
+    constexpr double area = 0.25, way = 1, round_off = 1e-5, relative = 1e-8;
+    for (const char* pressure : {"1e-3 Pa", "0.1 Pa", "10 Pa", "1 MPa"}) {
+        support::SceneRun run;
+        support::run_scene(run, support::shipped("extreme/initial_gap_wide.yaml"),
+                           {{"stages.press.pressure.head", pressure}});
+        ASSERT_EQ(run.steps.size(), 1u) << pressure;
+        EXPECT_EQ(run.attempts, 1) << pressure;
+        const double force = area * std::stod(pressure) * (std::string(pressure).ends_with("MPa") ? 1e6 : 1);
+        EXPECT_NEAR(run.steps[0].pairs[0].on_slave.z(), force, round_off + relative * force) << pressure;
+        double farthest = 0;
+        for (const Vec3& u : run.steps[0].state.u) farthest = std::max(farthest, -u.z());
+        EXPECT_NEAR(farthest, way, 2e-3) << pressure; // strains of 1e-3 under the heaviest
+    }
+}
+
 TEST(NothingToSolve, WhereEveryNodeIsHeldThereIsNoEquationAndStillAResult) {
     const char* const held = R"(
 bodies:

@@ -93,6 +93,8 @@ public:
     Index refresh(const std::vector<Vec3>& x) { return master_->refresh(vertices(x)); }
 
     [[nodiscard]] const contact::ContactPoint& point(Index j) const { return points_[j]; }
+    /// Of all slave nodes with a contact partner at the last evaluation, m; infinite where none has one.
+    [[nodiscard]] double least_gap() const;
     /// Closest point of slave j on its facet at the last evaluation, whether or not there is contact.
     [[nodiscard]] const contact::FacetHit& hit(Index j) const { return hits_[j]; }
     /// With mortar: gap of slave node j itself at the positions of the last evaluate(), where its facets overlap none of the

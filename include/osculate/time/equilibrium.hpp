@@ -96,6 +96,8 @@ public:
     [[nodiscard]] double reference_force() const { return reference_force_; }
     /// Node whose row holds the largest residual.
     [[nodiscard]] Index worst_node() const { return worst_node_; }
+    /// Smallest gap at the last residual, m; infinite where nothing faces anything.
+    [[nodiscard]] double least_gap() const;
     /// Element with the least volume left, at the last residual; where it has none there was no residual.
     [[nodiscard]] const model::WorstElement& worst_element() const { return worst_element_; }
     [[nodiscard]] const BodyForces& bodies() const { return bodies_; }

@@ -9,7 +9,8 @@ namespace osculate::time {
 /// equilibrium holds without them.
 struct StabilisationOptions {
     const std::vector<double>* share = nullptr; ///< model::volume_shares; null: the rung is left out
-    double stride = 0;                          ///< m, about as far as a body may move at a time: a facet, a thickness
+    double finest = 0;                          ///< m, motions below it end on this side of whatever they meet
+    double gap = 0;                             ///< m, smallest at the start
     double farthest = 0;                        ///< m, travel after which a body counts as held by nothing
 };
 

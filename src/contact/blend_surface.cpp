@@ -183,7 +183,9 @@ private:
         constexpr double surely_outside = 4; // tau on the tangent plane: twice as far as the bump reaches
         constexpr double margin = 1.1;       // of the bump's radius
         const auto tau = [&](const Vec2& u) { return patch.kappa * u.dot(patch.metric * u); };
-        const Vec2 flat = (p.X_a.transpose() * p.X_a).inverse() * (p.X_a.transpose() * (s - p.X));
+        const Mat2 metric = p.X_a.transpose() * p.X_a;
+        if (!(metric.determinant() > 0)) return std::nullopt; // an iterate that ran away has its facets in one place
+        const Vec2 flat = metric.inverse() * (p.X_a.transpose() * (s - p.X));
         if (!(tau(flat) < surely_outside)) return std::nullopt;
         Vec2 u = flat;
         for (int step = 0; step < 2; ++step) {

@@ -78,6 +78,13 @@ TEST(BlendOnCube, IsOutOfReachFarBeyondAnEdge) {
     for (const double far : {2.0, 20.0}) EXPECT_FALSE(blend.at({1 + far, 0.1, 1 + far}).found);
 }
 
+TEST(BlendOnCube, IsNotFoundWhereAnIterateHasAllOfItInOnePlace) {
+    Blend blend(plain_cube());
+    const FacetHit hit = blend.search.global({1.1, 0.1, 0.2}, blend.x);
+    std::ranges::fill(blend.x, Vec3(1e16, 0, 0)); // where its size is less than the last digit
+    EXPECT_FALSE(blend.at({1e16 + 2, 0.1, 0.2}, hit).found);
+}
+
 /// Two planes that meet in a valley of 90 degrees, free space above both.
 TEST(BlendInAValley, TakesTheNearerPlaneOutsideAndTheDeeperOneInside) {
     const Blend blend(grid(8, 6, false, false, [](double a, double b) {

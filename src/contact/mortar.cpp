@@ -2,6 +2,7 @@
 
 #include "contact/facet_rule.hpp"
 #include "osculate/core/parallel.hpp"
+#include "osculate/core/without_traps.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -209,6 +210,7 @@ void Mortar::make_duals(Facet& facet) const {
         dual.D.setZero();
         if (!dual.usable) return;
         dual.D.head(corners) = M.rowwise().sum();
+        const WithoutTraps singular; // where it is, that is seen below
         dual.A = dual.D.head(corners).asDiagonal() * M.inverse().eval();
         // too few points, or points in a row
         dual.usable = dual.A.allFinite() && dual.A.cwiseAbs().maxCoeff() * least_cover * least_cover < 1;

@@ -67,14 +67,13 @@ std::vector<StatusChanges> changes_of(const model::Model& model, const std::vect
     return all;
 }
 
-/// @param astray  the last iterate lies farther off than anything the scene has
-Cause cause_of_solve(const FailedAttempt& failed, const PostMortem& found, bool astray) {
+Cause cause_of_solve(const FailedAttempt& failed, const PostMortem& found) {
     if (found.element) return Cause::inside_out;
     using solve::KinsolOutcome;
     if (failed.result.outcome == KinsolOutcome::not_finite) return Cause::not_finite;
     if (failed.result.adrift >= 0) return Cause::unsupported_body;
     // contact at an iterate that ran away says nothing of what holds the bodies
-    if (astray) return Cause::diverged;
+    if (failed.result.astray) return Cause::diverged;
     if (loose_body(failed, found) != nullptr) return Cause::unsupported_body;
     switch (failed.result.outcome) {
     case KinsolOutcome::singular: return Cause::singular_tangent;
@@ -85,13 +84,13 @@ Cause cause_of_solve(const FailedAttempt& failed, const PostMortem& found, bool 
     }
 }
 
-Cause cause_of_decision(const FailedAttempt& failed, const PostMortem& found, bool astray) {
+Cause cause_of_decision(const FailedAttempt& failed, const PostMortem& found) {
     switch (failed.decision.reason) {
     case Reason::interpenetration: return failed.decision.unseen ? Cause::unseen_contact : Cause::interpenetration;
     case Reason::collision: return Cause::collision;
     case Reason::error: return Cause::time_error;
     case Reason::energy: return Cause::energy;
-    default: return cause_of_solve(failed, found, astray);
+    default: return cause_of_solve(failed, found);
     }
 }
 
@@ -160,10 +159,9 @@ std::string explain(const model::Model& model, const LadderResult& result, const
     if (!attempt.body.empty()) text << ", worst at node " << attempt.node << " of body '" << attempt.body << "'";
     switch (result.outcome) {
     case solve::KinsolOutcome::singular:
-        text << (result.residual > 1
-                     ? "; the iterates ran away"
-                     : "; a body is held by nothing: add a support, or check that it touches another at "
-                       "the start. Or both sides of a contact are held");
+        text << (result.astray ? "; the iterates ran away"
+                               : "; a body is held by nothing: add a support, or check that it touches another at "
+                                 "the start. Or both sides of a contact are held");
         break;
     case solve::KinsolOutcome::stopped:
         text << (model.pairs.empty()
@@ -216,9 +214,7 @@ PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium) {
         (void)equilibrium.residual(failed.z.data(), F.data());
         hold_now(failed, equilibrium, state, found.bodies);
     }
-    const bool astray = std::ranges::any_of(
-        state.u, [&](const Vec3& u) { return !(u.cwiseAbs().maxCoeff() <= failed.ladder.farthest); });
-    found.cause = cause_of_decision(failed, found, astray);
+    found.cause = cause_of_decision(failed, found);
     find_place(failed, equilibrium, found);
     const Index node = global_node(model, found.body, found.node);
     if (node >= 0) {

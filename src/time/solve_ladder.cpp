@@ -270,6 +270,7 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     const Vector first = z;
     const bool singular = rungs();
     result.worst_element = equilibrium.worst_element();
+    result.astray = !(largest_component(equilibrium.displacements(z)) <= options.farthest);
     const StabilisationOptions& how = options.stabilisation;
     if (result.converged() || how.share == nullptr || !(singular || options.last_chance)) return result;
     const Vector last = z;

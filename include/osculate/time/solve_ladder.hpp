@@ -37,6 +37,7 @@ struct LadderResult {
     double reference_force = 0; ///< N, the one it was held against
     const char* rung = "";      ///< the rung that ended the attempt
     solve::SparseIndex failing_equation = -1;
+    bool astray = false;                 ///< its last iterate lies farther off than LadderOptions::farthest
     int stabilised_solves = 0;           ///< with springs in place
     Index adrift = -1;                   ///< node that travelled farthest, of a body that found no support
     double travelled = 0;                ///< how far it did, m

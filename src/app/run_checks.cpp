@@ -26,13 +26,18 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
 
 void RunChecks::add_penetration(const time::AcceptedStep& step) {
     const time::StepLimits& limits = step.stage.limits;
+    std::vector<Vec3> x = model_.X;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += step.state.u[i];
     for (const auto& pair : model_.pairs)
         for (Index j = 0; j < pair->size(); ++j) {
             const contact::ContactPoint& point = pair->point(j);
-            if ((!point.found && !point.behind) || point.facet < 0 || point.gap >= 0) continue;
-            const double size = pair->surface().facet_size(point.facet), depth = -point.gap / size;
+            const bool seen = point.found || point.behind;
+            const double gap = seen ? point.gap : pair->unseen_gap(j, x);
+            const Index facet = seen ? point.facet : pair->facets()[j];
+            if (facet < 0 || !(gap < 0)) continue;
+            const double size = pair->surface().facet_size(facet), depth = -gap / size;
             penetration_ = std::max(penetration_, depth);
-            penetration_m_ = std::max(penetration_m_, -point.gap);
+            penetration_m_ = std::max(penetration_m_, -gap);
             const double allowed = limits.allowed_interpenetration / (limits.in_metres ? size : 1);
             const double bound = expect_ && expect_->penetration ? *expect_->penetration
                                  : std::isfinite(allowed)        ? allowed

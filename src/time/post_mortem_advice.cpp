@@ -126,8 +126,9 @@ private:
             "less load than at " + number(found_.last_time) +
                 " s, the last equilibrium, or a displacement instead of the load: a body that gives way under a "
                 "load can be led past that point");
-        add(in_stage("analysis"),
-            "dynamic: inertia carries the bodies from one equilibrium to the next, and every body needs a density");
+        if (!failed_.stage.dynamics)
+            add(in_stage("analysis"),
+                "dynamic: inertia carries the bodies from one equilibrium to the next, and every body needs a density");
         if (!found_.body.empty() && !failed_.model.finite_strain)
             add("bodies." + found_.body + ".material", "neo_hookean, which stiffens as it is compressed: under loads "
                                                        "near its modulus a linear one is not true");

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace osculate::scenes {
 namespace {
@@ -35,6 +36,16 @@ TEST_F(Expectations, ChecksAreThereWithoutOne) {
     EXPECT_LT(checks["penetration"], 1e-9);
     EXPECT_GE(checks["penetration_m"], 0);
     EXPECT_FALSE(checks.contains("energy_growth")) << "a matter of dynamics";
+}
+
+TEST_F(Expectations, ChecksSeeAnEdgeThatMortarAveragesDoNot) {
+    const std::string edges = scene_file("tests/scenes/failures/edges_unseen.yaml");
+    EXPECT_EQ(osculate({"run", edges, "-o", "run", "--quiet"}).code, 3);
+    // 1.25 mm down at the last good time, over facets of 45 degrees and 0.1 m
+    constexpr double depth = 1.25e-3 / std::numbers::sqrt2, facet = 0.1,
+                     round_off = 1e-9; // of what is strained by nothing
+    EXPECT_NEAR(summary()["checks"]["penetration_m"], depth, round_off * facet);
+    EXPECT_NEAR(summary()["checks"]["penetration"], depth / facet, round_off);
 }
 
 TEST_F(Expectations, MetIsSaidToo) {

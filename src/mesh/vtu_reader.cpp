@@ -2,6 +2,7 @@
 
 #include "osculate/core/without_traps.hpp"
 #include "osculate/mesh/quality.hpp"
+#include "osculate/mesh/vtk_threads.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -152,6 +153,7 @@ void name_sets(vtkPointData& data, const std::vector<Index>& number, Mesh& mesh)
 Mesh read_vtu(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path)) fail(path, "no such file");
     if (!std::filesystem::is_regular_file(path)) fail(path, "not a file");
+    use_no_vtk_threads();
     const vtkNew<ErrorCollector> errors;
     const vtkNew<vtkXMLUnstructuredGridReader> reader;
     reader->AddObserver(vtkCommand::ErrorEvent, errors);

@@ -1,6 +1,7 @@
 #include "osculate/output/frame_reader.hpp"
 
 #include "osculate/core/without_traps.hpp"
+#include "osculate/mesh/vtk_threads.hpp"
 
 #include <charconv>
 #include <stdexcept>
@@ -31,6 +32,7 @@ Array copy_of(vtkDataArray& values) {
 template <class Reader> Frame read(const fs::path& path) {
     std::error_code none;
     if (!fs::is_regular_file(path, none)) throw std::runtime_error("cannot read " + path.string());
+    mesh::use_no_vtk_threads();
     vtkNew<Reader> reader;
     reader->SetFileName(path.c_str());
     const WithoutTraps vtk;

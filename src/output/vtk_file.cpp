@@ -2,6 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/without_traps.hpp"
+#include "osculate/mesh/vtk_threads.hpp"
 #include "output/files.hpp"
 
 #include <array>
@@ -72,6 +73,7 @@ void add_data(vtkDataSet& data, const std::vector<Array>& point_data, double tim
 }
 
 template <class Writer> void write(const std::filesystem::path& path, vtkDataObject& data) {
+    mesh::use_no_vtk_threads();
     vtkNew<Writer> writer;
     writer->SetInputData(&data);
     writer->SetDataModeToAppended();
@@ -79,7 +81,7 @@ template <class Writer> void write(const std::filesystem::path& path, vtkDataObj
     writer->SetHeaderTypeToUInt64();
     writer->SetCompressorTypeToLZ4();
     writer->WriteToOutputStringOn(); // VTK's own file output does not notice a disk that fills up on closing
-    const WithoutTraps vtk;          // it ranges over arrays in threads of its own
+    const WithoutTraps vtk;          // it takes the range of arrays that may hold no numbers
     if (writer->Write() != 1) throw std::runtime_error("cannot write " + path.string() + ": VTK refused the data");
     write_atomic(path, writer->GetOutputString());
 }

@@ -1,25 +1,30 @@
 #include "solve/blas_threads.hpp"
 
 #include <cstdlib>
+#include <cstring>
 #include <dlfcn.h>
 
 namespace osculate::solve {
 
 namespace {
 
-/// The libraries read their variables when they are loaded, which is before main; so they are told by name, where there.
-bool limit(const char* variable, const char* function) {
-    if (std::getenv(variable) != nullptr) return false;
+/// Tells a library by the name of its function, where there: it read its variable when it was loaded, before main. Not where
+/// that variable asks for more than one thread.
+bool tell(const char* variable, const char* function, int value) {
+    const char* asked = std::getenv(variable);
+    if (asked != nullptr && std::strcmp(asked, "1") != 0) return false;
     void* symbol = dlsym(RTLD_DEFAULT, function);
-    if (symbol != nullptr) reinterpret_cast<void (*)(int)>(symbol)(1);
+    if (symbol != nullptr) reinterpret_cast<void (*)(int)>(symbol)(value);
     return symbol != nullptr;
 }
 
 } // namespace
 
 void use_one_blas_thread() {
-    static const bool once =
-        limit("OPENBLAS_NUM_THREADS", "openblas_set_num_threads") | limit("OMP_NUM_THREADS", "omp_set_num_threads");
+    // CHOLMOD asks OpenMP for four threads whatever the number set: only a limit of nested regions stops it
+    static const bool once = tell("OPENBLAS_NUM_THREADS", "openblas_set_num_threads", 1) |
+                             tell("OMP_NUM_THREADS", "omp_set_num_threads", 1) |
+                             tell("OMP_NUM_THREADS", "omp_set_max_active_levels", 0);
     (void)once;
 }
 

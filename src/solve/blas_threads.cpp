@@ -12,7 +12,7 @@ namespace {
 /// that variable asks for more than one thread.
 bool tell(const char* variable, const char* function, int value) {
     const char* asked = std::getenv(variable);
-    if (asked != nullptr && std::strcmp(asked, "1") != 0) return false;
+    if (asked != nullptr && *asked != '\0' && std::strcmp(asked, "1") != 0) return false;
     void* symbol = dlsym(RTLD_DEFAULT, function);
     if (symbol != nullptr) reinterpret_cast<void (*)(int)>(symbol)(value);
     return symbol != nullptr;

@@ -52,8 +52,13 @@ public:
             add_mass();
             add_gravity();
         }
-        plan_.stepper = {scene_.solver.tolerance, scene_.solver.max_iterations, 0,
-                         scene_.solver.predictor, scene_.solver.stabilisation,  threads_};
+        plan_.stepper = {scene_.solver.tolerance,
+                         scene_.solver.max_iterations,
+                         0,
+                         scene_.solver.predictor,
+                         scene_.solver.stabilisation,
+                         threads_,
+                         static_cast<time::LinearSolver>(scene_.solver.linear_solver)};
         plan_.items = plan_items(scene_, plan_);
         return std::move(plan_);
     }

@@ -1,6 +1,7 @@
 #include "app/plan_items.hpp"
 
 #include "osculate/time/collision_check.hpp"
+#include "osculate/time/condensed_tangent.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -53,12 +54,33 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     say("smooth master surface", smooth,
         smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
     const bool unsymmetric = contact || follows || (finite && dynamic > 0);
-    say("Cholesky factorisation", true,
-        contact       ? "of the stiffness with softened contact, to precondition GMRES"
+    using Linear = scene::LinearSolver;
+    const Linear asked = scene.solver.linear_solver;
+    const auto cost = time::CondensedTangent::cost(plan.model);
+    const bool may = contact && !follows && !finite;
+    const bool condensed = may && (asked == Linear::condensed || (asked == Linear::automatic && cost.pays()));
+    const bool direct = unsymmetric && asked == Linear::direct;
+    say("condensation", condensed,
+        !contact    ? "the scene has no pair"
+        : !may      ? "the tangent of the bodies is not constant"
+        : condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
+                                  cost.condensed, cost.factorising)
+        : asked == Linear::automatic
+            ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
+                          "{:.2g} operations",
+                          cost.condensed, 1e-9 * cost.bytes, cost.factorising)
+            : "another solver is asked for");
+    say("LU factorisation", direct, direct ? "asked for, in every iteration" : "only where GMRES gets nowhere");
+    say("Cholesky factorisation", !direct,
+        direct        ? "the tangent itself is factorised"
+        : condensed   ? "of each body, its contact nodes last"
+        : contact     ? "of the stiffness with softened contact, to precondition GMRES"
         : unsymmetric ? "of a triangle of the tangent, to precondition GMRES"
                       : "the tangent is symmetric positive definite");
-    say("GMRES", unsymmetric,
-        contact       ? "unsymmetric tangent with contact"
+    say("GMRES", unsymmetric && !direct,
+        direct        ? "the tangent is factorised"
+        : condensed   ? "on contact nodes and forces alone"
+        : contact     ? "unsymmetric tangent with contact"
         : follows     ? "unsymmetric tangent of follower pressures"
         : unsymmetric ? "unsymmetric tangent of finite strain in dynamics"
                       : "the tangent is symmetric");

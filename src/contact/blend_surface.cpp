@@ -73,7 +73,8 @@ public:
         if (hit.facet < 0) return;
         const double size = surface_.facet_size(hit.facet);
         if (beyond_boundary(hit, size)) return;
-        Side side = look(s, hit, x);
+        auto trace = std::make_shared<Side>(look(s, hit, x));
+        Side& side = *trace;
         for (const Index facet : across_crease(hit)) {
             FacetHit there;
             there.facet = facet;
@@ -87,12 +88,20 @@ public:
         point = std::move(side.point);
         point.facet = hit.facet;
         point.side = side.hit.facet;
-        if (!point.found || variation == nullptr) return;
+        if (!point.found) return;
+        point.trace = std::move(trace);
+        if (variation != nullptr) vary(s, hit, x, point, *variation);
+    }
+
+    void vary(const Vec3& s, const FacetHit&, const std::vector<Vec3>& x, const ContactPoint& point,
+              ContactVariation& variation) const override {
+        const Side& side = static_cast<const Side&>(*point.trace);
+        variation.patches.clear();
         if (side.active.empty()) {
             ContactPoint same;
-            facets_->evaluate(s, side.hit, x, same, variation);
+            facets_->evaluate(s, side.hit, x, same, &variation);
         } else {
-            vary_blend(side.active, s, point, *variation);
+            vary_blend(side.active, s, point, variation);
         }
     }
 
@@ -106,7 +115,7 @@ private:
     static constexpr double tie = 1e-9; ///< of coordinates and gaps, of the facet size
 
     /// A slave point seen from one smooth side of the surface.
-    struct Side {
+    struct Side : PointTrace {
         FacetHit hit;
         std::vector<ActivePatch> active;                  ///< empty where only the facet itself is left
         std::vector<std::unique_ptr<PlacedPatch>> placed; ///< those that prepare() has not placed
@@ -120,7 +129,8 @@ private:
     };
 
     Side look(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x) const {
-        Side side{hit, {}, {}, {}};
+        Side side;
+        side.hit = hit;
         for (const Index p : vertex_patches_.of_facet[hit.facet]) {
             const VertexPatch& patch = vertex_patches_.patches[p];
             const PlacedPatch* placed = placed_.empty() ? nullptr : &placed_[p];
@@ -233,27 +243,15 @@ private:
         active.push_back(std::move(a));
     }
 
-    /// du_a = K^-1_ab ( X,b.(ds - Phi_i dx_i) + g n.Phi_i,b dx_i ),  dg = n.(ds - Phi_i dx_i),
-    /// dpsi = -6 kappa (1-tau)^2 u^T M du
     static void first_variation(ActivePatch& a) {
         const PatchPoint& p = a.foot.point;
         const auto n = static_cast<Index>(a.patch->vertices.size());
         a.phi.resize(n);
         a.phi_a.resize(n, 2);
         a.patch->shape.weights(a.foot.u, a.phi, a.phi_a);
-        const Mat2 K_inverse = (p.X_a.transpose() * p.X_a - a.gap * p.curvature(a.normal)).inverse();
-        const Eigen::Matrix<double, 2, 3> tangents = p.X_a.transpose();
-        a.du.resize(2, 3 + 3 * n);
-        a.dg.resize(3 + 3 * n);
-        a.du.leftCols<3>() = K_inverse * tangents;
-        a.dg.leftCols<3>() = a.normal.transpose();
-        for (Index i = 0; i < n; ++i) {
-            a.du.middleCols<3>(3 + 3 * i) =
-                K_inverse * (-a.phi(i) * tangents + a.gap * a.phi_a.row(i).transpose() * a.normal.transpose());
-            a.dg.middleCols<3>(3 + 3 * i) = -a.phi(i) * a.normal.transpose();
-        }
+        a.K_inverse = (p.X_a.transpose() * p.X_a - a.gap * p.curvature(a.normal)).inverse();
         const Vec2 m = a.patch->metric * (a.foot.u - a.patch->origin);
-        a.dpsi = -6 * a.patch->kappa * (1 - a.tau) * (1 - a.tau) * m.transpose() * a.du;
+        a.by_foot = -6 * a.patch->kappa * (1 - a.tau) * (1 - a.tau) * m;
     }
 
     /// g = sum psi_v g_v / P;  dg = (1/P) sum [ psi_v dg_v + (g_v - g) dpsi_v ];  weights (1/P) sum psi_v Phi_i
@@ -269,24 +267,29 @@ private:
         std::sort(point.nodes.begin(), point.nodes.end());
         point.nodes.erase(std::unique(point.nodes.begin(), point.nodes.end()), point.nodes.end());
         const auto n = static_cast<Index>(point.nodes.size());
-        Row dg = Row::Zero(3 + 3 * n);
+        Vec3 by_s = Vec3::Zero();
+        point.pressing.setZero(n, 3);
         point.weights = Vector::Zero(n);
         for (ActivePatch& a : active) {
-            const Row own = (a.psi * a.dg + (a.gap - g) * a.dpsi) / P;
-            dg.leftCols<3>() += own.leftCols<3>();
+            const double share = a.psi / P;
+            const Vec2 t = ((a.gap - g) / P) * (a.K_inverse * a.by_foot); // dpsi_v = by_foot . du, K symmetric
+            const Vec3 along = share * a.normal + a.foot.point.X_a * t;   // ds, less Phi_i dx_i
+            const Vec2 across = a.gap * t;                                // of n . Phi_i,b dx_i
+            by_s += along;
             for (std::size_t i = 0; i < a.patch->vertices.size(); ++i) {
                 const auto at =
                     static_cast<Index>(std::lower_bound(point.nodes.begin(), point.nodes.end(), a.patch->vertices[i]) -
                                        point.nodes.begin());
+                const auto k = static_cast<Index>(i);
                 a.place.push_back(at);
-                dg.middleCols<3>(3 + 3 * at) += own.middleCols<3>(3 + 3 * static_cast<Index>(i));
-                point.weights(at) += a.psi * a.phi(static_cast<Index>(i)) / P;
+                point.pressing.row(at) += (a.phi_a.row(k).dot(across) * a.normal - a.phi(k) * along).transpose();
+                point.weights(at) += share * a.phi(k);
             }
         }
         point.gap = g;
-        const double slope = dg.leftCols<3>().norm();
-        point.normal = dg.leftCols<3>().transpose() / slope;
-        point.pressing = dg.tail(3 * n).reshaped(3, n).transpose() / slope;
+        const double slope = by_s.norm();
+        point.normal = by_s / slope;
+        point.pressing /= slope;
         point.foot.setZero();
         for (Index i = 0; i < n; ++i) point.foot += point.weights(i) * (x[point.nodes[i]] - x[point.nodes[0]]);
         point.foot += x[point.nodes[0]];

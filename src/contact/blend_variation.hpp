@@ -37,7 +37,9 @@ struct PlacedPatch {
     }
 };
 
-/// A vertex patch seen from the slave point, within its bump. y = (s, nodes of the patch), 3 + 3n columns.
+/// A vertex patch seen from the slave point, within its bump.
+///     du_a = K^-1_ab ( X,b.(ds - Phi_i dx_i) + g n.Phi_i,b dx_i ),  dg = n.(ds - Phi_i dx_i),
+///     dpsi = -6 kappa (1-tau)^2 u^T M du
 struct ActivePatch {
     const VertexPatch* patch = nullptr;
     const PlacedPatch* placed = nullptr;
@@ -46,8 +48,8 @@ struct ActivePatch {
     double gap = 0, tau = 0, psi = 0;
     Vector phi;
     MatrixX2 phi_a;
-    Rows2 du;
-    Row dg, dpsi;
+    Mat2 K_inverse;           ///< (X,a . X,b - g n . X,ab)^-1
+    Vec2 by_foot;             ///< dpsi/du
     std::vector<Index> place; ///< of the patch's nodes in the union of all patches
 };
 

@@ -34,11 +34,10 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
     facet.dgap.setZero(n, columns);
     facet.dnormal.setZero(3 * n, columns);
     static thread_local ContactVariation variation;
-    static thread_local ContactPoint again;
-    variation.of_forces = false;
+    variation.form = VariationForm::gap;
     for (const GapPoint& q : facet.gap_points) {
         if (!q.point.found) continue;
-        master_.evaluate(position(q, s), q.hit, x, again, &variation);
+        master_.vary(position(q, s), q.hit, x, q.point, variation);
         const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1> psi = q.weight * (facet.gap_dual.A * q.N.head(n));
         const auto add = [&](Index to, const Eigen::RowVector3d& dg, const Mat3& dn) {
             for (int c = 0; c < n; ++c) {
@@ -49,9 +48,9 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
         for (const Share& share : q.shares)
             add(3 * place_in(facet.gap_slaves, share.slave), variation.dg.leftCols<3>() * share.C,
                 variation.dn.leftCols<3>() * share.C);
-        for (std::size_t i = 0; i < again.nodes.size(); ++i) {
+        for (std::size_t i = 0; i < q.point.nodes.size(); ++i) {
             const Index from = 3 + 3 * static_cast<Index>(i);
-            add(3 * (slaves + place_in(facet.gap_vertices, again.nodes[i])), variation.dg.middleCols<3>(from),
+            add(3 * (slaves + place_in(facet.gap_vertices, q.point.nodes[i])), variation.dg.middleCols<3>(from),
                 variation.dn.middleCols<3>(from));
         }
     }

@@ -209,9 +209,9 @@ void ContactTerm::prepare_variations(const std::vector<Vec3>& x, std::span<const
 }
 
 void ContactTerm::vary(Index j, const std::vector<Vec3>& x, contact::ContactVariation& variation) const {
+    variation.patches.clear();
     if (mortar_) return mortar_->vary(j, points_[j], variation);
-    contact::ContactPoint again;
-    master_->evaluate(x[slaves_.node[j]], hits_[j], vertices_, again, &variation);
+    master_->vary(x[slaves_.node[j]], hits_[j], vertices_, points_[j], variation);
 }
 
 void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, const contact::ContactVariation& variation,
@@ -222,7 +222,7 @@ void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, const con
     Eigen::Matrix3Xd moved(3, carriers(j));
     for (Index i = 0; i < moved.cols(); ++i)
         moved.col(i) = image(j, i) * (x[point_nodes_[j][i]] - x_start_[point_nodes_[j][i]]);
-    dd.noalias() = -moved * variation.dweights;
+    variation.weights_times(point, -moved, dd);
     dd.leftCols<3>() += Mat3::Identity();
     for (Index i = 0; i < n; ++i) dd.middleCols<3>(3 + 3 * i) -= point.weights(i) * Mat3::Identity();
     if (!slaves_.in_plane.empty()) dd = (slaves_.in_plane[j] * dd).eval();
@@ -235,42 +235,61 @@ Vec3 ContactTerm::master_force(Index j, Index i, const Vec3& lambda) const {
     return image(j, i).transpose() * force;
 }
 
-void ContactTerm::master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
-                                         MatrixX3& by_lambda, Matrix& by_y) const {
-    // d f_i = dp_i L + p_i dL - dPhi_i lambda_T + Phi_i (n dL + L dn),   L = lambda . n,  lambda_T = lambda - L n
+contact::MatrixX3 ContactTerm::master_force_by_lambda(Index j) const {
+    // f_i = p_i L - Phi_i lambda_T,   L = lambda . n,  lambda_T = lambda - L n
     const contact::ContactPoint& point = points_[j];
-    const Vec3& n = point.normal;
+    contact::MatrixX3 by_lambda(3 * carriers(j), 3);
+    for (Index i = 0; i < carriers(j); ++i) {
+        const double phi = point.weights(i);
+        const Vec3 along = point.pressing.row(i).transpose() + phi * point.normal;
+        by_lambda.middleRows<3>(3 * i) = along * point.normal.transpose() - phi * Mat3::Identity();
+    }
+    return by_lambda;
+}
+
+void ContactTerm::master_force_by_y(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
+                                    Matrix& by_y) const {
+    const Index count = carriers(j);
+    by_y.resize(3 * count, variation.dg.cols());
+    for (Index k = 0; k < by_y.cols(); ++k) {
+        const auto dpressing = variation.dpressing.cols() > 0 && !mortar_ ? variation.dpressing.col(k).data() : nullptr;
+        turn_forces(j, lambda, variation.dn.col(k), variation.dweights.col(k).data(), dpressing, by_y.col(k).data());
+    }
+}
+
+void ContactTerm::turn_forces(Index j, const Vec3& lambda, const Vec3& dn, const double* dweights,
+                              const double* dpressing, double* df) const {
+    // df_i = dp_i L + p_i dL - dPhi_i lambda_T + Phi_i (n dL + L dn)
+    const contact::ContactPoint& point = points_[j];
     const Index count = carriers(j);
     if (mortar_) { // p_i = -W_i n: what is left is f_i = -W_i lambda
-        by_lambda.resize(3 * count, 3);
-        by_y.resize(3 * count, variation.dweights.cols());
-        for (Index i = 0; i < count; ++i) {
-            by_lambda.middleRows<3>(3 * i) = -point.weights(i) * Mat3::Identity();
-            by_y.middleRows<3>(3 * i).noalias() = -lambda * variation.dweights.row(i);
-        }
+        for (Index i = 0; i < count; ++i) Eigen::Map<Vec3>(df + 3 * i) = -dweights[i] * lambda;
         return;
     }
-    const double L = lambda.dot(n);
-    const Vec3 lambda_T = lambda - L * n;
-    const Eigen::Matrix<double, 1, Eigen::Dynamic> dL = lambda.transpose() * variation.dn;
-    by_lambda.resize(3 * count, 3);
-    by_y.resize(3 * count, 3 + 3 * count);
-    Eigen::Matrix3Xd along(3, count); // p_i + Phi_i n
-    for (Index i = 0; i < count; ++i) {
-        const double phi = point.weights(i);
-        along.col(i) = point.pressing.row(i).transpose() + phi * n;
-        by_lambda.middleRows<3>(3 * i) = along.col(i) * n.transpose() - phi * Mat3::Identity();
-    }
-    for (Index k = 0; k < by_y.cols(); ++k) {
-        const Vec3 turn = L * variation.dn.col(k);
-        const double* dp = variation.dpressing.col(k).data();
-        const double* dphi = variation.dweights.col(k).data();
-        double* out = by_y.col(k).data();
-        for (Index i = 0; i < count; ++i)
-            for (int c = 0; c < 3; ++c)
-                out[3 * i + c] =
-                    L * dp[3 * i + c] + along(c, i) * dL(k) + point.weights(i) * turn(c) - lambda_T(c) * dphi[i];
-    }
+    const Vec3& n = point.normal;
+    const double L = lambda.dot(n), dL = lambda.dot(dn);
+    const Vec3 lambda_T = lambda - L * n, turn = dL * n + L * dn;
+    for (Index i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c)
+            df[3 * i + c] = L * dpressing[3 * i + c] + point.pressing(i, c) * dL + point.weights(i) * turn(c) -
+                            lambda_T(c) * dweights[i];
+}
+
+void ContactTerm::master_force_along(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
+                                     Vector& dy, Vector& df) const {
+    if (mirrored()) // dx_vertex = M dx_node
+        for (Index i = 0; i < static_cast<Index>(point_nodes_[j].size()); ++i)
+            dy.segment<3>(3 + 3 * i) = (image(j, i) * dy.segment<3>(3 + 3 * i)).eval();
+    static thread_local Vector dweights, dpressing;
+    df.resize(3 * carriers(j));
+    if (mortar_)
+        dweights.noalias() = variation.dweights * dy;
+    else
+        variation.along(points_[j], dy, dweights, dpressing);
+    turn_forces(j, lambda, variation.dn * dy, dweights.data(), dpressing.data(), df.data());
+    if (mirrored())
+        for (Index i = 0; i < carriers(j); ++i)
+            df.segment<3>(3 * i) = (image(j, i).transpose() * df.segment<3>(3 * i)).eval();
 }
 
 void ContactTerm::follow_master(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const {
@@ -294,15 +313,21 @@ void ContactTerm::follow_master(Index j, std::vector<Index>& nodes, std::vector<
     }
 }
 
-void ContactTerm::fold(Index j, Matrix& A, MatrixX3& E, Matrix& G) const {
-    if (master_nodes_.image.empty()) return;
+void ContactTerm::fold(Index j, Matrix& A, contact::MatrixX3& E) const {
+    if (!mirrored()) return;
     for (Index i = 0; i < static_cast<Index>(point_nodes_[j].size()); ++i) {
         const Mat3& M = image(j, i); // dx_vertex = M dx_node, f_node = M^T f_vertex
         A.middleCols<3>(3 + 3 * i) = (A.middleCols<3>(3 + 3 * i) * M).eval();
+        if (i < carriers(j)) E.middleRows<3>(3 * i) = (M.transpose() * E.middleRows<3>(3 * i)).eval();
+    }
+}
+
+void ContactTerm::fold(Index j, Matrix& G) const {
+    if (!mirrored()) return;
+    for (Index i = 0; i < static_cast<Index>(point_nodes_[j].size()); ++i) {
+        const Mat3& M = image(j, i);
         G.middleCols<3>(3 + 3 * i) = (G.middleCols<3>(3 + 3 * i) * M).eval();
-        if (i >= carriers(j)) continue;
-        E.middleRows<3>(3 * i) = (M.transpose() * E.middleRows<3>(3 * i)).eval();
-        G.middleRows<3>(3 * i) = (M.transpose() * G.middleRows<3>(3 * i)).eval();
+        if (i < carriers(j)) G.middleRows<3>(3 * i) = (M.transpose() * G.middleRows<3>(3 * i)).eval();
     }
 }
 

@@ -15,7 +15,8 @@ std::uint64_t next_pattern() {
 constexpr Index absent = -1;
 } // namespace
 
-SystemMatrix::SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings)
+SystemMatrix::SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings,
+                           Build when)
     : constraints_(&constraints), K_(&K), couplings_(std::move(couplings)),
       exchanged_(static_cast<std::size_t>(constraints.nodes()), -1), displacement_equations_(constraints.equations()) {
     for (std::size_t j = 0; j < couplings_.size(); ++j)
@@ -29,10 +30,15 @@ SystemMatrix::SystemMatrix(const Constraints& constraints, const BlockMatrix& K,
     for (std::size_t j = 0; j <= couplings_.size(); ++j) first_.push_back(unknown + 3 * static_cast<Index>(j));
     for (Index node = 0; node < constraints.nodes(); ++node)
         plain_.push_back(constraints.free_components(node) == 3 && !constraints.turned(node));
+    matrix_.symmetric_positive_definite = couplings_.empty();
+    if (when == Build::at_once) build();
+}
+
+void SystemMatrix::build() {
+    if (matrix_.pattern != 0) return;
     build_pattern();
     map_slots();
     fill_base();
-    matrix_.symmetric_positive_definite = couplings_.empty();
     matrix_.pattern = next_pattern();
     matrix_.value = base_;
 }
@@ -201,6 +207,7 @@ void SystemMatrix::map_slots() {
 }
 
 void SystemMatrix::stiffness_changed() {
+    if (matrix_.pattern == 0) return;
     fill_base();
     reset();
     finish();

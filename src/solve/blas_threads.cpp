@@ -18,6 +18,28 @@ bool tell(const char* variable, const char* function, int value) {
     return symbol != nullptr;
 }
 
+/// OpenBLAS knows processors by their models, and takes for one of 2004 what came out after it did: several times slower
+/// than what the processor's own flags allow. So told, it chooses again.
+void use_vector_units() {
+#if defined(__x86_64__) && defined(__GNUC__)
+    using Name = char* (*)();
+    using Function = void (*)();
+    constexpr const char* variable = "OPENBLAS_CORETYPE";
+    const auto name = reinterpret_cast<Name>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+    const auto quit = reinterpret_cast<Function>(dlsym(RTLD_DEFAULT, "gotoblas_dynamic_quit"));
+    const auto choose = reinterpret_cast<Function>(dlsym(RTLD_DEFAULT, "gotoblas_dynamic_init"));
+    if (name == nullptr || quit == nullptr || choose == nullptr || std::getenv(variable) != nullptr) return;
+    if (std::strcmp(name(), "Prescott") != 0 || !__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+        return;
+    const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+    setenv(variable, wide ? "SKYLAKEX" : "HASWELL", 1);
+    quit();
+    choose();
+    unsetenv(variable);
+#endif
+}
+
 } // namespace
 
 void use_one_blas_thread() {
@@ -25,7 +47,8 @@ void use_one_blas_thread() {
     static const bool once = tell("OPENBLAS_NUM_THREADS", "openblas_set_num_threads", 1) |
                              tell("OMP_NUM_THREADS", "omp_set_num_threads", 1) |
                              tell("OMP_NUM_THREADS", "omp_set_max_active_levels", 0);
-    (void)once;
+    static const bool chosen = (use_vector_units(), true);
+    (void)once, (void)chosen;
 }
 
 } // namespace osculate::solve

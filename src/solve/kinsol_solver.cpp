@@ -2,7 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/timing.hpp"
-#include "solve/krylov.hpp"
+#include "osculate/solve/gmres.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,11 +50,11 @@ struct KinsolSolver::Impl {
         z.reset(N_VNew_Serial(n, context));
         u_scale.reset(N_VNew_Serial(n, context));
         f_scale.reset(N_VNew_Serial(n, context));
-        matrix = SUNMatNewEmpty(context);
-        matrix->content = this;
-        matrix->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
-        matrix->ops->zero = [](SUNMatrix) { return 0; }; // the problem rewrites every value
-        matrix->ops->destroy = [](SUNMatrix A) { SUNMatFreeEmpty(A); };
+        handle = SUNMatNewEmpty(context);
+        handle->content = this;
+        handle->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
+        handle->ops->zero = [](SUNMatrix) { return 0; }; // the problem rewrites every value
+        handle->ops->destroy = [](SUNMatrix A) { SUNMatFreeEmpty(A); };
         linear = SUNLinSolNewEmpty(context);
         linear->content = this;
         linear->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; };
@@ -72,7 +72,7 @@ struct KinsolSolver::Impl {
     ~Impl() {
         if (memory != nullptr) KINFree(&memory);
         SUNLinSolFree(linear);
-        SUNMatDestroy(matrix);
+        SUNMatDestroy(handle);
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
@@ -111,8 +111,13 @@ struct KinsolSolver::Impl {
 
     int setup() {
         return guarded([&] {
-            tangent = &problem->jacobian();
-            return problem->preconditioner() != nullptr || factorise(*tangent) ? 0 : fatal;
+            matrix = nullptr;
+            if (problem->tangent() != nullptr) {
+                problem->tangent()->linearise();
+                return 0;
+            }
+            matrix = &problem->jacobian();
+            return problem->preconditioner() != nullptr || factorise(*matrix) ? 0 : fatal;
         });
     }
 
@@ -145,7 +150,9 @@ struct KinsolSolver::Impl {
 
     int linear_solve(N_Vector b, N_Vector x) {
         return guarded([&] {
-            if (!(problem->preconditioner() != nullptr ? solve_by_krylov(b, x) : solve_directly(b, x))) return fatal;
+            const bool solved = solve_by_own(b, x) ||
+                                (problem->preconditioner() != nullptr ? solve_by_krylov(b, x) : solve_directly(b, x));
+            if (!solved) return fatal;
             for (Index i = 0; i < size; ++i)
                 if (!std::isfinite(N_VGetArrayPointer(x)[i])) {
                     singular = true;
@@ -153,6 +160,23 @@ struct KinsolSolver::Impl {
                 }
             return 0;
         });
+    }
+
+    /// How far a solution may be off, |b - J x|.
+    [[nodiscard]] double allowed_error(N_Vector b) const {
+        const double norm = std::sqrt(N_VDotProd(b, b)) * residual_scale;
+        const double forcing = std::clamp(forcing_slope * norm, least_forcing, most_forcing);
+        return std::max(forcing * norm, tolerance_share * tolerance) / residual_scale;
+    }
+
+    bool solve_by_own(N_Vector b, N_Vector x) {
+        Tangent* tangent = problem->tangent();
+        if (tangent == nullptr || !tangent->solves() || own_failures >= worth_trying) return false;
+        const int before = tangent->factorisations();
+        const bool solved = tangent->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed_error(b));
+        factorisations += tangent->factorisations() - before;
+        own_failures += solved ? 0 : 1;
+        return solved;
     }
 
     bool solve_directly(N_Vector b, N_Vector x) {
@@ -164,10 +188,15 @@ struct KinsolSolver::Impl {
     /// GMRES with the problem's preconditioner, which is kept while it is good and made anew where it is not; at last a
     /// factorisation of the tangent itself.
     bool solve_by_krylov(N_Vector b, N_Vector x) {
-        if (krylov == nullptr) krylov = std::make_unique<Krylov>(z.get(), context);
-        const double norm = std::sqrt(N_VDotProd(b, b)) * residual_scale;
-        const double forcing = std::clamp(forcing_slope * norm, least_forcing, most_forcing);
-        const double allowed = std::max(forcing * norm, tolerance_share * tolerance) / residual_scale;
+        if (krylov == nullptr) krylov = std::make_unique<Gmres>(size);
+        const auto times = [this](const double* v, double* y) {
+            if (matrix != nullptr)
+                matrix->multiply(v, y);
+            else
+                problem->tangent()->multiply(v, y);
+        };
+        const auto nearly = [this](const double* r, double* y) { problem->preconditioner()->precondition(r, y); };
+        const double allowed = allowed_error(b);
         SparseIndex suspect = -1;
         for (bool fresh = false; !fresh && preconditioner_failures < worth_trying;) {
             fresh = !preconditioner_good;
@@ -181,12 +210,14 @@ struct KinsolSolver::Impl {
                 }
             }
             const ScopedTimer timer(timings, Part::solve);
-            const Krylov::Result result = krylov->solve(*tangent, *problem->preconditioner(), b, x, allowed);
+            const Gmres::Result result =
+                krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
             preconditioner_good = result.converged && result.iterations <= worth_keeping;
             if (result.converged) return true;
             preconditioner_failures += fresh ? 1 : 0;
         }
-        if (factorise(*tangent)) return solve_directly(b, x);
+        if (matrix == nullptr) matrix = &problem->jacobian();
+        if (factorise(*matrix)) return solve_directly(b, x);
         if (suspect >= 0) failing_equation = suspect;
         return false;
     }
@@ -203,7 +234,7 @@ struct KinsolSolver::Impl {
         call(KINSetUserData(memory, this));
         call(KINSetErrHandlerFn(
             memory, [](int, const char*, const char*, char*, void*) {}, nullptr)); // outcomes carry the cause
-        call(KINSetLinearSolver(memory, linear, matrix));
+        call(KINSetLinearSolver(memory, linear, handle));
         call(KINSetJacFn(memory, [](N_Vector, N_Vector, SUNMatrix, void*, N_Vector, N_Vector) { return 0; }));
         call(KINSetMaxSetupCalls(memory, 1));    // full Newton
         call(KINSetMaxNewtonStep(memory, 1e30)); // the default cuts every step from u = 0 to length 1
@@ -216,16 +247,17 @@ struct KinsolSolver::Impl {
     Index size;
     Timings& timings;
     VectorPtr z, u_scale, f_scale;
-    SUNMatrix matrix = nullptr;
+    SUNMatrix handle = nullptr;
     SUNLinearSolver linear = nullptr;
     void* memory = nullptr;
 
     NonlinearProblem* problem = nullptr;
     std::unique_ptr<DirectSolver> direct;
-    std::unique_ptr<Krylov> krylov;
-    const SparseMatrix* tangent = nullptr;
-    bool preconditioner_good = false; ///< it has factors, and they served well last time
-    int preconditioner_failures = 0;  ///< in this solve
+    std::unique_ptr<Gmres> krylov;
+    const SparseMatrix* matrix = nullptr; ///< the tangent's, null where it has not been asked for
+    bool preconditioner_good = false;     ///< it has factors, and they served well last time
+    int preconditioner_failures = 0;      ///< in this solve
+    int own_failures = 0;                 ///< of the problem's own solver, in this solve
     double tolerance = 0;
     bool is_cholesky = false;
     std::uint64_t factored_pattern = 0, factored_revision = 0;
@@ -251,7 +283,7 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     s.residual_scale = options.residual_scale;
     s.tolerance = options.tolerance;
     s.stopped = s.singular = s.not_finite = false;
-    s.preconditioner_failures = 0;
+    s.preconditioner_failures = s.own_failures = 0;
     s.preconditioner_good = false; // no result may depend on what was tried before this call
     s.failing_equation = -1;
     s.error = nullptr;

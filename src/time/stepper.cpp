@@ -161,7 +161,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
     const Constraints constraints(model_.nodes(), stage.constraints);
     const Dynamics* dynamics = stage.dynamics ? &*stage.dynamics : nullptr;
     Equilibrium equilibrium(model_, constraints, dynamics, timings_, options_.threads,
-                            !stage.follower_pressures.empty());
+                            !stage.follower_pressures.empty(), options_.linear_solver);
     solve::KinsolSolver solver(equilibrium.size(), timings_);
     std::vector<Vec3> prescribed_start(model_.X.size());
     for (Index node = 0; node < model_.nodes(); ++node)

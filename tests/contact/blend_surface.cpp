@@ -274,6 +274,34 @@ TEST_P(OnBlend, HasExactVariations) {
     EXPECT_LT(dpressing, tolerance);
 }
 
+TEST_P(OnBlend, GivesTheProductsOfItsVariationsWithoutTheMatrices) {
+    constexpr double round_off = 1e-12; // of a sum over some fifty nodes, of the largest entry
+    shake();
+    for (int i = 0; i < 50; ++i) {
+        const Vec3 s = slave();
+        const FacetHit hit = blend.search.global(s, blend.x);
+        ContactVariation full, products;
+        products.form = VariationForm::products;
+        const ContactPoint point = blend.at(s, hit, &full), same = blend.at(s, hit, &products);
+        ASSERT_TRUE(point.found);
+        ASSERT_EQ(point.gap, same.gap);
+        EXPECT_EQ(full.dg, products.dg);
+        EXPECT_EQ(full.dn, products.dn);
+        Vector dy(full.dg.cols()), weights, pressing;
+        for (Index k = 0; k < dy.size(); ++k) dy(k) = random.uniform();
+        products.along(same, dy, weights, pressing);
+        EXPECT_LT((weights - full.dweights * dy).cwiseAbs().maxCoeff(),
+                  round_off * full.dweights.cwiseAbs().maxCoeff());
+        EXPECT_LT((pressing - full.dpressing * dy).cwiseAbs().maxCoeff(),
+                  round_off * full.dpressing.cwiseAbs().maxCoeff());
+        const Eigen::Matrix3Xd m = Eigen::Matrix3Xd::Random(3, point.weights.size());
+        Matrix sums;
+        products.weights_times(same, m, sums);
+        EXPECT_LT((sums - m * full.dweights).cwiseAbs().maxCoeff(),
+                  round_off * full.dweights.cwiseAbs().maxCoeff() * m.cwiseAbs().rowwise().sum().maxCoeff());
+    }
+}
+
 /// A unit normal force on the slave and p_i on the masters: no resultant and no moment.
 TEST_P(OnBlend, BalancesForceAndMoment) {
     shake();

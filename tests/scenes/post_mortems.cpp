@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
                 0,
                 "stages.drive.displacement",
                 {"stages.drive.displacement={top: {x: 0 m, y: 0 m, z: -0.1 m}}"}},
-        Failure{"given_way", "diverged", "block", 0.075, "stages.press", {"stages.press.pressure.top=1 MPa"}},
+        Failure{"given_way", "diverged", "block", 0.05, "stages.press", {"stages.press.pressure.top=1 MPa"}},
         Failure{"edges_unseen",
                 "unseen_contact",
                 "upper",

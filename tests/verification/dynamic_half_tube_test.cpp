@@ -58,8 +58,9 @@ TEST(DynamicHalfTube, KeepsItsBooksAtTenMetresASecond) {
     for (const auto& step : run.steps) {
         EXPECT_GE(step.ledger.friction, friction) << "friction only dissipates";
         friction = step.ledger.friction;
-        // Coulomb's limit on the sum over nodes
-        EXPECT_LE(step.pairs[0].friction, 0.1 * step.pairs[0].normal * (1 + 1e-9));
+        // Coulomb's limit on the sum over nodes, each to the solver's tolerance of the step's reference force
+        const double solver = 1e-9 * static_cast<double>(step.state.contact[0].lambda.size());
+        EXPECT_LE(step.pairs[0].friction, (0.1 + solver) * step.pairs[0].normal);
     }
     EXPECT_GT(friction, 0.9 * 0.1 * 15e6 * 2) << "some 2 to 3 m of sliding under 17 MN";
 }

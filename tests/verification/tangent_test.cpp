@@ -107,6 +107,26 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     for (Index i = 0; i < J.rows(); ++i)
         for (auto k = J.row_start[i]; k < J.row_start[i + 1]; ++k) dense(i, J.column[k]) += J.value[k];
 
+    // what the tangent does without its matrix is what the matrix does: products, and solutions as far as asked
+    solve::Tangent* tangent = equilibrium.tangent();
+    ASSERT_NE(tangent, nullptr);
+    tangent->linearise();
+    Vector b(z.size()), x(z.size()), y(z.size());
+    for (Index i = 0; i < b.size(); ++i) {
+        b(i) = force * uniform(random);
+        x(i) = uniform(random) * (i < constraints.equations() ? 1 : force);
+    }
+    tangent->multiply(x.data(), y.data());
+    constexpr double round_off = 1e-13;
+    EXPECT_LT((dense * x - y).norm(), round_off * (dense.cwiseAbs() * x.cwiseAbs()).norm());
+    EXPECT_EQ(tangent->solves(), !plan.model.finite_strain && plan.stages[1].follower_pressures.empty());
+    if (tangent->solves()) {
+        const double allowed = 1e-6 * b.norm();
+        ASSERT_TRUE(tangent->solve(b.data(), x.data(), allowed));
+        constexpr double condensed = 1e-9; // round-off of inverses, far below what is asked for
+        EXPECT_LT((dense * x - b).norm(), allowed + condensed * b.norm());
+    }
+
     double worst = 0;
     int closed = 0;
     for (Index j = 0; j < plan.model.pairs[0]->size(); ++j) closed += contact::is_closed(equilibrium.statuses()[0][j]);

@@ -3,9 +3,15 @@
 
 #include "osculate/contact/surface_patch.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace osculate::contact {
+
+/// What a surface keeps of an evaluation for MasterSurface::vary().
+struct PointTrace {
+    virtual ~PointTrace() = default;
+};
 
 /// Gap, normal and weights of one slave point, all from the same evaluation.
 ///     gap > 0 open, gap < 0 interpenetration; normal n points out of the master.
@@ -21,15 +27,43 @@ struct ContactPoint {
     std::vector<Index> nodes; ///< (n) surface vertices that take part
     Vector weights;           ///< (n) Phi_i, the share of each node in the master's motion and in tangential forces
     MatrixX3 pressing;        ///< (n x 3) p_i = dg/dx_i / |dg/ds|, what a unit normal force puts on each node
+    std::shared_ptr<const PointTrace> trace; ///< null where the surface keeps nothing
+};
+
+/// What one patch of a blend puts into second variations of the gap and first ones of the weights, over
+///     z = (ds, sum Phi_i dx_i, sum Phi_i,a dx_i (2), sum Phi_i,ab dx_i (3)),   21 components,
+/// through which alone the motion of its nodes enters: their number costs no more than these sums.
+struct PatchVariation {
+    static constexpr int size = 21, derivatives = 6;
+    using Row = Eigen::Matrix<double, 1, size>;
+
+    std::vector<Index> place;                               ///< of the patch's nodes among the point's
+    Eigen::Matrix<double, derivatives, Eigen::Dynamic> phi; ///< Phi_i; Phi_i,1 Phi_i,2; Phi_i,11 Phi_i,12 Phi_i,22
+    Eigen::Matrix<double, size, size> second;               ///< of psi g, less what the sum over all patches takes off
+    Row first, dpsi;                                        ///< share in the gap's first variation; of the bump
+    Eigen::Matrix<double, 2, size> du;                      ///< psi times the variation of the foot
+};
+
+enum class VariationForm {
+    gap,      ///< gap and normal alone
+    products, ///< of the rest only what along() and weights_times() need
+    matrices  ///< all of it
 };
 
 /// First variations of a ContactPoint with respect to y = (s, x_1 .. x_n), the slave point and the n master nodes.
 struct ContactVariation {
-    bool of_forces = true; ///< asked for; false: dweights and dpressing are left alone where they cost something
-    Eigen::Matrix<double, 1, Eigen::Dynamic> dg; ///< (3+3n) of the gap
-    Eigen::Matrix<double, 3, Eigen::Dynamic> dn; ///< (3 x 3+3n) of the normal
-    Matrix dweights;                             ///< (n x 3+3n)
-    Matrix dpressing;                            ///< (3n x 3+3n), three rows a node
+    VariationForm form = VariationForm::matrices; ///< asked for; a surface may give more
+    Eigen::Matrix<double, 1, Eigen::Dynamic> dg;  ///< (3+3n) of the gap
+    Eigen::Matrix<double, 3, Eigen::Dynamic> dn;  ///< (3 x 3+3n) of the normal
+    Matrix dweights;                              ///< (n x 3+3n)
+    Matrix dpressing;                             ///< (3n x 3+3n), three rows a node
+    std::vector<PatchVariation> patches;          ///< in place of the last two, where it is not empty
+    double bumps = 1, slope = 1;                  ///< sum of the bumps, |dg/ds|; with patches
+
+    /// Change of the weights (n) and of the pressing (3n, three a node) with y changing by dy (3+3n).
+    void along(const ContactPoint& point, const Vector& dy, Vector& weights, Vector& pressing) const;
+    /// sum_i m_i dPhi_i, 3 x 3+3n, m of 3 x c for the first c nodes, the others zero.
+    void weights_times(const ContactPoint& point, const Eigen::Ref<const Eigen::Matrix3Xd>& m, Matrix& result) const;
 };
 
 } // namespace osculate::contact

@@ -39,6 +39,13 @@ public:
     /// no unique foot.
     virtual void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
                           ContactVariation* variation = nullptr) const = 0;
+    /// First variations at a point that evaluate() gave with the same s, hit and x, and no prepare() since.
+    virtual void vary(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, const ContactPoint& point,
+                      ContactVariation& variation) const {
+        (void)point;
+        ContactPoint again;
+        evaluate(s, hit, x, again, &variation);
+    }
     /// Whether a slave point between two facets that share a vertex may see another gap above one than above the other. Points
     /// that go to and fro between such facets are latched to one of them.
     [[nodiscard]] virtual bool tells_apart(Index from, Index to) const {

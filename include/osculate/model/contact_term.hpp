@@ -126,15 +126,19 @@ public:
     /// How many of point_nodes(j) carry force: the first ones. The others only bear on the gap.
     [[nodiscard]] Index carriers(Index j) const;
     /// Its derivatives over the m masters that carry force: (3m x 3) by lambda, (3m x 3+3n) by y.
-    void master_force_variation(Index j, const Vec3& lambda, const contact::ContactVariation& variation,
-                                MatrixX3& by_lambda, Matrix& by_y) const;
+    [[nodiscard]] contact::MatrixX3 master_force_by_lambda(Index j) const;
+    void master_force_by_y(Index j, const Vec3& lambda, const contact::ContactVariation& variation, Matrix& by_y) const;
+    /// Its change (3m) with the nodes of y, mirror images folded, moving by dy (3+3n), which is used up.
+    void master_force_along(Index j, const Vec3& lambda, const contact::ContactVariation& variation, Vector& dy,
+                            Vector& df) const;
 
     /// How the master moves below slave j: with mortar by its weights, else as the closest point of the closest facet.
     /// Shape function times image for each node.
     void follow_master(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const;
     /// Turns derivatives by the vertices of the patch into derivatives by their nodes: A (3 x 3+3n), E (3m x 3) and G
-    /// (3m x 3+3n) as master_force_variation() gives them. Nothing changes but for mirror images.
-    void fold(Index j, Matrix& A, MatrixX3& E, Matrix& G) const;
+    /// (3m x 3+3n). Nothing changes but for mirror images.
+    void fold(Index j, Matrix& A, contact::MatrixX3& E) const;
+    void fold(Index j, Matrix& G) const;
 
     [[nodiscard]] const std::vector<Index>& facets() const { return facet_; }
     /// Facet changes at the last evaluation.
@@ -146,6 +150,9 @@ private:
     /// Positions of the slave nodes.
     [[nodiscard]] std::vector<Vec3> slave_positions(const std::vector<Vec3>& x) const;
     void evaluate_nodes(const std::vector<Vec3>& x, int threads);
+    /// Change of the forces on the master nodes, (3m), from those of normal, weights (m) and pressing (3m).
+    void turn_forces(Index j, const Vec3& lambda, const Vec3& dn, const double* dweights, const double* dpressing,
+                     double* df) const;
 
     std::string name_;
     SlaveNodes slaves_;

@@ -24,8 +24,13 @@ struct Coupling {
 /// Where a displacement component is held it has no equilibrium row, and the contact row stays with the contact force.
 class SystemMatrix {
 public:
+    enum class Build { at_once, when_asked };
     /// Without couplings the matrix is the symmetric stiffness of the free components.
-    SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings);
+    /// @param when  what is said of rows and unknowns needs no values; whoever may never need them asks by build()
+    SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings,
+                 Build when = Build::at_once);
+    /// Makes pattern and values, if that has not been done.
+    void build();
 
     [[nodiscard]] Index size() const { return size_; }
     [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }

@@ -290,12 +290,15 @@ struct Stage {
     bool operator==(const Stage&) const = default;
 };
 
+enum class LinearSolver { automatic, condensed, iterative, direct };
+
 struct Solver {
     double tolerance = 1e-9;     ///< largest residual over the step's reference force
     int max_iterations = 30;     ///< Newton iterations of one solve
     double smallest_step = 1e-3; ///< of the stage's step: a smaller one is given up
     bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
-    bool stabilisation = true;   ///< springs under bodies that nothing holds yet, gone before a step is accepted
+    LinearSolver linear_solver = LinearSolver::automatic;
+    bool stabilisation = true; ///< springs under bodies that nothing holds yet, gone before a step is accepted
     bool operator==(const Solver&) const = default;
 };
 

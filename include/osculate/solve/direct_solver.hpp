@@ -4,6 +4,7 @@
 #include "osculate/solve/sparse_matrix.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace osculate {
 class Timings;
@@ -28,8 +29,18 @@ public:
     [[nodiscard]] virtual SparseIndex failing_equation() const { return -1; }
 };
 
+/// Factors that hold the inverse of the matrix on some of its unknowns, too.
+class CondensingSolver : public DirectSolver {
+public:
+    /// (A^-1)_kk over the kept unknowns k, in their order; both triangles. @pre factorise() returned ok
+    [[nodiscard]] virtual Matrix compliance() = 0;
+};
+
 /// CHOLMOD supernodal LL^T with METIS ordering, for symmetric positive definite matrices.
 [[nodiscard]] std::unique_ptr<DirectSolver> make_cholesky();
+/// The same with the unknowns `kept` (equations, each once) eliminated last: their Schur complement stands in the last
+/// columns of the factor, and its inverse costs no further solves.
+[[nodiscard]] std::unique_ptr<CondensingSolver> make_condensing_cholesky(std::vector<SparseIndex> kept);
 /// UMFPACK LU, symmetric strategy with METIS ordering, for everything else.
 [[nodiscard]] std::unique_ptr<DirectSolver> make_lu();
 

@@ -25,6 +25,25 @@ public:
     [[nodiscard]] virtual SparseIndex failing_equation() const = 0;
 };
 
+/// The tangent J by what it does, without having it as a matrix.
+class Tangent {
+public:
+    virtual ~Tangent() = default;
+    /// Takes J at the z of the last residual.
+    virtual void linearise() = 0;
+    /// y = J x
+    virtual void multiply(const double* x, double* y) = 0;
+    /// Whether it knows a way of its own to solve with J.
+    [[nodiscard]] virtual bool solves() const { return false; }
+    /// x with |b - J x| <= allowed. False where it cannot: it is then solved as any other. @pre solves()
+    [[nodiscard]] virtual bool solve(const double* b, double* x, double allowed) {
+        (void)b, (void)x, (void)allowed;
+        return false;
+    }
+    /// Factorisations made in solve() so far.
+    [[nodiscard]] virtual int factorisations() const { return 0; }
+};
+
 /// F(z) = 0 with n unknowns, as KINSOL sees it.
 class NonlinearProblem {
 public:
@@ -41,6 +60,8 @@ public:
     [[nodiscard]] virtual const SparseMatrix& jacobian() = 0;
     /// How to invert about J, where the problem knows better than to factorise it.
     [[nodiscard]] virtual Preconditioner* preconditioner() { return nullptr; }
+    /// J without its matrix, where the problem has that: jacobian() is then asked for only to be factorised.
+    [[nodiscard]] virtual Tangent* tangent() { return nullptr; }
 };
 
 struct KinsolOptions {

@@ -55,6 +55,7 @@ public:
     [[nodiscard]] const model::BlockMatrix& tangent() const {
         return dynamics_ || varies() || stabilised() ? tangent_ : model_.K;
     }
+    [[nodiscard]] bool dynamic() const { return dynamics_ != nullptr; }
     [[nodiscard]] bool symmetric() const { return !follower_pressure_ && (dynamics_ == nullptr || !nonlinear()); }
 
     /// Velocities and accelerations at the end of the step from the displacements there; empty in statics.

@@ -6,6 +6,7 @@
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 #include "osculate/time/body_forces.hpp"
+#include "osculate/time/condensed_tangent.hpp"
 #include "osculate/time/contact_preconditioner.hpp"
 #include "osculate/time/stage.hpp"
 
@@ -35,16 +36,24 @@ enum class StatusRule {
     frozen   ///< as given; the problem is smooth
 };
 
+/// How Newton's linear systems are solved.
+enum class LinearSolver {
+    automatic, ///< condensed where that costs less, else iterative
+    condensed, ///< CondensedTangent, where bodies are linear and nothing follows; else iterative
+    iterative, ///< GMRES with the whole tangent and ContactPreconditioner
+    direct     ///< the tangent factorised in every iteration
+};
+
 /// F(z) with z = (free displacements, contact forces): equilibrium of every free component and the contact law of every
 /// slave node, in the rows SystemMatrix assigns. Contact points are located anew at every z.
 ///     equilibrium   f(u) - f_ext - f_contact = 0,   f of BodyForces, contact forces as at the end of the step:
 ///                   f_contact = lambda on the slave, on its masters as ContactPoint says
 ///     contact law   see contact::Coulomb
-class Equilibrium final : public solve::NonlinearProblem, private solve::Preconditioner {
+class Equilibrium final : public solve::NonlinearProblem, private solve::Preconditioner, private solve::Tangent {
 public:
     /// @param dynamics  null in statics; must outlive this object
     Equilibrium(model::Model& model, const model::Constraints& constraints, const Dynamics* dynamics, Timings& timings,
-                int threads, bool follower_pressure = false);
+                int threads, bool follower_pressure = false, LinearSolver linear = LinearSolver::automatic);
 
     /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
     /// their weighted mean over the step.
@@ -69,6 +78,12 @@ public:
     [[nodiscard]] solve::FactorStatus factorise() override;
     void precondition(const double* r, double* z) override;
     [[nodiscard]] solve::SparseIndex failing_equation() const override { return preconditioner_->failing_equation(); }
+    [[nodiscard]] solve::Tangent* tangent() override { return products_ ? this : nullptr; }
+    void linearise() override;
+    void multiply(const double* x, double* y) override;
+    [[nodiscard]] bool solves() const override { return condensed_ && !bodies_.stabilised(); }
+    [[nodiscard]] bool solve(const double* b, double* x, double allowed) override;
+    [[nodiscard]] int factorisations() const override { return condensed_ ? condensed_->factorisations() : 0; }
 
     /// z from displacements and contact forces, and the state (time apart) from z.
     [[nodiscard]] Vector unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const;
@@ -105,15 +120,7 @@ public:
     [[nodiscard]] const model::Constraints& constraints() const { return constraints_; }
 
 private:
-    /// Derivatives of one slave node's contact law and of the forces on its masters, as SystemMatrix takes them.
-    struct ContactTangent {
-        bool reaches = false; ///< false: only D means anything
-        Mat3 D = Mat3::Zero();
-        contact::MatrixX3 E;
-        Matrix A, G, dd;
-        contact::ContactVariation variation;
-    };
-    void linearise(std::size_t p, Index j, ContactTangent& tangent) const;
+    void linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const;
     [[nodiscard]] bool evaluate_bodies();
     void unpack(const double* z);
     void fill(double* F);
@@ -121,6 +128,8 @@ private:
     [[nodiscard]] bool cycles(double residual);
     /// Whether slave j of pair p has a contact partner and bears on it.
     [[nodiscard]] bool reaches(std::size_t p, Index j) const;
+    [[nodiscard]] SoftContact soften(std::size_t p, Index j) const;
+    void linearise_bodies();
     void cover_patches();
     [[nodiscard]] Mat3 symmetry_directions(Index node) const;
 
@@ -133,14 +142,19 @@ private:
     std::vector<Index> first_coupling_; ///< (pairs + 1)
     std::unique_ptr<model::SystemMatrix> matrix_;
     std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none where the tangent is symmetric
-    std::vector<model::Coupling> kept_couplings_;           ///< of matrix_ at the last commit
-    long kept_patterns_ = 0;                                ///< patterns_built_ then
+    std::unique_ptr<CondensedTangent> condensed_;           ///< where bodies are linear
+    bool products_ = false;                                 ///< the tangent goes by what it does
+    std::vector<BearingContact> bearing_;
+    std::vector<Mat3> open_laws_;                 ///< (couplings) D of nodes that bear on nothing
+    std::vector<model::Coupling> kept_couplings_; ///< of matrix_ at the last commit
+    long kept_patterns_ = 0;                      ///< patterns_built_ then
     StepLoad load_;
     double reference_force_ = 1;
 
     std::vector<Vec3> u_, x_, internal_, unbalanced_;
-    std::vector<Vec3> linear_about_; ///< of the next residual; empty: exact
-    bool linearised_ = false;        ///< the last residual was, and the tangent belongs to it
+    std::vector<Vec3> product_u_, product_f_; ///< scratch of multiply()
+    std::vector<Vec3> linear_about_;          ///< of the next residual; empty: exact
+    bool linearised_ = false;                 ///< the last residual was, and the tangent belongs to it
     std::vector<std::vector<Vec3>> lambda_;
     std::vector<std::vector<contact::Status>> statuses_;
     StatusRule rule_ = StatusRule::natural;
@@ -154,8 +168,8 @@ private:
     int idle_ = 0;             ///< iterates since
     Vector last_z_, before_z_; ///< of the last two residuals
     Index worst_node_ = -1;
-    model::WorstElement worst_element_; ///< at the last residual
-    bool stale_preconditioner_ = false; ///< the tangent of the bodies has moved on
+    model::WorstElement worst_element_;                        ///< at the last residual
+    bool stale_preconditioner_ = false, stale_matrix_ = false; ///< the tangent of the bodies has moved on
     long patterns_built_ = 0;
 };
 

@@ -21,6 +21,7 @@ struct StepperOptions {
     bool predictor = true;
     bool stabilisation = true; ///< see StabilisationOptions
     int threads = 1;
+    LinearSolver linear_solver = LinearSolver::automatic;
 };
 
 /// An accepted step, valid during StepObserver::accepted only.

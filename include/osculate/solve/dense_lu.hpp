@@ -1,0 +1,24 @@
+#pragma once
+/// LU factorisation of a dense matrix.
+
+#include "osculate/core/types.hpp"
+
+#include <vector>
+
+namespace osculate::solve {
+
+/// LAPACK's, with partial pivoting.
+class DenseLu {
+public:
+    /// False where A (n x n) is singular to working precision.
+    [[nodiscard]] bool factorise(Matrix A);
+    /// b (n) becomes A^-1 b. @pre factorise() returned true
+    void solve(double* b) const;
+    [[nodiscard]] Index size() const { return static_cast<Index>(LU_.rows()); }
+
+private:
+    Matrix LU_;
+    std::vector<int> pivot_;
+};
+
+} // namespace osculate::solve

@@ -1,0 +1,360 @@
+#include "osculate/time/condensed_tangent.hpp"
+
+#include "osculate/model/penalty_stiffness.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace osculate::time {
+
+namespace {
+
+/// GMRES iterations beyond which T is worth making anew.
+constexpr int worth_keeping = 10;
+
+/// Whether supports leave a body a rigid motion.
+bool loose(const model::Body& body, const std::vector<Vec3>& X, const model::Constraints& constraints) {
+    using Vec6 = Eigen::Matrix<double, 6, 1>;
+    constexpr double nothing = 1e-8; // of the stiffest motion, where every support is as stiff as any other
+    Vec3 centre = Vec3::Zero();
+    for (Index i = 0; i < body.nodes(); ++i) centre += X[body.first_node + i] / static_cast<double>(body.nodes());
+    double size = 0;
+    for (Index i = 0; i < body.nodes(); ++i) size = std::max(size, (X[body.first_node + i] - centre).norm());
+    Eigen::Matrix<double, 6, 6> S = Eigen::Matrix<double, 6, 6>::Zero();
+    for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (constraints.equation(node, k) == model::Constraints::held) {
+                const Vec3 d = constraints.frame(node).col(k);
+                Vec6 motion;
+                motion << d, (X[node] - centre).cross(d) / size;
+                S += motion * motion.transpose();
+            }
+    const Vec6 stiffness = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(S).eigenvalues();
+    return !(stiffness(0) > nothing * stiffness(5));
+}
+
+/// Three of the nodes, as far from one line as can be had.
+std::vector<Index> three_apart(const std::vector<Index>& nodes, const std::vector<Vec3>& X) {
+    const auto farthest = [&](auto&& distance) {
+        return *std::max_element(nodes.begin(), nodes.end(),
+                                 [&](Index a, Index b) { return distance(X[a]) < distance(X[b]); });
+    };
+    const Vec3 first = X[nodes.front()];
+    const Index a = farthest([&](const Vec3& x) { return (x - first).norm(); });
+    const Index b = farthest([&](const Vec3& x) { return (x - X[a]).norm(); });
+    const Vec3 along = (X[b] - X[a]).normalized();
+    const Index c = farthest([&](const Vec3& x) { return (x - X[a]).cross(along).norm(); });
+    std::vector<Index> result{a, b, c};
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+}
+
+} // namespace
+
+bool CondensedTangent::Cost::pays() const {
+    constexpr double as_fast = 6; // dense operations are some three times quicker, and a few factorisations usual
+    constexpr double most = 4e9;  // bytes
+    return condensed <= as_fast * factorising && bytes <= most;
+}
+
+CondensedTangent::Cost CondensedTangent::cost(const model::Model& model) {
+    constexpr double nested_dissection = 14; // operations of METIS and CHOLMOD over the square of a body's unknowns
+    constexpr double laws = 2;               // T's of a solve
+    std::vector<char> touched(model.X.size(), 0);
+    double forces = 0;
+    for (const auto& pair : model.pairs) {
+        for (const Index node : pair->slaves().node) touched[node] = 1;
+        for (const Index node : pair->master_nodes()) touched[node] = 1;
+        forces += 3.0 * static_cast<double>(pair->size());
+    }
+    Cost cost;
+    for (const model::Body& body : model.bodies) {
+        const double all = 3.0 * static_cast<double>(body.nodes());
+        const double kept = 3.0 * static_cast<double>(std::count(touched.begin() + body.first_node,
+                                                                 touched.begin() + body.first_node + body.nodes(), 1));
+        cost.factorising += nested_dissection * all * all;
+        cost.condensed += kept * kept * kept;
+        cost.bytes += sizeof(double) * kept * kept;
+    }
+    cost.condensed += laws * 2.0 / 3.0 * forces * forces * forces;
+    cost.bytes += sizeof(double) * forces * forces;
+    return cost;
+}
+
+CondensedTangent::CondensedTangent(const model::Model& model, const model::Constraints& constraints,
+                                   const model::BlockMatrix& K, const std::vector<Index>& slaves, bool inertia)
+    : model_(model), constraints_(constraints), K_(&K), slaves_(slaves), place_(model.X.size(), -1) {
+    for (const auto& pair : model.pairs) {
+        for (const Index node : pair->slaves().node) place_[node] = 0;
+        for (const Index node : pair->master_nodes()) place_[node] = 0;
+    }
+    for (Index node = 0; node < model.nodes(); ++node)
+        if (place_[node] == 0) {
+            place_[node] = static_cast<Index>(nodes_.size());
+            nodes_.push_back(node);
+        }
+    reduced_.assign(3 * nodes_.size(), -1);
+    first_.push_back(0);
+    for (const model::Body& body : model.bodies) {
+        std::vector<Index> kept, sprung;
+        for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
+            if (place_[node] >= 0) kept.push_back(node);
+        if (!inertia && !kept.empty() && loose(body, model.X, constraints)) sprung = three_apart(kept, model.X);
+        for (const Index node : sprung) sprung_.push_back(place_[node]);
+        bodies_.emplace_back(constraints, body.first_node, body.nodes(), kept, std::move(sprung));
+        Index next = first_.back();
+        for (const Index node : kept)
+            for (int k = 0; k < 3; ++k)
+                if (constraints.equation(node, k) != model::Constraints::held)
+                    reduced_[3 * static_cast<std::size_t>(place_[node]) + k] = next++;
+        first_.push_back(next);
+    }
+}
+
+void CondensedTangent::factorise_bodies() {
+    factorised_ = true;
+    usable_ = true;
+    ++factorisations_;
+    model::PenaltyStiffness all(constraints_, *K_);
+    all.set_springs({});
+    spring_ = 0;
+    for (const Index c : sprung_) {
+        const Index node = nodes_[c];
+        spring_ = std::max(spring_, K_->block(K_->slot(node, node)).diagonal().maxCoeff());
+    }
+    for (model::BodyCompliance& body : bodies_)
+        usable_ = body.factorise(all.matrix(), spring_) == solve::FactorStatus::ok && usable_;
+}
+
+void CondensedTangent::set(const std::vector<BearingContact>& contacts) {
+    contacts_ = &contacts;
+    const auto same = [](Index coupling, const BearingContact& c) { return coupling == c.law.coupling; };
+    if (laws_ && !std::ranges::equal(laws_->couplings, contacts, same)) laws_ = nullptr;
+}
+
+void CondensedTangent::spread(const double* reduced, Nodal& nodal) const {
+    nodal.resize(nodes_.size());
+    for (std::size_t c = 0; c < nodes_.size(); ++c) {
+        Vec3 local;
+        for (int k = 0; k < 3; ++k) {
+            const Index r = reduced_[3 * c + static_cast<std::size_t>(k)];
+            local(k) = r < 0 ? 0 : reduced[r];
+        }
+        nodal[c] = constraints_.to_global(nodes_[c], local);
+    }
+}
+
+void CondensedTangent::collect(const Nodal& nodal, double* reduced) const {
+    for (std::size_t c = 0; c < nodes_.size(); ++c) {
+        const Vec3 local = constraints_.to_local(nodes_[c], nodal[c]);
+        for (int k = 0; k < 3; ++k)
+            if (const Index r = reduced_[3 * c + static_cast<std::size_t>(k)]; r >= 0) reduced[r] += local(k);
+    }
+}
+
+void CondensedTangent::add_forces(const Vector& lambda, double* reduced) const {
+    Nodal nodal(nodes_.size(), Vec3::Zero());
+    for (std::size_t j = 0; j < laws_->terms.size(); ++j)
+        for (const Term& t : laws_->terms[j])
+            nodal[t.node] += t.by.transpose() * lambda.segment<3>(3 * static_cast<Index>(j));
+    collect(nodal, reduced);
+}
+
+void CondensedTangent::relative(const Laws& laws, const double* reduced, Vector& w) const {
+    Nodal nodal;
+    spread(reduced, nodal);
+    w.setZero(3 * static_cast<Index>(laws.terms.size()));
+    for (std::size_t j = 0; j < laws.terms.size(); ++j)
+        for (const Term& t : laws.terms[j]) w.segment<3>(3 * static_cast<Index>(j)) += t.by * nodal[t.node];
+}
+
+void CondensedTangent::comply(const double* f, double* u) const {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const Index n = first_[b + 1] - first_[b];
+        if (n == 0) continue;
+        Eigen::Map<Vector>(u + first_[b], n).noalias() =
+            bodies_[b].W().selfadjointView<Eigen::Lower>() * Eigen::Map<const Vector>(f + first_[b], n);
+    }
+}
+
+std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws() const {
+    auto laws = std::make_shared<Laws>();
+    auto& [couplings, terms, B, D, lu, dt, usable] = *laws;
+    dt = dt_;
+    for (const BearingContact& c : *contacts_) {
+        couplings.push_back(c.law.coupling);
+        auto& list = terms.emplace_back();
+        list.push_back({place_[c.law.where.slave], Mat3::Identity()});
+        for (std::size_t i = 0; i < c.law.where.masters.size(); ++i)
+            list.push_back({place_[c.law.where.masters[i]], -c.law.where.follow[i]});
+        B.push_back(c.law.B);
+        D.push_back(c.law.D);
+    }
+    for (const Index node : sprung_) { // mu = -spring u
+        terms.push_back({{node, -Mat3::Identity()}});
+        B.emplace_back(-spring_ * Mat3::Identity());
+        D.emplace_back(Mat3::Identity());
+    }
+    // columns of F = C W C^T
+    const auto count = static_cast<Index>(terms.size()), reduced = first_.back();
+    Matrix T(3 * count, 3 * count);
+    Vector f(reduced), u = Vector::Zero(reduced), w;
+    std::vector<std::size_t> body_of(nodes_.size(), 0);
+    for (std::size_t b = 0, c = 0; b < model_.bodies.size(); ++b) {
+        const model::Body& body = model_.bodies[b];
+        for (; c < nodes_.size() && nodes_[c] < body.first_node + body.nodes(); ++c) body_of[c] = b;
+    }
+    for (Index j = 0; j < count; ++j)
+        for (int k = 0; k < 3; ++k) {
+            u.setZero();
+            for (const Term& t : terms[j]) {
+                const Vec3 local = constraints_.to_local(nodes_[t.node], Vec3(t.by.row(k).transpose()));
+                const std::size_t b = body_of[t.node];
+                for (int c = 0; c < 3; ++c)
+                    if (const Index r = reduced_[3 * static_cast<std::size_t>(t.node) + static_cast<std::size_t>(c)];
+                        r >= 0 && local(c) != 0)
+                        u.segment(first_[b], first_[b + 1] - first_[b]) += local(c) * bodies_[b].W().col(r - first_[b]);
+            }
+            relative(*laws, u.data(), w);
+            for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, 3 * j + k) = B[i] * w.segment<3>(3 * i);
+        }
+    for (Index j = 0; j < count; ++j) T.block<3, 3>(3 * j, 3 * j) += D[j];
+    usable = lu.factorise(std::move(T));
+    return laws;
+}
+
+void CondensedTangent::nearly(const double* y, Vector& lambda, Vector& u, Vector& f) const {
+    const Index n = first_.back();
+    u.resize(n);
+    comply(y, u.data());
+    relative(*laws_, u.data(), lambda);
+    for (std::size_t j = 0; j < laws_->terms.size(); ++j) {
+        const Index at = 3 * static_cast<Index>(j);
+        lambda.segment<3>(at) = (-laws_->B[j] * lambda.segment<3>(at)).eval();
+    }
+    lambda.head(forces()) += Eigen::Map<const Vector>(y + n, forces());
+    laws_->T.solve(lambda.data());
+    f = Eigen::Map<const Vector>(y, n);
+    add_forces(lambda, f.data());
+    comply(f.data(), u.data());
+}
+
+void CondensedTangent::laws(const Vector& lambda, const Vector& u, double* z) const {
+    const Index n = first_.back();
+    Vector bearing = lambda;
+    bearing.tail(lambda.size() - forces()).setZero(); // the springs cancel
+    std::fill_n(z, n, 0.0);
+    add_forces(bearing, z);
+    Nodal at, by(nodes_.size(), Vec3::Zero());
+    spread(u.data(), at);
+    const auto moved = [&](Index node) { return at[place_[node]]; };
+    const auto add = [&](Index node, const Vec3& force) { by[place_[node]] += force; };
+    for (std::size_t j = 0; j < contacts_->size(); ++j) {
+        const Index row = 3 * static_cast<Index>(j);
+        Eigen::Map<Vec3>(z + n + row) = (*contacts_)[j].multiply(moved, lambda.segment<3>(row), add);
+    }
+    collect(by, z);
+}
+
+bool CondensedTangent::solve(const model::SystemMatrix& rows, std::span<const Mat3> D, const double* b, double* x,
+                             double allowed, Timings& timings) {
+    {
+        const ScopedTimer timer(timings, Part::factor);
+        if (!factorised_) factorise_bodies();
+        if (!usable_) return false;
+        if (!laws_) {
+            laws_ = factorise_laws();
+            ++factorisations_;
+        }
+        if (!laws_->usable) {
+            laws_ = nullptr;
+            return false;
+        }
+    }
+    const ScopedTimer timer(timings, Part::solve);
+    const Index equations = constraints_.equations(), n = first_.back();
+    // equilibrium, and the forces of slave nodes that bear on nothing
+    Vector r(equations);
+    for (Index node = 0; node < constraints_.nodes(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(node, k); e != model::Constraints::held)
+                r(e) = b[rows.equilibrium_row(node, k)];
+    const auto law = [&](Index coupling) {
+        Vec3 local;
+        for (int k = 0; k < 3; ++k) local(k) = b[rows.contact_row(coupling, k)];
+        return constraints_.to_global(slaves_[coupling], local);
+    };
+    std::vector<Vec3> lambda(slaves_.size());
+    std::vector<char> bears(slaves_.size(), 0);
+    for (const BearingContact& c : *contacts_) bears[c.law.coupling] = 1;
+    for (std::size_t j = 0; j < slaves_.size(); ++j) {
+        if (bears[j] != 0) continue;
+        lambda[j] = D[j].inverse() * law(static_cast<Index>(j));
+        const Vec3 local = constraints_.to_local(slaves_[j], lambda[j]);
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(slaves_[j], k); e != model::Constraints::held) r(e) += local(k);
+    }
+    Vector v(equations);
+    for (const model::BodyCompliance& body : bodies_) body.solve(r.data(), v.data());
+
+    // x0 = P^-1 b: within the bodies it is exact
+    const Index size = n + forces();
+    Vector force, u(n), f = Vector::Zero(n), more(n), rest(size), y(size);
+    for (std::size_t body = 0; body < bodies_.size(); ++body)
+        for (std::size_t i = 0; i < bodies_[body].equations().size(); ++i)
+            u(first_[body] + static_cast<Index>(i)) = v(bodies_[body].equations()[i]);
+    relative(*laws_, u.data(), force);
+    for (std::size_t j = 0; j < laws_->terms.size(); ++j) {
+        const Index at = 3 * static_cast<Index>(j);
+        force.segment<3>(at) = (-laws_->B[j] * force.segment<3>(at)).eval();
+        if (j < contacts_->size()) force.segment<3>(at) += law((*contacts_)[j].law.coupling);
+    }
+    laws_->T.solve(force.data());
+    add_forces(force, f.data());
+    comply(f.data(), more.data());
+    u += more;
+
+    // J x' = b - J x0 with x' = P^-1 y
+    laws(force, u, rest.data());
+    rest = -rest;
+    for (std::size_t j = 0; j < contacts_->size(); ++j)
+        rest.segment<3>(n + 3 * static_cast<Index>(j)) += law((*contacts_)[j].law.coupling);
+    bool worn = false;
+    if (rest.norm() > allowed) {
+        Vector lambda_y, u_y, f_y;
+        if (size != gmres_size_) gmres_ = std::make_unique<solve::Gmres>(size);
+        gmres_size_ = size;
+        const auto J = [&](const double* from, double* to) {
+            nearly(from, lambda_y, u_y, f_y);
+            laws(lambda_y, u_y, to);
+            Eigen::Map<Vector>(to, n) += Eigen::Map<const Vector>(from, n);
+        };
+        const auto result = gmres_->solve(J, {}, rest.data(), y.data(), allowed);
+        worn = !result.converged || result.iterations > worth_keeping;
+        if (!result.converged) {
+            laws_ = nullptr;
+            return false;
+        }
+        nearly(y.data(), lambda_y, u_y, f_y);
+        force += lambda_y;
+        f += f_y;
+    }
+
+    for (std::size_t body = 0; body < bodies_.size(); ++body)
+        for (std::size_t i = 0; i < bodies_[body].equations().size(); ++i)
+            r(bodies_[body].equations()[i]) += f(first_[body] + static_cast<Index>(i));
+    for (const model::BodyCompliance& body : bodies_) body.solve(r.data(), x);
+    for (std::size_t j = 0; j < contacts_->size(); ++j)
+        lambda[(*contacts_)[j].law.coupling] = force.segment<3>(3 * static_cast<Index>(j));
+    for (std::size_t j = 0; j < slaves_.size(); ++j) {
+        const Vec3 local = constraints_.to_local(slaves_[j], lambda[j]);
+        for (int k = 0; k < 3; ++k) x[rows.multiplier(static_cast<Index>(j)) + k] = local(k);
+    }
+    if (worn) laws_ = nullptr;
+    return true;
+}
+
+} // namespace osculate::time

@@ -1,0 +1,128 @@
+/// Inverses on some of the unknowns, dense factors, GMRES on its own.
+
+#include "osculate/solve/dense_lu.hpp"
+#include "osculate/solve/direct_solver.hpp"
+#include "osculate/solve/gmres.hpp"
+#include "systems.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numeric>
+
+namespace osculate::solve {
+namespace {
+
+using namespace testing;
+using osculate::testing::Random;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+Matrix dense(const SparseMatrix& S) {
+    Matrix A = Matrix::Zero(S.rows(), S.rows());
+    for (SparseIndex i = 0; i < S.rows(); ++i)
+        for (auto k = S.row_start[i]; k < S.row_start[i + 1]; ++k) A(i, S.column[k]) = S.value[k];
+    return A;
+}
+
+/// Largest difference to the inverse by dense LU, of its largest entry.
+double error_of_compliance(const SparseMatrix& S, const std::vector<SparseIndex>& kept) {
+    const auto solver = make_condensing_cholesky(kept);
+    EXPECT_EQ(solver->factorise(S), FactorStatus::ok);
+    const Matrix W = solver->compliance(), inverse = dense(S).inverse();
+    double worst = 0;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        for (std::size_t j = 0; j < kept.size(); ++j)
+            worst =
+                std::max(worst, std::abs(W(static_cast<Index>(i), static_cast<Index>(j)) - inverse(kept[i], kept[j])));
+    EXPECT_EQ(W, Matrix(W.transpose()));
+    const Vector b = Vector::LinSpaced(S.rows(), -1, 2);
+    Vector x(b.size());
+    solver->solve(b.data(), x.data());
+    EXPECT_LT((dense(S) * x - b).cwiseAbs().maxCoeff(), 1e3 * epsilon);
+    return worst / inverse.cwiseAbs().maxCoeff();
+}
+
+constexpr int side = 7;
+/// The condition number of a Laplacian of n^3 points is about n^2.
+constexpr double round_off = 10 * epsilon * side * side;
+
+TEST(CondensingCholesky, InvertsOnTheKeptUnknownsInTheirOrder) {
+    const SparseMatrix S = laplacian(side);
+    std::vector<SparseIndex> bottom(side * side);
+    std::iota(bottom.begin(), bottom.end(), 0);
+    EXPECT_LT(error_of_compliance(S, bottom), round_off);
+    std::reverse(bottom.begin(), bottom.end());
+    EXPECT_LT(error_of_compliance(S, bottom), round_off);
+    EXPECT_LT(error_of_compliance(S, {5, 340, 0, 171}), round_off);
+}
+
+TEST(CondensingCholesky, InvertsWhereEverythingIsKept) {
+    const SparseMatrix S = laplacian(3);
+    std::vector<SparseIndex> all(27);
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_LT(error_of_compliance(S, all), round_off);
+}
+
+TEST(CondensingCholesky, InvertsWherePartsDoNotTouch) {
+    // two copies side by side: no order of elimination has both their kept unknowns last
+    const Matrix one = dense(laplacian(3));
+    Matrix two = Matrix::Zero(54, 54);
+    two.topLeftCorner(27, 27) = two.bottomRightCorner(27, 27) = one;
+    EXPECT_LT(error_of_compliance(sparse(two, true), {0, 13, 27, 50}), round_off);
+}
+
+TEST(CondensingCholesky, FollowsNewValues) {
+    const auto solver = make_condensing_cholesky({0, 26});
+    for (const double shift : {0.0, 1.0}) {
+        const SparseMatrix S = laplacian(3, shift);
+        ASSERT_EQ(solver->factorise(S), FactorStatus::ok);
+        EXPECT_NEAR(solver->compliance()(0, 1), dense(S).inverse()(0, 26), round_off);
+    }
+}
+
+TEST(DenseLu, SolvesAndSaysWhatIsSingular) {
+    Random random(7);
+    Matrix A = random_matrix(40, 1, random);
+    const Vector b = random_vector(40, random);
+    Vector x = b;
+    DenseLu lu;
+    ASSERT_TRUE(lu.factorise(A));
+    lu.solve(x.data());
+    EXPECT_LT((A * x - b).norm(), 1e3 * epsilon * A.norm() * x.norm());
+    A.row(3) = A.row(17) + A.row(20);
+    EXPECT_FALSE(lu.factorise(A));
+    EXPECT_TRUE(lu.factorise(Matrix(0, 0)));
+}
+
+TEST(Gmres, SolvesAsFarAsAskedAndSaysWhereItCannot) {
+    Random random(8);
+    const Matrix A = random_matrix(50, 4, random);
+    const Vector b = random_vector(50, random);
+    const auto times = [&](const double* x, double* y) {
+        Eigen::Map<Vector>(y, 50) = A * Eigen::Map<const Vector>(x, 50);
+    };
+    const Matrix M = A.inverse();
+    const auto inverse = [&](const double* x, double* y) {
+        Eigen::Map<Vector>(y, 50) = M * Eigen::Map<const Vector>(x, 50);
+    };
+    Gmres gmres(50);
+    for (const double tolerance : {1e-3, 1e-9}) {
+        Vector x(50);
+        EXPECT_TRUE(gmres.solve(times, {}, b.data(), x.data(), tolerance).converged);
+        EXPECT_LE((A * x - b).norm(), 1.01 * tolerance);
+        const auto result = gmres.solve(times, inverse, b.data(), x.data(), tolerance);
+        EXPECT_TRUE(result.converged);
+        EXPECT_EQ(result.iterations, 1);
+        EXPECT_LE((A * x - b).norm(), 1.01 * tolerance);
+    }
+    const auto rotation = [](const double* x, double* y) { // Krylov spaces reach nothing before the last
+        for (int i = 0; i < 100; ++i) y[(i + 1) % 100] = x[i];
+    };
+    Vector e = Vector::Unit(100, 0), x(100);
+    EXPECT_FALSE(Gmres(100).solve(rotation, {}, e.data(), x.data(), 1e-3).converged);
+}
+
+} // namespace
+} // namespace osculate::solve

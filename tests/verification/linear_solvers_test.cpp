@@ -1,0 +1,81 @@
+/// The way Newton's linear systems are solved is no part of the answer.
+
+#include "support/scene_runner.hpp"
+
+#include <algorithm>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace osculate {
+namespace {
+
+using support::RunStep;
+using support::SceneRun;
+
+/// Of solutions whose residuals are below 1e-12 of the load: a small multiple of that times the condition of contact.
+constexpr double same = 1e-10;
+
+/// Largest difference of displacements and contact forces over all steps, of the largest of each.
+double difference(const SceneRun& a, const SceneRun& b) {
+    double u = 0, du = 0, lambda = 0, dlambda = 0;
+    for (std::size_t k = 0; k < a.steps.size(); ++k) {
+        const model::State &x = a.steps[k].state, &y = b.steps[k].state;
+        for (std::size_t i = 0; i < x.u.size(); ++i) {
+            u = std::max(u, x.u[i].norm());
+            du = std::max(du, (x.u[i] - y.u[i]).norm());
+        }
+        for (std::size_t p = 0; p < x.contact.size(); ++p)
+            for (std::size_t j = 0; j < x.contact[p].lambda.size(); ++j) {
+                lambda = std::max(lambda, x.contact[p].lambda[j].norm());
+                dlambda = std::max(dlambda, (x.contact[p].lambda[j] - y.contact[p].lambda[j]).norm());
+            }
+    }
+    return std::max(du / u, dlambda / lambda);
+}
+
+void expect_same(const std::string& scene, std::vector<scene::Override> overrides) {
+    overrides.push_back({"solver.tolerance", "1e-12"});
+    SceneRun direct, condensed, iterative;
+    overrides.push_back({"solver.linear_solver", "direct"});
+    support::run_scene(direct, support::shipped(scene), overrides);
+    overrides.back() = {"solver.linear_solver", "condensed"};
+    support::run_scene(condensed, support::shipped(scene), overrides);
+    overrides.back() = {"solver.linear_solver", "iterative"};
+    support::run_scene(iterative, support::shipped(scene), overrides);
+    ASSERT_EQ(direct.steps.size(), condensed.steps.size());
+    ASSERT_EQ(direct.steps.size(), iterative.steps.size());
+    EXPECT_LT(difference(direct, condensed), same);
+    EXPECT_LT(difference(direct, iterative), same);
+}
+
+const std::vector<scene::Override> coarse{{"bodies.tube.mesh.half_tube.divisions", "[7, 5, 1]"},
+                                          {"bodies.contactor.mesh.contactor.divisions", "[4, 5, 1]"},
+                                          {"stages.slide.steps", "4"},
+                                          {"stages.slide.duration", "4 s"},
+                                          {"stages.slide.displacement", "{rear: {y: 0.4 m}}"}};
+
+TEST(LinearSolvers, GiveTheSameHalfTube) {
+    expect_same("paper/half_tube.yaml", coarse);
+}
+
+TEST(LinearSolvers, GiveTheSameHalfTubeOnFacetsByMortar) {
+    auto overrides = coarse;
+    overrides.push_back({"contact.sliding.surface", "facets"});
+    overrides.push_back({"contact.sliding.discretisation", "mortar"});
+    expect_same("paper/half_tube.yaml", overrides);
+}
+
+TEST(LinearSolvers, GiveTheSameMotion) {
+    expect_same("paper/half_tube_dynamic.yaml", {{"bodies.tube.mesh.half_tube.divisions", "[7, 5, 1]"},
+                                                 {"bodies.contactor.mesh.contactor.divisions", "[4, 5, 1]"}});
+}
+
+TEST(LinearSolvers, CondenseWhereThatCostsLess) {
+    using time::CondensedTangent;
+    EXPECT_TRUE((CondensedTangent::Cost{6, 1, 1e9}.pays()));
+    EXPECT_FALSE((CondensedTangent::Cost{6.1, 1, 1e9}.pays()));
+    EXPECT_FALSE((CondensedTangent::Cost{1, 1, 5e9}.pays()));
+}
+
+} // namespace
+} // namespace osculate

@@ -19,10 +19,21 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 
 namespace osculate::app {
 
 namespace {
+
+time::LinearSolver linear_solver(scene::LinearSolver solver) {
+    switch (solver) {
+    case scene::LinearSolver::automatic: return time::LinearSolver::automatic;
+    case scene::LinearSolver::condensed: return time::LinearSolver::condensed;
+    case scene::LinearSolver::iterative: return time::LinearSolver::iterative;
+    case scene::LinearSolver::direct: return time::LinearSolver::direct;
+    }
+    throw std::logic_error("linear solver without a name");
+}
 
 class Compiler {
 public:
@@ -58,7 +69,7 @@ public:
                          scene_.solver.predictor,
                          scene_.solver.stabilisation,
                          threads_,
-                         static_cast<time::LinearSolver>(scene_.solver.linear_solver)};
+                         linear_solver(scene_.solver.linear_solver)};
         plan_.items = plan_items(scene_, plan_);
         return std::move(plan_);
     }

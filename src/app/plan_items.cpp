@@ -1,7 +1,7 @@
 #include "app/plan_items.hpp"
 
 #include "osculate/time/collision_check.hpp"
-#include "osculate/time/condensed_tangent.hpp"
+#include "osculate/time/linear_solver.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -54,18 +54,16 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     say("smooth master surface", smooth,
         smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
     const bool unsymmetric = contact || follows || (finite && dynamic > 0);
-    using Linear = scene::LinearSolver;
-    const Linear asked = scene.solver.linear_solver;
-    const auto cost = time::CondensedTangent::cost(plan.model);
-    const bool may = contact && !follows && !finite;
-    const bool condensed = may && (asked == Linear::condensed || (asked == Linear::automatic && cost.pays()));
-    const bool direct = unsymmetric && asked == Linear::direct;
+    const time::LinearSolver asked = plan.stepper.linear_solver;
+    const auto cost = time::condensation_cost(plan.model);
+    const bool condensed = time::condenses(plan.model, asked, follows);
+    const bool direct = unsymmetric && asked == time::LinearSolver::direct;
     say("condensation", condensed,
-        !contact    ? "the scene has no pair"
-        : !may      ? "the tangent of the bodies is not constant"
+        !contact            ? "the scene has no pair"
+        : finite || follows ? "the tangent of the bodies is not constant"
         : condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
                                   cost.condensed, cost.factorising)
-        : asked == Linear::automatic
+        : asked == time::LinearSolver::automatic
             ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
                           "{:.2g} operations",
                           cost.condensed, 1e-9 * cost.bytes, cost.factorising)

@@ -1,8 +1,8 @@
 #include "osculate/time/condensed_tangent.hpp"
 
 #include "osculate/model/penalty_stiffness.hpp"
+#include "osculate/model/rigid_motion.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -16,23 +16,11 @@ constexpr int worth_keeping = 10;
 
 /// Whether supports leave a body a rigid motion.
 bool loose(const model::Body& body, const std::vector<Vec3>& X, const model::Constraints& constraints) {
-    using Vec6 = Eigen::Matrix<double, 6, 1>;
-    constexpr double nothing = 1e-8; // of the stiffest motion, where every support is as stiff as any other
-    Vec3 centre = Vec3::Zero();
-    for (Index i = 0; i < body.nodes(); ++i) centre += X[body.first_node + i] / static_cast<double>(body.nodes());
-    double size = 0;
-    for (Index i = 0; i < body.nodes(); ++i) size = std::max(size, (X[body.first_node + i] - centre).norm());
-    Eigen::Matrix<double, 6, 6> S = Eigen::Matrix<double, 6, 6>::Zero();
+    model::RigidHold hold(body, X);
     for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
-            if (constraints.equation(node, k) == model::Constraints::held) {
-                const Vec3 d = constraints.frame(node).col(k);
-                Vec6 motion;
-                motion << d, (X[node] - centre).cross(d) / size;
-                S += motion * motion.transpose();
-            }
-    const Vec6 stiffness = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(S).eigenvalues();
-    return !(stiffness(0) > nothing * stiffness(5));
+            if (constraints.constraint(node, k) != nullptr) hold.hold(X[node], constraints.frame(node).col(k));
+    return hold.free() > 0;
 }
 
 /// Three of the nodes, as far from one line as can be had.
@@ -53,36 +41,6 @@ std::vector<Index> three_apart(const std::vector<Index>& nodes, const std::vecto
 }
 
 } // namespace
-
-bool CondensedTangent::Cost::pays() const {
-    constexpr double as_fast = 6; // dense operations are some three times quicker, and a few factorisations usual
-    constexpr double most = 4e9;  // bytes
-    return condensed <= as_fast * factorising && bytes <= most;
-}
-
-CondensedTangent::Cost CondensedTangent::cost(const model::Model& model) {
-    constexpr double nested_dissection = 14; // operations of METIS and CHOLMOD over the square of a body's unknowns
-    constexpr double laws = 2;               // T's of a solve
-    std::vector<char> touched(model.X.size(), 0);
-    double forces = 0;
-    for (const auto& pair : model.pairs) {
-        for (const Index node : pair->slaves().node) touched[node] = 1;
-        for (const Index node : pair->master_nodes()) touched[node] = 1;
-        forces += 3.0 * static_cast<double>(pair->size());
-    }
-    Cost cost;
-    for (const model::Body& body : model.bodies) {
-        const double all = 3.0 * static_cast<double>(body.nodes());
-        const double kept = 3.0 * static_cast<double>(std::count(touched.begin() + body.first_node,
-                                                                 touched.begin() + body.first_node + body.nodes(), 1));
-        cost.factorising += nested_dissection * all * all;
-        cost.condensed += kept * kept * kept;
-        cost.bytes += sizeof(double) * kept * kept;
-    }
-    cost.condensed += laws * 2.0 / 3.0 * forces * forces * forces;
-    cost.bytes += sizeof(double) * forces * forces;
-    return cost;
-}
 
 CondensedTangent::CondensedTangent(const model::Model& model, const model::Constraints& constraints,
                                    const model::BlockMatrix& K, const std::vector<Index>& slaves, bool inertia)
@@ -201,7 +159,7 @@ std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws()
     // columns of F = C W C^T
     const auto count = static_cast<Index>(terms.size()), reduced = first_.back();
     Matrix T(3 * count, 3 * count);
-    Vector f(reduced), u = Vector::Zero(reduced), w;
+    Vector u(reduced), w;
     std::vector<std::size_t> body_of(nodes_.size(), 0);
     for (std::size_t b = 0, c = 0; b < model_.bodies.size(); ++b) {
         const model::Body& body = model_.bodies[b];
@@ -226,17 +184,24 @@ std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws()
     return laws;
 }
 
-void CondensedTangent::nearly(const double* y, Vector& lambda, Vector& u, Vector& f) const {
-    const Index n = first_.back();
-    u.resize(n);
-    comply(y, u.data());
+Vector CondensedTangent::bear(const Vector& u, const double* r) const {
+    // T lambda = r - B C u, no right side for springs
+    Vector lambda;
     relative(*laws_, u.data(), lambda);
     for (std::size_t j = 0; j < laws_->terms.size(); ++j) {
         const Index at = 3 * static_cast<Index>(j);
         lambda.segment<3>(at) = (-laws_->B[j] * lambda.segment<3>(at)).eval();
     }
-    lambda.head(forces()) += Eigen::Map<const Vector>(y + n, forces());
+    lambda.head(forces()) += Eigen::Map<const Vector>(r, forces());
     laws_->T.solve(lambda.data());
+    return lambda;
+}
+
+void CondensedTangent::nearly(const double* y, Vector& lambda, Vector& u, Vector& f) const {
+    const Index n = first_.back();
+    u.resize(n);
+    comply(y, u.data());
+    lambda = bear(u, y + n);
     f = Eigen::Map<const Vector>(y, n);
     add_forces(lambda, f.data());
     comply(f.data(), u.data());
@@ -302,17 +267,13 @@ bool CondensedTangent::solve(const model::SystemMatrix& rows, std::span<const Ma
 
     // x0 = P^-1 b: within the bodies it is exact
     const Index size = n + forces();
-    Vector force, u(n), f = Vector::Zero(n), more(n), rest(size), y(size);
+    Vector u(n), f = Vector::Zero(n), more(n), rest(size), y(size), right(forces());
     for (std::size_t body = 0; body < bodies_.size(); ++body)
         for (std::size_t i = 0; i < bodies_[body].equations().size(); ++i)
             u(first_[body] + static_cast<Index>(i)) = v(bodies_[body].equations()[i]);
-    relative(*laws_, u.data(), force);
-    for (std::size_t j = 0; j < laws_->terms.size(); ++j) {
-        const Index at = 3 * static_cast<Index>(j);
-        force.segment<3>(at) = (-laws_->B[j] * force.segment<3>(at)).eval();
-        if (j < contacts_->size()) force.segment<3>(at) += law((*contacts_)[j].law.coupling);
-    }
-    laws_->T.solve(force.data());
+    for (std::size_t j = 0; j < contacts_->size(); ++j)
+        right.segment<3>(3 * static_cast<Index>(j)) = law((*contacts_)[j].law.coupling);
+    Vector force = bear(u, right.data());
     add_forces(force, f.data());
     comply(f.data(), more.data());
     u += more;
@@ -320,8 +281,7 @@ bool CondensedTangent::solve(const model::SystemMatrix& rows, std::span<const Ma
     // J x' = b - J x0 with x' = P^-1 y
     laws(force, u, rest.data());
     rest = -rest;
-    for (std::size_t j = 0; j < contacts_->size(); ++j)
-        rest.segment<3>(n + 3 * static_cast<Index>(j)) += law((*contacts_)[j].law.coupling);
+    rest.tail(forces()) += right;
     bool worn = false;
     if (rest.norm() > allowed) {
         Vector lambda_y, u_y, f_y;

@@ -8,48 +8,13 @@
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/dense_lu.hpp"
 #include "osculate/solve/gmres.hpp"
-#include "osculate/time/contact_preconditioner.hpp"
+#include "osculate/time/contact_tangent.hpp"
 
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace osculate::time {
-
-/// Derivatives of one slave node's contact law and of the forces on its masters, as SystemMatrix takes them.
-struct ContactTangent {
-    bool reaches = false; ///< false: only D means anything
-    Mat3 D = Mat3::Zero();
-    contact::MatrixX3 E;
-    Matrix A, G, dd;
-    contact::ContactVariation variation;
-};
-
-/// One slave node that bears.
-struct BearingContact {
-    const ContactTangent* tangent = nullptr; ///< without G
-    const model::ContactTerm* pair = nullptr;
-    Index slave = -1;             ///< of the pair
-    Vec3 force = Vec3::Zero();    ///< lambda where the tangent was taken, N
-    std::span<const Index> nodes; ///< masters, as in the tangent
-    SoftContact law;              ///< with the nearest facet in place of the patch
-
-    /// Derivatives along the motion u(node) of global nodes and a force: of the contact law, and of the forces on the
-    /// masters, as they stand on the left of the equilibrium, by add(node, force). The slave's own is -force.
-    template <class U, class Add> Vec3 multiply(const U& u, const Vec3& lambda, Add&& add) const {
-        static thread_local Vector dy, on;
-        dy.resize(3 + 3 * static_cast<Index>(nodes.size()));
-        dy.head<3>() = u(law.where.slave);
-        for (std::size_t i = 0; i < nodes.size(); ++i) dy.segment<3>(3 + 3 * static_cast<Index>(i)) = u(nodes[i]);
-        const Vec3 value = tangent->A * dy + tangent->D * lambda;
-        pair->master_force_along(slave, force, tangent->variation, dy, on);
-        for (Index i = 0; i < on.size() / 3; ++i)
-            add(nodes[static_cast<std::size_t>(i)],
-                Vec3(tangent->E.middleRows<3>(3 * i) * lambda - on.segment<3>(3 * i)));
-        add(law.where.slave, Vec3(-lambda));
-        return value;
-    }
-};
 
 /// With the bodies' stiffness K, contact forces lambda and, over the displacements u_c of the contact nodes, the contact
 /// laws' derivatives A, D and the forces' E, G, the tangent reads
@@ -62,16 +27,6 @@ struct BearingContact {
 /// A body that nothing holds but contact stands on springs, whose forces are unknowns beside lambda and cancel.
 class CondensedTangent {
 public:
-    /// Estimates of the work, in floating-point operations, and of the memory for W and T.
-    struct Cost {
-        double condensed = 0;   ///< W of all bodies and some T's
-        double factorising = 0; ///< one sparse factorisation of all bodies
-        double bytes = 0;
-        /// Whether to condense: what it costs once is made up for within a few iterations, and fits.
-        [[nodiscard]] bool pays() const;
-    };
-    [[nodiscard]] static Cost cost(const model::Model& model);
-
     CondensedTangent(const model::Model& model, const model::Constraints& constraints, const model::BlockMatrix& K,
                      const std::vector<Index>& slaves, bool inertia);
     /// Opens an attempt: K belongs to dt (0 in statics), and has changed since the last.
@@ -115,7 +70,10 @@ private:
     /// reduced += C^T lambda, C u; over contacts, then springs
     void add_forces(const Vector& lambda, double* reduced) const;
     void relative(const Laws& laws, const double* reduced, Vector& w) const;
+    /// u = W f
     void comply(const double* f, double* u) const;
+    /// The forces of P, contacts' then springs', for displacements u without them and contact laws' right sides r.
+    [[nodiscard]] Vector bear(const Vector& u, const double* r) const;
     /// P^-1 y on the contact nodes: forces, displacements, and f, K u = f.
     void nearly(const double* y, Vector& lambda, Vector& u, Vector& f) const;
     /// C^T lambda + E lambda + G u, and A u + D lambda

@@ -8,6 +8,7 @@
 #include "osculate/time/body_forces.hpp"
 #include "osculate/time/condensed_tangent.hpp"
 #include "osculate/time/contact_preconditioner.hpp"
+#include "osculate/time/linear_solver.hpp"
 #include "osculate/time/stage.hpp"
 
 #include <map>
@@ -34,14 +35,6 @@ struct IterationRecord {
 enum class StatusRule {
     natural, ///< named anew by the complementarity functions at every iterate: semismooth Newton
     frozen   ///< as given; the problem is smooth
-};
-
-/// How Newton's linear systems are solved.
-enum class LinearSolver {
-    automatic, ///< condensed where that costs less, else iterative
-    condensed, ///< CondensedTangent, where bodies are linear and nothing follows; else iterative
-    iterative, ///< GMRES with the whole tangent and ContactPreconditioner
-    direct     ///< the tangent factorised in every iteration
 };
 
 /// F(z) with z = (free displacements, contact forces): equilibrium of every free component and the contact law of every

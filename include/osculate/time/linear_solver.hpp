@@ -1,0 +1,31 @@
+#pragma once
+/// How Newton's linear systems are solved, and when by which way.
+
+#include "osculate/model/model.hpp"
+
+namespace osculate::time {
+
+enum class LinearSolver {
+    automatic, ///< condensed where that costs less, else iterative
+    condensed, ///< CondensedTangent, where bodies are linear and nothing follows; else iterative
+    iterative, ///< GMRES with the whole tangent and ContactPreconditioner
+    direct     ///< the tangent factorised in every iteration
+};
+
+/// Estimates of what condensation takes, in floating-point operations, and of the memory for its dense matrices.
+struct CondensationCost {
+    double condensed = 0;   ///< inverses on the contact nodes and the dense laws of contact, made a few times
+    double factorising = 0; ///< one sparse factorisation of all bodies
+    double bytes = 0;
+    /// Whether what it costs once is made up for within a few iterations, and fits.
+    [[nodiscard]] bool pays() const;
+};
+[[nodiscard]] CondensationCost condensation_cost(const model::Model& model);
+
+/// Whether the tangent with contact goes by what it does to a vector, without a matrix: not where LU wants one, nor with so
+/// many slave nodes that their derivatives, held one by one, would take more memory.
+[[nodiscard]] bool goes_by_products(const model::Model& model, LinearSolver solver);
+/// Whether contact is condensed. @param follows  whether a pressure follows its facets
+[[nodiscard]] bool condenses(const model::Model& model, LinearSolver solver, bool follows);
+
+} // namespace osculate::time

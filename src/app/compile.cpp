@@ -30,6 +30,7 @@ time::LinearSolver linear_solver(scene::LinearSolver solver) {
     case scene::LinearSolver::automatic: return time::LinearSolver::automatic;
     case scene::LinearSolver::condensed: return time::LinearSolver::condensed;
     case scene::LinearSolver::iterative: return time::LinearSolver::iterative;
+    case scene::LinearSolver::multigrid: return time::LinearSolver::multigrid;
     case scene::LinearSolver::direct: return time::LinearSolver::direct;
     }
     throw std::logic_error("linear solver without a name");

@@ -57,9 +57,14 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     const time::LinearSolver asked = plan.stepper.linear_solver;
     const auto cost = time::condensation_cost(plan.model);
     const bool condensed = time::condenses(plan.model, asked, follows);
+    const bool multigrid = time::goes_by_multigrid(plan.model, asked);
     const bool direct = unsymmetric && asked == time::LinearSolver::direct;
+    say("multigrid", multigrid,
+        multigrid ? fmt::format("cycles over {} nodes in place of factors", plan.model.nodes())
+                  : "fewer nodes than cycles pay for, or another solver is asked for");
     say("condensation", condensed,
         !contact            ? "the scene has no pair"
+        : multigrid         ? "multigrid is used"
         : finite || follows ? "the tangent of the bodies is not constant"
         : condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
                                   cost.condensed, cost.factorising)
@@ -69,14 +74,16 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
                           cost.condensed, 1e-9 * cost.bytes, cost.factorising)
             : "another solver is asked for");
     say("LU factorisation", direct, direct ? "asked for, in every iteration" : "only where GMRES gets nowhere");
-    say("Cholesky factorisation", !direct,
+    say("Cholesky factorisation", !direct && !multigrid,
         direct        ? "the tangent itself is factorised"
+        : multigrid   ? "cycles take its place"
         : condensed   ? "of each body, its contact nodes last"
         : contact     ? "of the stiffness with softened contact, to precondition GMRES"
         : unsymmetric ? "of a triangle of the tangent, to precondition GMRES"
                       : "the tangent is symmetric positive definite");
-    say("GMRES", unsymmetric && !direct,
+    say("GMRES", multigrid || (unsymmetric && !direct),
         direct        ? "the tangent is factorised"
+        : multigrid   ? "with the whole tangent, preconditioned by cycles"
         : condensed   ? "on contact nodes and forces alone"
         : contact     ? "unsymmetric tangent with contact"
         : follows     ? "unsymmetric tangent of follower pressures"

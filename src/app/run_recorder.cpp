@@ -200,6 +200,7 @@ void RunRecorder::write_summary() {
     summary_.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     summary_.peak_memory_bytes = usage.ru_maxrss * 1024; // Linux counts in kB
     summary_.factorisations = stepper_.factorisations();
+    summary_.gmres_iterations = stepper_.gmres_iterations();
     summary_.steps.stabilised = stepper_.stabilised_steps();
     summary_.timings = timings_;
     summary_.checks = checks_.checks();

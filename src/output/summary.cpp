@@ -28,6 +28,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                      {"stabilised", summary.steps.stabilised}};
     json["iterations"] = summary.iterations;
     json["factorisations"] = summary.factorisations;
+    json["gmres_iterations"] = summary.gmres_iterations;
     const Timings& timings = summary.timings;
     json["seconds"] = {
         {"total", summary.total_seconds},    {"cpu", summary.cpu_seconds},        {"search", timings[Part::search]},

@@ -274,13 +274,14 @@ void describe(Visitor& v, Solver& solver) {
     v.flag({.name = "predictor",
             .meaning = "Move driven bodies rigidly by the prescribed increment before the first iteration."},
            solver.predictor);
-    static const Words linear_solvers{"automatic", "condensed", "iterative", "direct"};
+    static const Words linear_solvers{"automatic", "condensed", "iterative", "multigrid", "direct"};
     word(v,
          {.name = "linear_solver",
           .meaning =
               "How Newton's linear systems are solved: on the contact nodes alone, bodies factorised once; by GMRES "
-              "with the whole tangent; by a factorisation of it in every iteration; automatic is the first where it "
-              "costs less, else the second."},
+              "with the whole tangent, preconditioned by a factorisation or by multigrid; by a factorisation of the "
+              "tangent in every iteration; automatic is multigrid above 50 000 nodes, else the first where it costs "
+              "less, else the second."},
          linear_solvers, solver.linear_solver);
     v.flag(
         {.name = "stabilisation",

@@ -21,6 +21,7 @@ std::string describe(KinsolOutcome outcome) {
     case KinsolOutcome::max_iterations: return "iterations exhausted";
     case KinsolOutcome::stopped: return "stopped before convergence";
     case KinsolOutcome::singular: return "singular tangent";
+    case KinsolOutcome::unsolved: return "linear system not solved";
     case KinsolOutcome::no_descent: return "no descent along the Newton direction";
     case KinsolOutcome::not_evaluable: return "residual cannot be evaluated along the step";
     case KinsolOutcome::not_finite: return "residual is not finite";
@@ -41,6 +42,8 @@ constexpr int recoverable = 1, fatal = -1;
 constexpr double forcing_slope = 0.1, least_forcing = 1e-8, most_forcing = 1e-3, tolerance_share = 0.1;
 /// Iterations beyond which factors are worth making anew: one factorisation costs about as much as 20 to 40 of them.
 constexpr int worth_keeping = 20;
+/// Ratio of iterations a digit to those with fresh factors, up to which making them anew would gain too little.
+constexpr double still_good = 2;
 /// Failures of a fresh preconditioner in one solve after which it is not tried again there.
 constexpr int worth_trying = 2;
 } // namespace
@@ -212,9 +215,17 @@ struct KinsolSolver::Impl {
             const ScopedTimer timer(timings, Part::solve);
             const Gmres::Result result =
                 krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
-            preconditioner_good = result.converged && result.iterations <= worth_keeping;
+            gmres_iterations += result.iterations;
+            const double digits = std::log10(std::sqrt(N_VDotProd(b, b)) / allowed);
+            if (fresh) fresh_effort = result.iterations / digits;
+            preconditioner_good = result.converged && (result.iterations <= worth_keeping ||
+                                                       result.iterations <= still_good * digits * fresh_effort);
             if (result.converged) return true;
             preconditioner_failures += fresh ? 1 : 0;
+        }
+        if (!problem->factorisable()) {
+            unsolved = true;
+            return false;
         }
         if (matrix == nullptr) matrix = &problem->jacobian();
         if (factorise(*matrix)) return solve_directly(b, x);
@@ -256,14 +267,15 @@ struct KinsolSolver::Impl {
     std::unique_ptr<Gmres> krylov;
     const SparseMatrix* matrix = nullptr; ///< the tangent's, null where it has not been asked for
     bool preconditioner_good = false;     ///< it has factors, and they served well last time
+    double fresh_effort = 0;              ///< iterations a digit when it was made
     int preconditioner_failures = 0;      ///< in this solve
     int own_failures = 0;                 ///< of the problem's own solver, in this solve
     double tolerance = 0;
     bool is_cholesky = false;
     std::uint64_t factored_pattern = 0, factored_revision = 0;
     double residual_scale = 1, last_residual = 0;
-    long factorisations = 0;
-    bool stopped = false, singular = false, not_finite = false;
+    long factorisations = 0, gmres_iterations = 0;
+    bool stopped = false, singular = false, unsolved = false, not_finite = false;
     SparseIndex failing_equation = -1;
     std::exception_ptr error;
 };
@@ -275,6 +287,10 @@ long KinsolSolver::factorisations() const {
     return impl_->factorisations;
 }
 
+long KinsolSolver::gmres_iterations() const {
+    return impl_->gmres_iterations;
+}
+
 KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, const KinsolOptions& options) {
     Impl& s = *impl_;
     require(problem.size() == s.size && unknowns.size() == s.size && options.unknown_scale.size() == s.size,
@@ -282,7 +298,7 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     s.problem = &problem;
     s.residual_scale = options.residual_scale;
     s.tolerance = options.tolerance;
-    s.stopped = s.singular = s.not_finite = false;
+    s.stopped = s.singular = s.unsolved = s.not_finite = false;
     s.preconditioner_failures = s.own_failures = 0;
     s.preconditioner_good = false; // no result may depend on what was tried before this call
     s.failing_equation = -1;
@@ -319,6 +335,8 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
         result.outcome = KinsolOutcome::not_finite;
     else if (s.singular)
         result.outcome = KinsolOutcome::singular;
+    else if (s.unsolved)
+        result.outcome = KinsolOutcome::unsolved;
     else if (result.return_code == KIN_SUCCESS || result.return_code == KIN_INITIAL_GUESS_OK ||
              (result.return_code == KIN_STEP_LT_STPTOL && small))
         result.outcome = KinsolOutcome::converged;

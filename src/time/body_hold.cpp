@@ -29,7 +29,8 @@ bool is_loose(const FailedAttempt& failed, const BodyHold& hold) {
     if (failed.stage.dynamics || hold.free_by_supports == 0) return false;
     if (hold.touching == 0) return true;
     switch (failed.result.outcome) {
-    case solve::KinsolOutcome::singular: return hold.free_with_contact > 0;
+    case solve::KinsolOutcome::singular:
+    case solve::KinsolOutcome::unsolved: return hold.free_with_contact > 0;
     // at rest but for contact that would have to pull
     case solve::KinsolOutcome::stopped: return hold.pressed == 0 && failed.result.residual <= failed.ladder.tolerance;
     default: return false;

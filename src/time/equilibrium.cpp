@@ -1,6 +1,7 @@
 #include "osculate/time/equilibrium.hpp"
 
 #include "osculate/core/parallel.hpp"
+#include "osculate/model/nodal_unknowns.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,7 @@ using model::Constraints;
 
 Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, const Dynamics* dynamics,
                          Timings& timings, int threads, bool follower_pressure, LinearSolver linear)
-    : model_(model), constraints_(constraints), timings_(timings), threads_(threads),
+    : model_(model), constraints_(constraints), timings_(timings), threads_(threads), linear_(linear),
       bodies_(model, dynamics, follower_pressure, threads), first_coupling_{0} {
     std::vector<model::Coupling> couplings;
     for (auto& pair : model.pairs) {
@@ -38,8 +39,11 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     if (!bodies_.symmetric()) matrix_->expect_unsymmetric();
     kept_couplings_ = matrix_->couplings();
     size_ = matrix_->size();
-    if ((!model.pairs.empty() || !bodies_.symmetric()) && linear != LinearSolver::direct)
-        preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, bodies_.tangent());
+    if (goes_by_multigrid(model, linear))
+        preconditioner_ = std::make_unique<ContactPreconditioner>(
+            constraints_, bodies_.tangent(), solve::make_multigrid(model::nodal_unknowns(model, constraints_)));
+    else if ((!model.pairs.empty() || !bodies_.symmetric()) && linear != LinearSolver::direct)
+        preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, bodies_.tangent(), nullptr);
     products_ = goes_by_products(model, linear);
     if (condenses(model, linear, follower_pressure)) {
         std::vector<Index> slaves;

@@ -34,7 +34,18 @@ CondensationCost condensation_cost(const model::Model& model) {
     return cost;
 }
 
+bool goes_by_multigrid(const model::Model& model, LinearSolver solver) {
+    constexpr Index many = 50000; // nodes from which cycles cost less than factors that serve some ten solves
+    return solver == LinearSolver::multigrid || (solver == LinearSolver::automatic && model.nodes() > many);
+}
+
+bool may_factorise(const model::Model& model, LinearSolver solver) {
+    constexpr Index most = 100000; // nodes: LU takes some 7 GB
+    return !goes_by_multigrid(model, solver) || model.nodes() <= most;
+}
+
 bool goes_by_products(const model::Model& model, LinearSolver solver) {
+    if (goes_by_multigrid(model, solver)) return true;
     constexpr Index most = 40000; // some 50 kB each on a smooth master
     Index slaves = 0;
     for (const auto& pair : model.pairs) slaves += pair->size();
@@ -42,7 +53,8 @@ bool goes_by_products(const model::Model& model, LinearSolver solver) {
 }
 
 bool condenses(const model::Model& model, LinearSolver solver, bool follows) {
-    if (model.finite_strain || follows || !goes_by_products(model, solver)) return false;
+    if (model.finite_strain || follows || goes_by_multigrid(model, solver) || !goes_by_products(model, solver))
+        return false;
     return solver == LinearSolver::condensed || (solver == LinearSolver::automatic && condensation_cost(model).pays());
 }
 

@@ -77,6 +77,7 @@ Cause cause_of_solve(const FailedAttempt& failed, const PostMortem& found) {
     if (loose_body(failed, found) != nullptr) return Cause::unsupported_body;
     switch (failed.result.outcome) {
     case KinsolOutcome::singular: return Cause::singular_tangent;
+    case KinsolOutcome::unsolved: return Cause::linear_system;
     case KinsolOutcome::stopped: return found.changing > 0 ? Cause::status_cycle : Cause::stalled;
     case KinsolOutcome::no_descent: return Cause::no_descent;
     case KinsolOutcome::not_evaluable: return Cause::not_evaluable;
@@ -162,6 +163,11 @@ std::string explain(const model::Model& model, const LadderResult& result, const
         text << (result.astray ? "; the iterates ran away"
                                : "; a body is held by nothing: add a support, or check that it touches another at "
                                  "the start. Or both sides of a contact are held");
+        break;
+    case solve::KinsolOutcome::unsolved:
+        text
+            << "; something is all but free to move, or far stiffer than what it touches, and the tangent is too large "
+               "to be factorised instead";
         break;
     case solve::KinsolOutcome::stopped:
         text << (model.pairs.empty()

@@ -20,6 +20,10 @@ public:
         switch (found_.cause) {
         case Cause::unsupported_body: unsupported(); break;
         case Cause::singular_tangent: contradiction(); break;
+        case Cause::linear_system:
+            add("solver.linear_solver",
+                "iterative instead of multigrid, where there is memory for the bodies' factors");
+            break;
         case Cause::diverged: diverged(); break;
         case Cause::status_cycle: cycle(); break;
         case Cause::iterations_exhausted: iterations(); break;

@@ -16,10 +16,12 @@ struct CauseWords {
     const char *name, *words;
 };
 
-constexpr std::array<CauseWords, 16> causes{{
+constexpr std::array<CauseWords, 17> causes{{
     {Cause::unsupported_body, "unsupported_body", "nothing holds a body: a static load moves it without end"},
     {Cause::singular_tangent, "singular_tangent",
      "the tangent has no inverse: the equations contradict or repeat each other"},
+    {Cause::linear_system, "linear_system",
+     "a linear system is not solved by multigrid, and too large to be factorised"},
     {Cause::diverged, "diverged",
      "the iterates run away: there is no equilibrium near the last one, or the step is too long"},
     {Cause::status_cycle, "status_cycle", "contact statuses go round in a circle"},

@@ -92,7 +92,7 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
         result.outcome = solved.outcome;
         result.residual = solved.residual;
         result.failing_equation = solved.failing_equation;
-        if (solved.outcome == KinsolOutcome::singular && take_back_half(last, statuses)) continue;
+        if (solve::is_singular(solved.outcome) && take_back_half(last, statuses)) continue;
         if (solved.outcome != KinsolOutcome::converged) return result;
         last = equilibrium.statuses();
         last_z = z;
@@ -200,7 +200,7 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
                 result.outcome = KinsolOutcome::converged;
                 return result;
             }
-            undetermined = free.outcome == KinsolOutcome::singular;
+            undetermined = solve::is_singular(free.outcome);
         }
         // a body that has met nothing yet moves by a stride at a time, not through what it should meet
         stiffness *= std::max(solved.iterations <= easy ? softer : little_softer, moved / stride());
@@ -246,7 +246,7 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
         bool singular = false;
         // an iterate that ran away says nothing about what holds the bodies
         const auto found_singular = [&] {
-            return result.outcome == KinsolOutcome::singular &&
+            return solve::is_singular(result.outcome) &&
                    largest_component(equilibrium.displacements(z)) <= options.farthest;
         };
         if (newton("semismooth Newton", options.predicted, force_first)) return singular;

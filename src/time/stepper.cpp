@@ -223,7 +223,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
         if (ladder.reference_force == 0) ladder.reference_force = imbalance(equilibrium, z, statuses, forced);
         const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};
         equilibrium.begin_attempt(state_, std::move(load), dt);
-        const long factorised = solver.factorisations();
+        const long factorised = solver.factorisations(), iterated = solver.gmres_iterations();
 
         // trial with the statuses known at the start; its solution is where the equilibrium with contact starts from
         StepEvidence evidence;
@@ -277,6 +277,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             decision = judge(evidence, stage.limits, dt, repeats);
         }
         factorisations_ += solver.factorisations() - factorised;
+        gmres_iterations_ += solver.gmres_iterations() - iterated;
         paths_followed_ += collisions.take_paths_followed();
 
         Attempt attempt = diary(decision, result, equilibrium, time, dt, iterations);

@@ -240,6 +240,20 @@ TEST_F(PreconditionedNewton, FactorisesTheTangentWhereGmresDoesNotConverge) {
     EXPECT_EQ(result.factorisations, result.iterations + tried);
 }
 
+TEST_F(PreconditionedNewton, SaysSoWhereTheTangentIsTooLargeToFactorise) {
+    struct Large : Preconditioned {
+        using Preconditioned::Preconditioned;
+        [[nodiscard]] bool factorisable() const override { return false; }
+    } p(cubic(n, load), laplacian(n));
+    for (double& v : p.P.value) v = 0;
+    Vector u = Vector::Zero(p.size());
+    KinsolSolver solver(p.size(), timings);
+    const KinsolResult result = solver.solve(p, u, options);
+    EXPECT_EQ(result.outcome, KinsolOutcome::unsolved);
+    EXPECT_TRUE(is_singular(result.outcome));
+    EXPECT_EQ(u, Vector::Zero(p.size()));
+}
+
 TEST_F(PreconditionedNewton, DoesNotRememberEarlierSolves) {
     const auto solve = [&](KinsolSolver& solver, double factor) {
         Preconditioned p(cubic(n, factor * load), laplacian(n, 3));

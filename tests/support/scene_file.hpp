@@ -11,7 +11,7 @@ namespace osculate::support {
 
 /// Path of a temporary file of this process alone: tests run side by side.
 inline std::string temporary(const std::string& name) {
-    const std::filesystem::path folder = testing::TempDir() + "osculate_" + std::to_string(::getpid());
+    const std::filesystem::path folder = ::testing::TempDir() + "osculate_" + std::to_string(::getpid());
     std::filesystem::create_directories(folder);
     return (folder / name).string();
 }

@@ -1,5 +1,6 @@
 /// The way Newton's linear systems are solved is no part of the answer.
 
+#include "support/floating_point_traps.hpp"
 #include "support/scene_runner.hpp"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ double difference(const SceneRun& a, const SceneRun& b) {
 
 void expect_same(const std::string& scene, std::vector<scene::Override> overrides) {
     overrides.push_back({"solver.tolerance", "1e-12"});
-    SceneRun direct, condensed, iterative;
+    SceneRun direct, condensed, iterative, multigrid;
     overrides.push_back({"solver.linear_solver", "direct"});
     support::run_scene(direct, support::shipped(scene), overrides);
     overrides.back() = {"solver.linear_solver", "condensed"};
@@ -43,10 +44,17 @@ void expect_same(const std::string& scene, std::vector<scene::Override> override
     EXPECT_TRUE(time::condenses(condensed.plan.model, condensed.plan.stepper.linear_solver, false));
     overrides.back() = {"solver.linear_solver", "iterative"};
     support::run_scene(iterative, support::shipped(scene), overrides);
+    overrides.back() = {"solver.linear_solver", "multigrid"};
+    {
+        const support::FloatingPointTraps suspended(false); // PETSc estimates eigenvalues at its own risk
+        support::run_scene(multigrid, support::shipped(scene), overrides);
+    }
     ASSERT_EQ(direct.steps.size(), condensed.steps.size());
     ASSERT_EQ(direct.steps.size(), iterative.steps.size());
+    ASSERT_EQ(direct.steps.size(), multigrid.steps.size());
     EXPECT_LT(difference(direct, condensed), same);
     EXPECT_LT(difference(direct, iterative), same);
+    EXPECT_LT(difference(direct, multigrid), same);
 }
 
 const std::vector<scene::Override> coarse{{"bodies.tube.mesh.half_tube.divisions", "[7, 5, 1]"},

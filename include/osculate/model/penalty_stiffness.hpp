@@ -36,6 +36,8 @@ public:
     void restore_pattern();
     /// Over the free components, by equation number.
     [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
+    /// (nonzeros of matrix()) its values without springs.
+    [[nodiscard]] const std::vector<double>& without_springs() const { return base_; }
 
 private:
     void build_pattern(const std::vector<Spring>& springs);

@@ -290,7 +290,7 @@ struct Stage {
     bool operator==(const Stage&) const = default;
 };
 
-enum class LinearSolver { automatic, condensed, iterative, direct };
+enum class LinearSolver { automatic, condensed, iterative, multigrid, direct };
 
 struct Solver {
     double tolerance = 1e-9;     ///< largest residual over the step's reference force

@@ -62,6 +62,8 @@ public:
     [[nodiscard]] virtual Preconditioner* preconditioner() { return nullptr; }
     /// J without its matrix, where the problem has that: jacobian() is then asked for only to be factorised.
     [[nodiscard]] virtual Tangent* tangent() { return nullptr; }
+    /// Whether jacobian() may be factorised where GMRES gets nowhere.
+    [[nodiscard]] virtual bool factorisable() const { return true; }
 };
 
 struct KinsolOptions {
@@ -77,6 +79,7 @@ enum class KinsolOutcome {
     max_iterations,
     stopped,       ///< the problem said stop
     singular,      ///< the tangent could not be factorised
+    unsolved,      ///< GMRES got nowhere, and the tangent is too large to factorise
     no_descent,    ///< line search failed
     not_evaluable, ///< F had no value along the step
     not_finite,    ///< F or the step held NaN or infinity
@@ -92,6 +95,10 @@ struct KinsolResult {
 };
 
 [[nodiscard]] std::string describe(KinsolOutcome outcome);
+/// Whether the tangent has no inverse, as far as could be found out.
+[[nodiscard]] inline bool is_singular(KinsolOutcome outcome) {
+    return outcome == KinsolOutcome::singular || outcome == KinsolOutcome::unsolved;
+}
 
 /// One solver per problem size. Every Newton step is solved with the tangent at the iterate: by its factors, or, where the
 /// problem offers a preconditioner, by GMRES, to a fraction of the residual that shrinks with it; factors are kept as long
@@ -109,6 +116,8 @@ public:
     [[nodiscard]] KinsolResult solve(NonlinearProblem& problem, Vector& z, const KinsolOptions& options);
     /// Factorisations over the life of this solver.
     [[nodiscard]] long factorisations() const;
+    /// GMRES iterations on the whole tangent over the life of this solver.
+    [[nodiscard]] long gmres_iterations() const;
 
 private:
     struct Impl;

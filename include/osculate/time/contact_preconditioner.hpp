@@ -4,6 +4,7 @@
 #include "osculate/model/penalty_stiffness.hpp"
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/direct_solver.hpp"
+#include "osculate/solve/multigrid.hpp"
 
 #include <memory>
 #include <vector>
@@ -22,12 +23,14 @@ struct SoftContact {
 /// Inverse of the tangent but for four changes, each small or smooth:
 ///  - contact forces act on the corners of the closest facet with its shape functions, not on all nodes of the patch;
 ///  - their change as the surface bends and turns is left out;
-///  - the law gives way by a soft spring, (D + B/gamma) lambda + B w = r with gamma = 10 c;
+///  - the law gives way by a soft spring, (D + B/gamma) lambda + B w = r with gamma = 10 c, with multigrid c;
 ///  - in the condensed stiffness K + W^T S B W, S = (D + B/gamma)^-1, the part of S B that couples friction with pressure,
 ///    the only unsymmetric one, is left out. It is kept where contact forces follow from displacements.
 class ContactPreconditioner {
 public:
-    ContactPreconditioner(const model::Constraints& constraints, const model::BlockMatrix& K);
+    /// @param multigrid  in place of the factorisation; null: factorise
+    ContactPreconditioner(const model::Constraints& constraints, const model::BlockMatrix& K,
+                          std::unique_ptr<solve::Multigrid> multigrid);
     /// Takes over new values of K.
     void stiffness_changed() { stiffness_.stiffness_changed(); }
     /// Another matrix of the same pattern in place of K; it must outlive this object.
@@ -38,12 +41,14 @@ public:
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
     /// z = P^-1 r; `rows` says where the rows of the residual are.
     void apply(const model::SystemMatrix& rows, const double* r, double* z) const;
-    [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_->failing_equation(); }
+    [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
 
 private:
     const model::Constraints& constraints_;
     model::PenaltyStiffness stiffness_;
-    std::unique_ptr<solve::DirectSolver> solver_;
+    std::unique_ptr<solve::DirectSolver> solver_; ///< one of these two
+    std::unique_ptr<solve::Multigrid> multigrid_;
+    double softness_; ///< c / gamma
     std::vector<SoftContact> contacts_;
     std::vector<Mat3> S_;
     mutable Vector load_;

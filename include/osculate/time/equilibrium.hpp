@@ -71,6 +71,7 @@ public:
     [[nodiscard]] solve::FactorStatus factorise() override;
     void precondition(const double* r, double* z) override;
     [[nodiscard]] solve::SparseIndex failing_equation() const override { return preconditioner_->failing_equation(); }
+    [[nodiscard]] bool factorisable() const override { return may_factorise(model_, linear_); }
     [[nodiscard]] solve::Tangent* tangent() override { return products_ ? this : nullptr; }
     void linearise() override;
     void multiply(const double* x, double* y) override;
@@ -130,6 +131,7 @@ private:
     const model::Constraints& constraints_;
     Timings& timings_;
     int threads_;
+    LinearSolver linear_;
     BodyForces bodies_;
     Index size_ = 0;
     std::vector<Index> first_coupling_; ///< (pairs + 1)

@@ -6,9 +6,10 @@
 namespace osculate::time {
 
 enum class LinearSolver {
-    automatic, ///< condensed where that costs less, else iterative
+    automatic, ///< multigrid for many nodes, else condensed where that costs less, else iterative
     condensed, ///< CondensedTangent, where bodies are linear and nothing follows; else iterative
-    iterative, ///< GMRES with the whole tangent and ContactPreconditioner
+    iterative, ///< GMRES with the whole tangent and ContactPreconditioner, factorised
+    multigrid, ///< the same, the preconditioner by multigrid
     direct     ///< the tangent factorised in every iteration
 };
 
@@ -22,9 +23,13 @@ struct CondensationCost {
 };
 [[nodiscard]] CondensationCost condensation_cost(const model::Model& model);
 
-/// Whether the tangent with contact goes by what it does to a vector, without a matrix: not where LU wants one, nor with so
+/// Whether the preconditioner is multigrid.
+[[nodiscard]] bool goes_by_multigrid(const model::Model& model, LinearSolver solver);
+/// Whether the tangent goes by what it does to a vector, without a matrix: not where LU wants one, nor with so
 /// many slave nodes that their derivatives, held one by one, would take more memory.
 [[nodiscard]] bool goes_by_products(const model::Model& model, LinearSolver solver);
+/// Whether the whole tangent may be factorised where GMRES gets nowhere: it fits into memory, or multigrid is not in use.
+[[nodiscard]] bool may_factorise(const model::Model& model, LinearSolver solver);
 /// Whether contact is condensed. @param follows  whether a pressure follows its facets
 [[nodiscard]] bool condenses(const model::Model& model, LinearSolver solver, bool follows);
 

@@ -15,6 +15,7 @@ namespace osculate::time {
 enum class Cause {
     unsupported_body,     ///< nothing holds a body at the last iterate
     singular_tangent,     ///< every body is held, and yet the tangent has no inverse
+    linear_system,        ///< GMRES with multigrid does not solve it
     diverged,             ///< the iterates run away from the last equilibrium
     status_cycle,         ///< statuses come back to what they were
     stalled,              ///< statuses rest, and the residual does not fall

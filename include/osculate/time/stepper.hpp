@@ -61,6 +61,7 @@ public:
 
     [[nodiscard]] const model::State& state() const { return state_; }
     [[nodiscard]] long factorisations() const { return factorisations_; }
+    [[nodiscard]] long gmres_iterations() const { return gmres_iterations_; }
     /// Master patches fitted anew between steps, see contact::MasterSurface::refresh().
     [[nodiscard]] long refreshed_patches() const { return refreshed_patches_; }
     /// Paths of slave nodes that were followed facet by facet, see CollisionCheck.
@@ -114,7 +115,7 @@ private:
     bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
     int stabilised_steps_ = 0;
-    long factorisations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
+    long factorisations_ = 0, gmres_iterations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;
     double largest_stiffness_ = 0;      ///< model::largest_stiffness
     std::vector<double> volume_shares_; ///< model::volume_shares; empty without stabilisation

@@ -1,0 +1,147 @@
+/// Multigrid of bodies: a symmetric linear map whose iterations do not grow with the mesh, grids that join no two bodies.
+
+#include "osculate/app/compile.hpp"
+#include "osculate/app/load.hpp"
+#include "osculate/model/nodal_unknowns.hpp"
+#include "osculate/model/penalty_stiffness.hpp"
+#include "osculate/solve/gmres.hpp"
+#include "support/floating_point_traps.hpp"
+#include "support/random.hpp"
+#include "support/scene_file.hpp"
+#include "support/scene_runner.hpp"
+
+#include <gtest/gtest.h>
+
+namespace osculate {
+namespace {
+
+using model::Constraints;
+
+/// Two blocks one above the other, n and 4 elements a side; the lower stands on its bed, one side sliding on a wall; the upper is
+/// held by springs alone.
+std::string two_blocks(int n) {
+    const std::string side = std::to_string(n);
+    return "name: two_blocks\n"
+           "bodies:\n"
+           "  lower:\n"
+           "    mesh: {block: {origin: [0 m, 0 m, -1 m], size: [1 m, 1 m, 1 m], divisions: [" +
+           side + ", " + side + ", " + side +
+           "]}}\n"
+           "    material: {linear_elastic: {E: 100 MPa, nu: 0.3}}\n"
+           "  upper:\n"
+           "    mesh: {block: {origin: [0.1 m, 0.1 m, 0 m], size: [0.8 m, 0.8 m, 0.8 m], divisions: [4, 4, 4]}}\n"
+           "    material: {linear_elastic: {E: 1 GPa, nu: 0.3}}\n"
+           "sets:\n"
+           "  bed: {body: lower, surface: z_min}\n"
+           "  side: {body: lower, surface: x_min}\n"
+           "  top: {body: upper, surface: z_max}\n"
+           "supports:\n"
+           "  top: {fix: [x, y, z]}\n"
+           "  bed: {fix: [x, y, z]}\n"
+           "  side: {fix: [x]}\n"
+           "stages: {rest: {steps: 1}}\n";
+}
+
+/// The stiffness with springs of k E h between the nodes of the upper block's lowest layer and the lower block's nearest.
+struct Blocks {
+    explicit Blocks(int n, double springs) {
+        Timings timings;
+        const scene::Scene scene = scene::read_scene(support::scene_file("two_blocks.yaml", two_blocks(n)),
+                                                     {{"solver.stabilisation", "true"}});
+        plan = app::compile(scene, app::build_meshes(scene), 1, timings);
+        std::vector<model::NodeConstraint> held = plan.stages.front().constraints;
+        std::erase_if(held,
+                      [&](const model::NodeConstraint& c) { return c.node >= plan.model.bodies.back().first_node; });
+        constraints = std::make_unique<Constraints>(plan.model.nodes(), held);
+        stiffness = std::make_unique<model::PenaltyStiffness>(*constraints, plan.model.K);
+        const model::Body &lower = plan.model.bodies.front(), &upper = plan.model.bodies.back();
+        std::vector<model::Spring> list;
+        for (Index node = upper.first_node; node < upper.first_node + upper.nodes(); ++node) {
+            if (plan.model.X[node].z() > 1e-9) continue;
+            Index nearest = lower.first_node;
+            for (Index other = lower.first_node; other < lower.first_node + lower.nodes(); ++other)
+                if ((plan.model.X[other] - plan.model.X[node]).norm() <
+                    (plan.model.X[nearest] - plan.model.X[node]).norm())
+                    nearest = other;
+            model::Spring& spring = list.emplace_back();
+            spring.slave = node;
+            spring.masters = {nearest};
+            spring.follow = {Mat3::Identity()};
+            spring.stiffness = springs * 1e8 / n * Mat3::Identity();
+        }
+        stiffness->set_springs(list);
+        multigrid = solve::make_multigrid(model::nodal_unknowns(plan.model, *constraints));
+    }
+    [[nodiscard]] Index size() const { return constraints->equations(); }
+    [[nodiscard]] Vector cycle(const Vector& b) const {
+        Vector x(b.size());
+        multigrid->cycle(b.data(), x.data());
+        return x;
+    }
+    /// GMRES iterations to 1e-8 of a load on every free component.
+    [[nodiscard]] int iterations() const {
+        const Vector b = Vector::Ones(size());
+        Vector x(size());
+        solve::Gmres gmres(size());
+        const auto result = gmres.solve([&](const double* v, double* y) { stiffness->matrix().multiply(v, y); },
+                                        [&](const double* r, double* z) { multigrid->cycle(r, z); }, b.data(), x.data(),
+                                        1e-8 * b.norm());
+        EXPECT_TRUE(result.converged);
+        return result.iterations;
+    }
+
+    app::Plan plan;
+    std::unique_ptr<Constraints> constraints;
+    std::unique_ptr<model::PenaltyStiffness> stiffness;
+    std::unique_ptr<solve::Multigrid> multigrid;
+};
+
+struct Multigrid : ::testing::Test {
+    support::FloatingPointTraps suspended{false}; // PETSc estimates eigenvalues with divisions that may overflow
+};
+
+TEST_F(Multigrid, IsASymmetricPositiveLinearMap) {
+    Blocks blocks(6, 1);
+    ASSERT_EQ(blocks.multigrid->factorise(blocks.stiffness->matrix(), blocks.stiffness->without_springs()),
+              solve::FactorStatus::ok);
+    testing::Random random(5);
+    Vector a(blocks.size()), b(blocks.size());
+    for (Index i = 0; i < a.size(); ++i) {
+        a(i) = random.uniform();
+        b(i) = random.uniform();
+    }
+    const Vector Pa = blocks.cycle(a), Pb = blocks.cycle(b);
+    const double round_off =
+        1e-11 * Pa.norm() * b.norm(); // of a few hundred operations a component, and the coarse factors
+    EXPECT_NEAR(b.dot(Pa), a.dot(Pb), round_off);
+    EXPECT_GT(a.dot(Pa), 0);
+    EXPECT_LT((blocks.cycle(2 * a - b) - (2 * Pa - Pb)).norm(), 1e-11 * Pa.norm());
+}
+
+TEST_F(Multigrid, TakesHardlyMoreIterationsOnFinerMeshes) {
+    int coarse = 0, fine = 0;
+    for (const auto& [n, iterations] : {std::pair{6, &coarse}, {18, &fine}}) {
+        Blocks blocks(n, 1);
+        ASSERT_EQ(blocks.multigrid->factorise(blocks.stiffness->matrix(), blocks.stiffness->without_springs()),
+                  solve::FactorStatus::ok);
+        *iterations = blocks.iterations();
+    }
+    EXPECT_LT(fine, 1.5 * coarse);
+    EXPECT_LT(fine, 40);
+}
+
+TEST_F(Multigrid, FollowsNewValuesOnTheSameGrids) {
+    Blocks blocks(6, 1);
+    const auto& A = blocks.stiffness->matrix();
+    ASSERT_EQ(blocks.multigrid->factorise(A, blocks.stiffness->without_springs()), solve::FactorStatus::ok);
+    const Vector b = Vector::Ones(blocks.size()), before = blocks.cycle(b);
+    solve::SparseMatrix twice = A;
+    for (double& v : twice.value) v *= 2;
+    ASSERT_EQ(blocks.multigrid->factorise(twice, blocks.stiffness->without_springs()), solve::FactorStatus::ok);
+    EXPECT_LT((2 * blocks.cycle(b) - before).norm(), 1e-10 * before.norm());
+    ASSERT_EQ(blocks.multigrid->factorise(A, blocks.stiffness->without_springs()), solve::FactorStatus::ok);
+    EXPECT_EQ(blocks.cycle(b), before);
+}
+
+} // namespace
+} // namespace osculate

@@ -280,8 +280,8 @@ void describe(Visitor& v, Solver& solver) {
           .meaning =
               "How Newton's linear systems are solved: on the contact nodes alone, bodies factorised once; by GMRES "
               "with the whole tangent, preconditioned by a factorisation or by multigrid; by a factorisation of the "
-              "tangent in every iteration; automatic is multigrid above 50 000 nodes, else the first where it costs "
-              "less, else the second."},
+              "tangent in every iteration. Automatic is multigrid above 50 000 nodes, else the first where it costs "
+              "less, else multigrid above 20 000 nodes, else the second."},
          linear_solvers, solver.linear_solver);
     v.flag(
         {.name = "stabilisation",

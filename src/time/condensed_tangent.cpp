@@ -1,5 +1,6 @@
 #include "osculate/time/condensed_tangent.hpp"
 
+#include "osculate/core/parallel.hpp"
 #include "osculate/model/penalty_stiffness.hpp"
 #include "osculate/model/rigid_motion.hpp"
 
@@ -43,8 +44,9 @@ std::vector<Index> three_apart(const std::vector<Index>& nodes, const std::vecto
 } // namespace
 
 CondensedTangent::CondensedTangent(const model::Model& model, const model::Constraints& constraints,
-                                   const model::BlockMatrix& K, const std::vector<Index>& slaves, bool inertia)
-    : model_(model), constraints_(constraints), K_(&K), slaves_(slaves), place_(model.X.size(), -1) {
+                                   const model::BlockMatrix& K, const std::vector<Index>& slaves, bool inertia,
+                                   int threads)
+    : model_(model), constraints_(constraints), K_(&K), threads_(threads), slaves_(slaves), place_(model.X.size(), -1) {
     for (const auto& pair : model.pairs) {
         for (const Index node : pair->slaves().node) place_[node] = 0;
         for (const Index node : pair->master_nodes()) place_[node] = 0;
@@ -83,7 +85,7 @@ void CondensedTangent::factorise_bodies() {
         const Index node = nodes_[c];
         spring_ = std::max(spring_, K_->block(K_->slot(node, node)).diagonal().maxCoeff());
     }
-    for (model::BodyCompliance& body : bodies_)
+    for (model::BodyCompliance& body : bodies_) // not side by side: METIS takes from one source of random numbers
         usable_ = body.factorise(all.matrix(), spring_) == solve::FactorStatus::ok && usable_;
 }
 
@@ -129,13 +131,21 @@ void CondensedTangent::relative(const Laws& laws, const double* reduced, Vector&
         for (const Term& t : laws.terms[j]) w.segment<3>(3 * static_cast<Index>(j)) += t.by * nodal[t.node];
 }
 
+void CondensedTangent::each_body(const std::function<void(std::size_t)>& work) const {
+    const auto lanes = static_cast<Index>(std::min<std::size_t>(bodies_.size(), static_cast<std::size_t>(threads_)));
+    parallel_lanes(lanes, [&](Lane lane) {
+        for (std::size_t b = 0; b < bodies_.size(); ++b)
+            if (lane.owns(static_cast<Index>(b))) work(b);
+    });
+}
+
 void CondensedTangent::comply(const double* f, double* u) const {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    each_body([&](std::size_t b) {
         const Index n = first_[b + 1] - first_[b];
-        if (n == 0) continue;
+        if (n == 0) return;
         Eigen::Map<Vector>(u + first_[b], n).noalias() =
             bodies_[b].W().selfadjointView<Eigen::Lower>() * Eigen::Map<const Vector>(f + first_[b], n);
-    }
+    });
 }
 
 std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws() const {
@@ -159,17 +169,17 @@ std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws()
     // columns of F = C W C^T
     const auto count = static_cast<Index>(terms.size()), reduced = first_.back();
     Matrix T(3 * count, 3 * count);
-    Vector u(reduced), w;
     std::vector<std::size_t> body_of(nodes_.size(), 0);
     for (std::size_t b = 0, c = 0; b < model_.bodies.size(); ++b) {
         const model::Body& body = model_.bodies[b];
         for (; c < nodes_.size() && nodes_[c] < body.first_node + body.nodes(); ++c) body_of[c] = b;
     }
-    for (Index j = 0; j < count; ++j)
-        for (int k = 0; k < 3; ++k) {
+    parallel_for(threads_, count, [&](Index begin, Index end) {
+        Vector u(reduced), w;
+        for (Index column = 3 * begin; column < 3 * end; ++column) {
             u.setZero();
-            for (const Term& t : terms[j]) {
-                const Vec3 local = constraints_.to_local(nodes_[t.node], Vec3(t.by.row(k).transpose()));
+            for (const Term& t : terms[column / 3]) {
+                const Vec3 local = constraints_.to_local(nodes_[t.node], Vec3(t.by.row(column % 3).transpose()));
                 const std::size_t b = body_of[t.node];
                 for (int c = 0; c < 3; ++c)
                     if (const Index r = reduced_[3 * static_cast<std::size_t>(t.node) + static_cast<std::size_t>(c)];
@@ -177,8 +187,9 @@ std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws()
                         u.segment(first_[b], first_[b + 1] - first_[b]) += local(c) * bodies_[b].W().col(r - first_[b]);
             }
             relative(*laws, u.data(), w);
-            for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, 3 * j + k) = B[i] * w.segment<3>(3 * i);
+            for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, column) = B[i] * w.segment<3>(3 * i);
         }
+    });
     for (Index j = 0; j < count; ++j) T.block<3, 3>(3 * j, 3 * j) += D[j];
     usable = lu.factorise(std::move(T));
     return laws;
@@ -217,10 +228,13 @@ void CondensedTangent::laws(const Vector& lambda, const Vector& u, double* z) co
     spread(u.data(), at);
     const auto moved = [&](Index node) { return at[place_[node]]; };
     const auto add = [&](Index node, const Vec3& force) { by[place_[node]] += force; };
-    for (std::size_t j = 0; j < contacts_->size(); ++j) {
-        const Index row = 3 * static_cast<Index>(j);
-        Eigen::Map<Vec3>(z + n + row) = (*contacts_)[j].multiply(moved, lambda.segment<3>(row), add);
-    }
+    on_.resize(contacts_->size());
+    parallel_for(threads_, static_cast<Index>(contacts_->size()), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j)
+            Eigen::Map<Vec3>(z + n + 3 * j) = (*contacts_)[j].multiply(moved, lambda.segment<3>(3 * j), on_[j]);
+    });
+    for (std::size_t j = 0; j < contacts_->size(); ++j)
+        (*contacts_)[j].scatter(on_[j], lambda.segment<3>(3 * static_cast<Index>(j)), add);
     collect(by, z);
 }
 

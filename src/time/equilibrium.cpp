@@ -48,8 +48,8 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     if (condenses(model, linear, follower_pressure)) {
         std::vector<Index> slaves;
         for (const model::Coupling& c : kept_couplings_) slaves.push_back(c.slave);
-        condensed_ =
-            std::make_unique<CondensedTangent>(model, constraints_, bodies_.tangent(), slaves, dynamics != nullptr);
+        condensed_ = std::make_unique<CondensedTangent>(model, constraints_, bodies_.tangent(), slaves,
+                                                        dynamics != nullptr, threads_);
     }
     const auto n = static_cast<std::size_t>(model.nodes());
     u_.assign(n, Vec3::Zero());

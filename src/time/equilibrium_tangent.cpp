@@ -127,14 +127,24 @@ void Equilibrium::multiply(const double* x, double* y) {
     bodies_.tangent().multiply_add(u, f, threads_);
     const auto moved = [&](Index node) -> const Vec3& { return u[node]; };
     const auto add = [&](Index node, const Vec3& force) { f[node] += force; };
-    auto next = bearing_.begin();
+    const auto change = [&](Index coupling) {
+        const double* force = x + matrix_->multiplier(coupling);
+        return constraints_.to_global(matrix_->couplings()[coupling].slave, Vec3(force[0], force[1], force[2]));
+    };
+    product_on_.resize(bearing_.size());
+    product_law_.resize(bearing_.size());
+    parallel_for(threads_, static_cast<Index>(bearing_.size()), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j)
+            product_law_[j] = bearing_[j].multiply(moved, change(bearing_[j].law.coupling), product_on_[j]);
+    });
+    std::size_t next = 0;
     for (Index coupling = 0; coupling < first_coupling_.back(); ++coupling) {
         const Index slave = matrix_->couplings()[coupling].slave;
-        const double* force = x + matrix_->multiplier(coupling);
-        const Vec3 lambda = constraints_.to_global(slave, Vec3(force[0], force[1], force[2]));
+        const Vec3 lambda = change(coupling);
         Vec3 law;
-        if (next != bearing_.end() && next->law.coupling == coupling) {
-            law = (next++)->multiply(moved, lambda, add);
+        if (next < bearing_.size() && bearing_[next].law.coupling == coupling) {
+            bearing_[next].scatter(product_on_[next], lambda, add);
+            law = product_law_[next++];
         } else {
             law = open_laws_[coupling] * lambda;
             f[slave] -= lambda;

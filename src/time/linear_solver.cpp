@@ -35,8 +35,11 @@ CondensationCost condensation_cost(const model::Model& model) {
 }
 
 bool goes_by_multigrid(const model::Model& model, LinearSolver solver) {
-    constexpr Index many = 50000; // nodes from which cycles cost less than factors that serve some ten solves
-    return solver == LinearSolver::multigrid || (solver == LinearSolver::automatic && model.nodes() > many);
+    constexpr Index many = 20000;      // nodes from which cycles cost less than factors that serve one step
+    constexpr Index very_many = 50000; // and less than those that condensation makes once
+    if (solver != LinearSolver::automatic) return solver == LinearSolver::multigrid;
+    const bool condensable = !model.finite_strain && condensation_cost(model).pays();
+    return model.nodes() > (condensable ? very_many : many);
 }
 
 bool may_factorise(const model::Model& model, LinearSolver solver) {

@@ -1,10 +1,12 @@
 #include "osculate/core/parallel.hpp"
 
 #include <atomic>
+#include <cfenv>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace osculate {
 namespace {
@@ -54,6 +56,41 @@ TEST(ParallelFor, RethrowsTheFirstChunksExceptionAfterAllHaveEnded) {
             EXPECT_STREQ(error.what(), "chunk from 0");
         }
         EXPECT_EQ(done, 4000);
+    }
+}
+
+TEST(ParallelFor, RunsWithinItselfOneAfterAnother) {
+    std::vector<std::atomic<int>> visits(64 * 64);
+    parallel_for(2, 64, [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i)
+            parallel_for(2, 64, [&](Index from, Index to) {
+                for (Index k = from; k < to; ++k) ++visits[64 * i + k];
+            });
+    });
+    for (const auto& count : visits) ASSERT_EQ(count, 1);
+}
+
+TEST(ParallelFor, ServesSeveralCallersAtOnce) {
+    std::vector<std::atomic<int>> visits(1000);
+    const auto visit_all = [&] {
+        for (int k = 0; k < 50; ++k)
+            parallel_for(3, 1000, [&](Index begin, Index end) {
+                for (Index i = begin; i < end; ++i) ++visits[i];
+            });
+    };
+    {
+        const std::jthread other(visit_all);
+        visit_all();
+    }
+    for (const auto& count : visits) ASSERT_EQ(count, 100);
+}
+
+TEST(ParallelFor, KeepsTheFloatingPointEnvironmentOfItsCaller) {
+    for (const int rounding : {FE_UPWARD, FE_TONEAREST}) { // the same threads, another environment
+        std::fesetround(rounding);
+        std::atomic<int> others = 0;
+        parallel_for(3, 1000, [&](Index, Index) { others += std::fegetround() != rounding; });
+        EXPECT_EQ(others, 0);
     }
 }
 

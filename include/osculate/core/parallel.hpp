@@ -1,11 +1,11 @@
 #pragma once
 /// Loops over independent items on several threads.
 
+#include "osculate/core/thread_pool.hpp"
 #include "osculate/core/types.hpp"
 
 #include <algorithm>
 #include <exception>
-#include <thread>
 #include <vector>
 
 namespace osculate {
@@ -20,18 +20,14 @@ template <class Body> void parallel_for(int threads, Index n, Body&& body) {
         return;
     }
     std::vector<std::exception_ptr> errors(static_cast<std::size_t>(chunks));
-    {
-        std::vector<std::jthread> workers;
-        for (Index chunk = 0; chunk < chunks; ++chunk)
-            workers.emplace_back([&, chunk] {
-                try {
-                    body(static_cast<Index>(std::int64_t{n} * chunk / chunks),
-                         static_cast<Index>(std::int64_t{n} * (chunk + 1) / chunks));
-                } catch (...) {
-                    errors[static_cast<std::size_t>(chunk)] = std::current_exception();
-                }
-            });
-    }
+    run_side_by_side(chunks, [&](Index chunk) {
+        try {
+            body(static_cast<Index>(std::int64_t{n} * chunk / chunks),
+                 static_cast<Index>(std::int64_t{n} * (chunk + 1) / chunks));
+        } catch (...) {
+            errors[static_cast<std::size_t>(chunk)] = std::current_exception();
+        }
+    });
     for (const std::exception_ptr& error : errors)
         if (error) std::rethrow_exception(error);
 }
@@ -48,17 +44,13 @@ template <class Body> void parallel_lanes(int threads, Body&& body) {
     const Index lanes = std::max(threads, 1);
     if (lanes == 1) return body(Lane{});
     std::vector<std::exception_ptr> errors(static_cast<std::size_t>(lanes));
-    {
-        std::vector<std::jthread> workers;
-        for (Index lane = 0; lane < lanes; ++lane)
-            workers.emplace_back([&, lane] {
-                try {
-                    body(Lane{lane, lanes});
-                } catch (...) {
-                    errors[static_cast<std::size_t>(lane)] = std::current_exception();
-                }
-            });
-    }
+    run_side_by_side(lanes, [&](Index lane) {
+        try {
+            body(Lane{lane, lanes});
+        } catch (...) {
+            errors[static_cast<std::size_t>(lane)] = std::current_exception();
+        }
+    });
     for (const std::exception_ptr& error : errors)
         if (error) std::rethrow_exception(error);
 }

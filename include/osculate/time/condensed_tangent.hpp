@@ -10,6 +10,7 @@
 #include "osculate/solve/gmres.hpp"
 #include "osculate/time/contact_tangent.hpp"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -28,7 +29,7 @@ namespace osculate::time {
 class CondensedTangent {
 public:
     CondensedTangent(const model::Model& model, const model::Constraints& constraints, const model::BlockMatrix& K,
-                     const std::vector<Index>& slaves, bool inertia);
+                     const std::vector<Index>& slaves, bool inertia, int threads);
     /// Opens an attempt: K belongs to dt (0 in statics), and has changed since the last.
     void begin(double dt, bool changed) {
         dt_ = dt;
@@ -64,6 +65,8 @@ private:
         bool usable = false;
     };
     void factorise_bodies();
+    /// Bodies side by side.
+    void each_body(const std::function<void(std::size_t)>& work) const;
     [[nodiscard]] std::shared_ptr<const Laws> factorise_laws() const;
     void spread(const double* reduced, Nodal& nodal) const;
     void collect(const Nodal& nodal, double* reduced) const;
@@ -83,6 +86,7 @@ private:
     const model::Model& model_;
     const model::Constraints& constraints_;
     const model::BlockMatrix* K_;
+    int threads_;
     std::vector<Index> slaves_; ///< by coupling
     std::vector<Index> nodes_;  ///< contact nodes, global, ascending
     std::vector<Index> place_;  ///< (nodes of the model) among contact nodes, -1
@@ -95,6 +99,7 @@ private:
     bool factorised_ = false, usable_ = true;
     int factorisations_ = 0;
     const std::vector<BearingContact>* contacts_ = nullptr;
+    mutable std::vector<Vector> on_;          ///< scratch of laws()
     std::shared_ptr<const Laws> laws_, kept_; ///< null: to be made
     std::unique_ptr<solve::Gmres> gmres_;
     Index gmres_size_ = -1;

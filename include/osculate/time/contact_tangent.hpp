@@ -28,20 +28,23 @@ struct BearingContact {
     SoftContact law;              ///< with the nearest facet in place of the patch
 
     /// Derivatives along the motion u(node), m, of global nodes and a change lambda of the contact force, N: returns that of
-    /// the contact law; those of the forces on the left of the equilibrium go to add(node, force), the slave's own, -lambda,
-    /// among them.
-    template <class U, class Add> Vec3 multiply(const U& u, const Vec3& lambda, Add&& add) const {
-        static thread_local Vector dy, on;
+    /// the contact law; `on` (3 a master that carries force) are those of the forces on the left of the equilibrium, the
+    /// slave's own being -lambda.
+    template <class U> Vec3 multiply(const U& u, const Vec3& lambda, Vector& on) const {
+        static thread_local Vector dy;
         dy.resize(3 + 3 * static_cast<Index>(nodes.size()));
         dy.head<3>() = u(law.where.slave);
         for (std::size_t i = 0; i < nodes.size(); ++i) dy.segment<3>(3 + 3 * static_cast<Index>(i)) = u(nodes[i]);
         const Vec3 value = tangent->A * dy + tangent->D * lambda;
         pair->master_force_along(slave, force, tangent->variation, dy, on);
         for (Index i = 0; i < on.size() / 3; ++i)
-            add(nodes[static_cast<std::size_t>(i)],
-                Vec3(tangent->E.middleRows<3>(3 * i) * lambda - on.segment<3>(3 * i)));
-        add(law.where.slave, Vec3(-lambda));
+            on.segment<3>(3 * i) = (tangent->E.middleRows<3>(3 * i) * lambda - on.segment<3>(3 * i)).eval();
         return value;
+    }
+    /// add(node, force) of what multiply() found.
+    template <class Add> void scatter(const Vector& on, const Vec3& lambda, Add&& add) const {
+        for (Index i = 0; i < on.size() / 3; ++i) add(nodes[static_cast<std::size_t>(i)], Vec3(on.segment<3>(3 * i)));
+        add(law.where.slave, Vec3(-lambda));
     }
 };
 

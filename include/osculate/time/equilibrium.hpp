@@ -147,9 +147,10 @@ private:
     double reference_force_ = 1;
 
     std::vector<Vec3> u_, x_, internal_, unbalanced_;
-    std::vector<Vec3> product_u_, product_f_; ///< scratch of multiply()
-    std::vector<Vec3> linear_about_;          ///< of the next residual; empty: exact
-    bool linearised_ = false;                 ///< the last residual was, and the tangent belongs to it
+    std::vector<Vec3> product_u_, product_f_, product_law_; ///< scratch of multiply()
+    std::vector<Vector> product_on_;
+    std::vector<Vec3> linear_about_; ///< of the next residual; empty: exact
+    bool linearised_ = false;        ///< the last residual was, and the tangent belongs to it
     std::vector<std::vector<Vec3>> lambda_;
     std::vector<std::vector<contact::Status>> statuses_;
     StatusRule rule_ = StatusRule::natural;

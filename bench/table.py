@@ -24,6 +24,9 @@ GROUPS = [
     ("Building the search tree, facets a side", "search/build/", "facet"),
     ("Global search, facets a side", "search/global/", "slave point"),
     ("Tracking, facets a side", "search/track/", "slave point"),
+    ("Product with and assembly of a block's stiffness, elements along an edge", "block/", "unknown"),
+    ("Factors of a block's stiffness, elements along an edge", "factor/", "unknown"),
+    ("Solving with them, on the contact nodes alone, or one cycle", "apply/", "unknown"),
     ("Element stiffness", "stiffness/", "element"),
 ]
 

@@ -36,8 +36,10 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     RunRecorder recorder(loaded.scene, loaded.plan, stepper, timings, {folder, options.threads, options.quiet, begin});
     try {
         stepper.run(recorder);
+        recorder.wait_for_frames();
     } catch (const RunFailure& failure) {
         try {
+            recorder.wait_for_frames();
             recorder.finish("gave_up", failure.what());
         } catch (const RunFailure&) { // a full disk: the first failure is the one to tell
         }

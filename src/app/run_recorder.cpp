@@ -65,7 +65,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
         frames_ = std::make_unique<output::Frames>(
             folder,
             frames ? output::FrameFields{out.body_fields, out.slave_fields, out.master_fields} : output::FrameFields{},
-            plan.model);
+            plan.model, settings_.threads > 1);
         history_ = std::make_unique<output::History>(
             folder / "history.csv", plan.model, out.history_pairs,
             reactions ? plan.constrained_sets : std::vector<Index>{},
@@ -176,6 +176,10 @@ void RunRecorder::write_failed(const time::FailedIterate& iterate) {
     std::vector<Vec3> rest = unbalanced;
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= reactions[i];
     frames.write({plan_.model, iterate.state, reactions, std::move(rest)}, summary_.steps.accepted + 1);
+}
+
+void RunRecorder::wait_for_frames() {
+    on_disk(timings_, [&] { frames_->finish(); });
 }
 
 void RunRecorder::finish(const std::string& status, const std::string& failure) {

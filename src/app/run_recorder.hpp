@@ -37,6 +37,8 @@ public:
     /// Writes post_mortem.json and, where the scene asks for it, the last iterate into the folder failed/.
     void gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) override;
 
+    /// Every frame so far is written when it returns.
+    void wait_for_frames();
     /// Says how the run ended, and on stderr whether that was expected.
     void finish(const std::string& status, const std::string& failure = {});
     [[nodiscard]] const output::Summary& summary() const { return summary_; }

@@ -39,8 +39,9 @@ Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& 
 
 } // namespace
 
-Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model& model)
-    : directory_(std::move(directory)), body_fields_(chosen(FieldPlace::body, fields.body)), series_(directory_) {
+Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model& model, bool beside)
+    : directory_(std::move(directory)), body_fields_(chosen(FieldPlace::body, fields.body)), series_(directory_),
+      beside_(beside) {
     remove_frames(directory_ / "frames"); // after series.pvd has forgotten them
     const auto slave = chosen(FieldPlace::slave, fields.slave), master = chosen(FieldPlace::master, fields.master);
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
@@ -88,24 +89,40 @@ std::string Frames::file(const std::string& part, long number, const char* exten
 void Frames::write(const Snapshot& snapshot, long number) {
     const double time = snapshot.state().time;
     const model::Model& model = snapshot.model();
+    std::vector<File> files; // values are taken here: the state does not wait
     for (std::size_t b = 0; b < model.bodies.size() && !body_fields_.empty(); ++b) {
         const model::Body& body = model.bodies[b];
-        std::vector<Array> arrays;
-        for (const Field* f : body_fields_) arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));
-        const std::string name = file(body.name, number, "vtu");
-        std::vector<Vec3> points = body.mesh.nodes;
-        for (Vec3& X : points) X += model.origin;
-        write_vtu(directory_ / name, points, body.mesh.blocks, arrays, time);
-        series_.add(time, body.name, name);
+        File& one = files.emplace_back(File{nullptr, &body, body.name, file(body.name, number, "vtu"), {}});
+        for (const Field* f : body_fields_) one.arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));
     }
     for (const Surface& surface : surfaces_) {
-        std::vector<Array> arrays{displacement_of(surface.nodes, snapshot.state().u)};
-        for (const Field* f : surface.fields) arrays.push_back(evaluate(*f, snapshot, surface.pair));
-        const std::string name = file(surface.name, number, "vtp");
-        write_vtp(directory_ / name, surface.points, surface.facets, arrays, time);
-        series_.add(time, surface.name, name);
+        File& one = files.emplace_back(File{&surface, nullptr, surface.name, file(surface.name, number, "vtp"), {}});
+        one.arrays.push_back(displacement_of(surface.nodes, snapshot.state().u));
+        for (const Field* f : surface.fields) one.arrays.push_back(evaluate(*f, snapshot, surface.pair));
+    }
+    finish();
+    if (!beside_) return write_files(files, model.origin, time);
+    writing_ = std::async(std::launch::async, [this, files = std::move(files), origin = model.origin, time] {
+        write_files(files, origin, time);
+    });
+}
+
+void Frames::write_files(const std::vector<File>& files, const Vec3& origin, double time) {
+    for (const File& one : files) {
+        if (one.surface != nullptr) {
+            write_vtp(directory_ / one.name, one.surface->points, one.surface->facets, one.arrays, time);
+        } else {
+            std::vector<Vec3> points = one.body->mesh.nodes;
+            for (Vec3& X : points) X += origin;
+            write_vtu(directory_ / one.name, points, one.body->mesh.blocks, one.arrays, time);
+        }
+        series_.add(time, one.part, one.name);
     }
     series_.flush();
+}
+
+void Frames::finish() {
+    if (writing_.valid()) writing_.get();
 }
 
 } // namespace osculate::output

@@ -240,13 +240,27 @@ TEST_F(Run, GivesUpWhenAFileCannotBeWritten) {
     EXPECT_EQ(taken.code, 3);
     EXPECT_THAT(taken.err, AllOf(HasSubstr("the run gave up: "), HasSubstr("taken")));
 
-    const Outcome full = osculate({"run", press, "-o", "full", "--quiet"}, [] {
-        std::signal(SIGXFSZ, SIG_IGN); // writing beyond the limit fails as on a full disk
-        const rlimit small{6000, 6000};
-        setrlimit(RLIMIT_FSIZE, &small);
-    });
-    EXPECT_EQ(full.code, 3);
-    EXPECT_THAT(full.err, HasSubstr("the run gave up: cannot write full/frames/"));
+    for (const char* threads : {"1", "2"}) { // with two, frames are written beside the next step
+        const Outcome full = osculate({"run", press, "-o", "full", "--quiet", "--threads", threads}, [] {
+            std::signal(SIGXFSZ, SIG_IGN); // writing beyond the limit fails as on a full disk
+            const rlimit small{6000, 6000};
+            setrlimit(RLIMIT_FSIZE, &small);
+        });
+        EXPECT_EQ(full.code, 3);
+        EXPECT_THAT(full.err, HasSubstr("the run gave up: cannot write full/frames/"));
+    }
+}
+
+TEST_F(Run, WritesTheSameFilesOnASecondThread) {
+    for (const char* threads : {"1", "2"})
+        ASSERT_EQ(osculate({"run", press, "-o", threads, "--quiet", "--threads", threads}).code, 0);
+    std::size_t files = 0;
+    for (const auto& file : fs::recursive_directory_iterator(folder / "1")) {
+        if (!file.is_regular_file() || file.path().filename() == "summary.json") continue; // times differ
+        ++files;
+        EXPECT_EQ(content(file.path()), content(folder / "2" / file.path().lexically_relative(folder / "1")));
+    }
+    EXPECT_GT(files, 5U);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "osculate/output/series.hpp"
 
 #include <filesystem>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -20,15 +21,18 @@ struct FrameFields {
 class Frames {
 public:
     /// Removes the frames of an earlier run in `directory`, and no other file.
-    /// @throws std::runtime_error with path and reason, as write() does
-    Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model);
+    /// @param beside  files are written on a thread of their own, the next step goes on meanwhile
+    /// @throws std::runtime_error with path and reason, as write() and finish() do
+    Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model, bool beside = false);
 
     /// Removes the frames in `directory` and their series, and the folders where nothing else is in them.
     /// @throws std::runtime_error with path and reason
     static void remove(const std::filesystem::path& directory);
 
-    /// Writes frame number `number` and lists it in series.pvd.
+    /// Writes frame number `number` and lists it in series.pvd: at the latest when the next one is written, or finish() called.
     void write(const Snapshot& snapshot, long number);
+    /// Waits until every frame is written.
+    void finish();
 
 private:
     struct Surface {
@@ -39,6 +43,13 @@ private:
         std::vector<mesh::Facet> facets; ///< nodes index points
         std::vector<const Field*> fields;
     };
+    struct File {
+        const Surface* surface = nullptr; ///< null: of a body
+        const model::Body* body = nullptr;
+        std::string part, name;
+        std::vector<Array> arrays;
+    };
+    void write_files(const std::vector<File>& files, const Vec3& origin, double time);
     void add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
                      const std::vector<mesh::Facet>& facets, std::vector<const Field*> fields);
     [[nodiscard]] std::string file(const std::string& part, long number, const char* extension);
@@ -47,6 +58,8 @@ private:
     std::vector<const Field*> body_fields_;
     std::vector<Surface> surfaces_;
     Series series_;
+    bool beside_;
+    std::future<void> writing_; ///< last: its thread uses the rest, and its destructor waits
 };
 
 } // namespace osculate::output

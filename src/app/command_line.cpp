@@ -101,9 +101,10 @@ void run_scene(const Arguments& arguments) {
         run(arguments.scene, arguments.overrides(), {arguments.output, arguments.threads, arguments.quiet});
     if (arguments.quiet) return;
     const std::string folder = arguments.output.empty() ? "out/" + summary.scene : arguments.output;
-    print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}/series.pvd and {}/history.csv\n",
-                      summary.scene, summary.steps.accepted, summary.iterations, summary.total_seconds, folder,
-                      folder));
+    const bool frames = std::ranges::count(summary.plan, "frames") > 0;
+    print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}{}/history.csv\n", summary.scene,
+                      summary.steps.accepted, summary.iterations, summary.total_seconds,
+                      frames ? folder + "/series.pvd and " : "", folder));
 }
 
 void run_study(Arguments arguments) {

@@ -1,59 +1,44 @@
 #include "app/plan_items.hpp"
 
-#include "osculate/time/collision_check.hpp"
 #include "osculate/time/linear_solver.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <limits>
-#include <numeric>
 
 namespace osculate::app {
 
+void PlanList::say(std::string part, bool present, std::string reason, PlanCost cost) {
+    items_.push_back({std::move(part), present, std::move(reason), present ? std::move(cost) : PlanCost{}});
+}
+
+void PlanList::set_cost(const std::string& part, PlanCost cost) {
+    for (PlanItem& item : items_)
+        if (item.part == part && item.present) item.cost = std::move(cost);
+}
+
+double bytes_of(const model::BlockMatrix& matrix) {
+    if (matrix.empty()) return 0;
+    const double blocks = matrix.row_end(matrix.rows() - 1);
+    return blocks * (sizeof(Mat3) + sizeof(Index)) + sizeof(Index) * static_cast<double>(matrix.rows() + 1);
+}
+
+std::size_t dynamic_stages(const Plan& plan) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(plan.stages, [](const time::Stage& stage) { return stage.dynamics.has_value(); }));
+}
+
 std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
-    std::vector<PlanItem> items;
+    PlanList list;
     const auto say = [&](std::string part, bool present, std::string reason) {
-        items.push_back({std::move(part), present, std::move(reason)});
+        list.say(std::move(part), present, std::move(reason));
     };
-    const bool contact = !plan.model.pairs.empty();
-    bool friction = false, smooth = false;
-    for (const auto& [name, pair] : scene.contact) {
-        friction = friction || pair.friction > 0;
-        smooth = smooth || !std::holds_alternative<scene::FacetsSurface>(pair.master.surface);
-    }
-    const bool finite = plan.model.finite_strain != nullptr;
-    say("stiffness", true, finite ? "of the bodies at small strain, assembled once" : "assembled once: constant");
-    say("finite strain", finite, finite ? "forces and tangent anew at every iterate" : "every body is linear");
-    const auto dynamic = std::count_if(plan.stages.begin(), plan.stages.end(),
-                                       [](const time::Stage& s) { return s.dynamics.has_value(); });
-    say("inertia, damping", dynamic > 0,
-        dynamic > 0 ? std::to_string(dynamic) + " dynamic stage(s)" : "every stage is static");
-    const auto courses = std::accumulate(plan.stages.begin(), plan.stages.end(), std::size_t{0},
-                                         [](std::size_t sum, const time::Stage& s) { return sum + s.courses.size(); });
+    add_body_items(scene, plan, list);
+    add_contact_items(scene, plan, list);
+
+    const bool contact = !plan.model.pairs.empty(), finite = plan.model.finite_strain != nullptr;
     const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
                                      [](const time::Stage& s) { return !s.follower_pressures.empty(); });
-    say("follower pressure", follows, follows ? "forces and tangent anew at every iterate" : "no pressure follows");
-    say("courses over time", courses > 0,
-        courses > 0 ? std::to_string(courses) + " load(s) and motion(s) by tables or expressions"
-                    : "every load and motion ramps or jumps to its value");
-    say("contact", contact, contact ? std::to_string(scene.contact.size()) + " pair(s)" : "the scene has no pair");
-    double finest = std::numeric_limits<double>::infinity();
-    for (const auto& pair : plan.model.pairs) finest = std::min(finest, pair->finest());
-    const bool paths = std::ranges::any_of(plan.stages, &time::Stage::follow_paths);
-    say("collision check", paths,
-        paths ? fmt::format(
-                    "paths of open nodes, in steps that move them by {:.3g} m or more against a master, or in which "
-                    "they lose it",
-                    time::CollisionCheck::reach * finest)
-              : (contact ? "every stage is static" : "the scene has no pair"));
-    say("friction", friction, friction ? "a pair has mu > 0" : "no pair has mu > 0");
-    const bool mortar = std::ranges::any_of(
-        scene.contact, [](const auto& pair) { return pair.second.discretisation == scene::Discretisation::mortar; });
-    say("mortar weighting", mortar,
-        mortar ? "a pair averages gaps over its slave facets" : "no pair asks for discretisation: mortar");
-    say("smooth master surface", smooth,
-        smooth ? "frozen patches by radial point interpolation" : "no pair asks for one");
-    const bool unsymmetric = contact || follows || (finite && dynamic > 0);
+    const bool unsymmetric = contact || follows || (finite && dynamic_stages(plan) > 0);
     const time::LinearSolver asked = plan.stepper.linear_solver;
     const auto cost = time::condensation_cost(plan.model);
     const bool condensed = time::condenses(plan.model, asked, follows);
@@ -89,14 +74,20 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         : follows     ? "unsymmetric tangent of follower pressures"
         : unsymmetric ? "unsymmetric tangent of finite strain in dynamics"
                       : "the tangent is symmetric");
-    const scene::Output& out = scene.output;
-    say("nodal stresses",
-        std::any_of(out.body_fields.begin(), out.body_fields.end(),
-                    [](const std::string& f) { return f == "stress" || f == "von_mises"; }),
-        "output template '" + out.template_name + "'");
-    say("frames", out.frame_every > 0, "every " + std::to_string(out.frame_every) + " accepted step(s)");
-    say("iterations.csv", out.iterations, out.iterations ? "asked for" : "not asked for");
-    return items;
+    constexpr double copies = 5; // of the stiffness: with springs and without, PETSc's, coarser ones
+    list.set_cost("multigrid", {copies * bytes_of(plan.model.K), 0, {}});
+    list.set_cost("condensation", {cost.bytes, cost.condensed, "operations once"});
+    list.set_cost("Cholesky factorisation", {0, cost.factorising, "operations each"});
+    const std::size_t statics = plan.stages.size() - dynamic_stages(plan);
+    say("stabilisation springs", false,
+        statics == 0                  ? "inertia holds every body"
+        : !plan.stepper.stabilisation ? "solver.stabilisation is off"
+                                      : "only where a tangent is singular, or as a last resort");
+    list.say("threads", plan.stepper.threads > 1,
+             plan.stepper.threads > 1 ? "share out slave nodes and rows of matrices" : "one does all",
+             {0, static_cast<double>(plan.stepper.threads), "threads"});
+    add_output_items(scene, plan, list);
+    return list.take();
 }
 
 } // namespace osculate::app

@@ -26,12 +26,15 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
 
 void RunChecks::add_penetration(const time::AcceptedStep& step) {
     const time::StepLimits& limits = step.stage.limits;
-    std::vector<Vec3> x = model_.X;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += step.state.u[i];
-    for (const auto& pair : model_.pairs)
+    std::vector<Vec3> x; // for mortar alone, whose weighting may not see a node
+    for (const auto& pair : model_.pairs) {
+        const bool mortar = pair->options().discretisation == model::Discretisation::mortar;
+        if (mortar && x.empty())
+            for (std::size_t i = 0; i < model_.X.size(); ++i) x.push_back(model_.X[i] + step.state.u[i]);
         for (Index j = 0; j < pair->size(); ++j) {
             const contact::ContactPoint& point = pair->point(j);
             const bool seen = point.found || point.behind;
+            if (!seen && !mortar) continue;
             const double gap = seen ? point.gap : pair->unseen_gap(j, x);
             const Index facet = seen ? point.facet : pair->facets()[j];
             if (facet < 0 || !(gap < 0)) continue;
@@ -47,6 +50,7 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             excessive_ = depth;
             bound_ = bound;
         }
+    }
 }
 
 void RunChecks::add_energies(const time::Ledger& ledger) {

@@ -54,18 +54,20 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
     const scene::Output& out = scene.output;
     const fs::path& folder = settings_.directory;
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
-    needs_reactions_ = reactions || std::ranges::count(out.body_fields, "reaction") > 0;
+    history_reactions_ = reactions;
+    frame_reactions_ = std::ranges::count(out.body_fields, "reaction") > 0;
     describe_plan();
     on_disk(timings_, [&] {
         fs::create_directories(folder);
         write_text(folder / "scene.yaml", scene::write_scene(scene));
         fs::remove(folder / output::post_mortem_file);
         output::Frames::remove(folder / failed_folder);
-        const bool frames = out.frame_every > 0;
-        frames_ = std::make_unique<output::Frames>(
-            folder,
-            frames ? output::FrameFields{out.body_fields, out.slave_fields, out.master_fields} : output::FrameFields{},
-            plan.model, settings_.threads > 1);
+        if (out.frame_every > 0)
+            frames_ = std::make_unique<output::Frames>(
+                folder, output::FrameFields{out.body_fields, out.slave_fields, out.master_fields}, plan.model,
+                settings_.threads > 1);
+        else
+            output::Frames::remove(folder);
         history_ = std::make_unique<output::History>(
             folder / "history.csv", plan.model, out.history_pairs,
             reactions ? plan.constrained_sets : std::vector<Index>{},
@@ -104,12 +106,15 @@ void RunRecorder::describe_plan() {
 }
 
 void RunRecorder::write_initial_frame() {
-    if (scene_.output.frame_every == 0) return;
-    for (const auto& pair : plan_.model.pairs)
-        (void)initial_gaps(*pair, plan_.model.X, timings_, settings_.threads); // evaluates the contact points
+    if (!frames_) return;
+    const scene::Output& out = scene_.output;
+    if (!out.slave_fields.empty() || !out.master_fields.empty())
+        for (const auto& pair : plan_.model.pairs)
+            (void)initial_gaps(*pair, plan_.model.X, timings_, settings_.threads); // evaluates the contact points
     on_disk(timings_, [&] {
-        const std::vector<Vec3> none(plan_.model.X.size(), Vec3::Zero());
-        frames_->write({plan_.model, stepper_.state(), none}, 0);
+        std::vector<Vec3> none;
+        if (frame_reactions_) none.assign(plan_.model.X.size(), Vec3::Zero());
+        frames_->write({plan_.model, stepper_.state(), std::move(none)}, 0);
     });
 }
 
@@ -131,18 +136,18 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
     checks_.accepted(step);
     const model::Constraints& constraints = step.equilibrium.constraints();
     on_disk(timings_, [&] {
-        const output::Snapshot snapshot(plan_.model, step.state,
-                                        needs_reactions_
-                                            ? output::nodal_reactions(constraints, step.equilibrium.unbalanced())
-                                            : std::vector<Vec3>(plan_.model.X.size(), Vec3::Zero()));
-        history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
         const int every = scene_.output.frame_every;
-        const double end = stepper_.end_time();
-        const bool last = step.state.time >= end * (1 - 1e-12);
-        if (every > 0 && (summary_.steps.accepted % every == 0 || last))
-            frames_->write(snapshot, summary_.steps.accepted);
+        const bool last = step.state.time >= stepper_.end_time() * (1 - 1e-12);
+        const bool frame = frames_ && (summary_.steps.accepted % every == 0 || last);
+        std::vector<Vec3> reactions;
+        if (history_reactions_ || (frame && frame_reactions_))
+            reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
+        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions));
+        history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
+        if (frame) frames_->write(snapshot, summary_.steps.accepted);
     });
     write_summary();
+    if (settings_.quiet) return;
     long contacts = 0;
     for (const model::ContactHistory& history : step.state.contact)
         contacts += std::ranges::count_if(history.status, contact::is_closed);
@@ -179,7 +184,7 @@ void RunRecorder::write_failed(const time::FailedIterate& iterate) {
 }
 
 void RunRecorder::wait_for_frames() {
-    on_disk(timings_, [&] { frames_->finish(); });
+    if (frames_) on_disk(timings_, [&] { frames_->finish(); });
 }
 
 void RunRecorder::finish(const std::string& status, const std::string& failure) {

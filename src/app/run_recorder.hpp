@@ -56,7 +56,7 @@ private:
     const time::Stepper& stepper_;
     Timings& timings_;
     Settings settings_;
-    bool needs_reactions_ = false;
+    bool history_reactions_ = false, frame_reactions_ = false;
     output::Summary summary_;
     std::string post_mortem_;
     std::unique_ptr<output::CsvTable> steps_, iterations_;

@@ -58,6 +58,7 @@ public:
         });
     }
 
+    [[nodiscard]] bool refreshes() const override { return true; }
     Index refresh(const std::vector<Vec3>& x) override {
         const std::vector<Index> fresh = vertex_patches_.refresh(x);
         if (fresh.empty()) return 0;

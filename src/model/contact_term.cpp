@@ -197,7 +197,7 @@ Vec3 ContactTerm::drift(Index j, const std::vector<Vec3>& from, const std::vecto
 }
 
 contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const {
-    return {lambda, points_[j].gap, points_[j].normal, drift(j, x_start_, x)};
+    return {lambda, points_[j].gap, points_[j].normal, options_.friction > 0 ? drift(j, x) : Vec3(Vec3::Zero())};
 }
 
 Index ContactTerm::carriers(Index j) const {
@@ -216,6 +216,10 @@ void ContactTerm::vary(Index j, const std::vector<Vec3>& x, contact::ContactVari
 
 void ContactTerm::drift_variation(Index j, const std::vector<Vec3>& x, const contact::ContactVariation& variation,
                                   Matrix& dd) const {
+    if (!(options_.friction > 0)) {
+        dd.setZero(3, variation.dg.cols());
+        return;
+    }
     // dd = ds - Phi_i dx_i - (x_i - x_i,start) dPhi_i
     const contact::ContactPoint& point = points_[j];
     const auto n = static_cast<Index>(point_nodes_[j].size());

@@ -39,6 +39,8 @@ Values reaction(const Snapshot& snapshot, Index body) {
 }
 
 Values out_of_balance(const Snapshot& snapshot, Index body) {
+    if (snapshot.out_of_balance().empty())
+        return Values(3 * static_cast<std::size_t>(snapshot.model().bodies[body].nodes()), 0.0);
     return of_body(snapshot, body, snapshot.out_of_balance());
 }
 
@@ -87,9 +89,10 @@ Values normal_stress(const Snapshot& snapshot, Index pair) {
 
 Values slip(const Snapshot& snapshot, Index pair) {
     Values values;
-    for_each_slave(snapshot, pair, [&](Index, const contact::ContactState& contact, bool closed) {
+    for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool closed) {
+        const Vec3 d = closed ? snapshot.drift(pair, j) : Vec3::Zero();
         const Vec3& n = contact.normal;
-        append(values, closed ? Vec3(contact.drift - n * n.dot(contact.drift)) : Vec3::Zero());
+        append(values, d - n * n.dot(d));
     });
     return values;
 }

@@ -48,6 +48,7 @@ Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model
         const model::ContactTerm& pair = *model.pairs[p];
         const auto number = static_cast<Index>(p);
         add_surface(model, pair.name() + ".slave", number, pair.slaves().node, pair.slaves().facets, slave);
+        if (master.empty()) continue;
         std::vector<mesh::Facet> own; // without mirror images
         for (const mesh::Facet& facet : pair.surface().facets())
             if (std::all_of(facet.begin(), facet.end(), [&](Index node) { return node < model.nodes(); }))

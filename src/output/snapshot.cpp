@@ -6,10 +6,14 @@ namespace osculate::output {
 
 Snapshot::Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
                    std::vector<Vec3> out_of_balance)
-    : model_(model), state_(state), reactions_(std::move(reactions)), out_of_balance_(std::move(out_of_balance)),
-      x_(model.X) {
-    out_of_balance_.resize(x_.size(), Vec3::Zero());
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state.u[i];
+    : model_(model), state_(state), reactions_(std::move(reactions)), out_of_balance_(std::move(out_of_balance)) {}
+
+const std::vector<Vec3>& Snapshot::x() const {
+    if (x_.empty()) {
+        x_ = model_.X;
+        for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state_.u[i];
+    }
+    return x_;
 }
 
 const Snapshot::Stress& Snapshot::stress(Index body) const {
@@ -19,7 +23,8 @@ const Snapshot::Stress& Snapshot::stress(Index body) const {
 }
 
 contact::ContactState Snapshot::contact(Index pair, Index slave) const {
-    return model_.pairs[pair]->state(slave, x_, state_.contact[pair].lambda[slave]);
+    const contact::ContactPoint& point = model_.pairs[pair]->point(slave);
+    return {state_.contact[pair].lambda[slave], point.gap, point.normal, Vec3::Zero()};
 }
 
 bool Snapshot::has_partner(Index pair, Index slave) const {

@@ -8,6 +8,10 @@ namespace osculate::time {
 namespace {
 using Field = NodalField;
 
+bool damped(const Dynamics& dynamics) {
+    return dynamics.mass_damping > 0 || dynamics.stiffness_damping > 0;
+}
+
 /// f += C v
 void add_damping(const model::Model& model, const Dynamics& dynamics, const Field& v, Field& f, int threads) {
     const double by_M = dynamics.mass_damping, by_K = dynamics.stiffness_damping;
@@ -18,6 +22,7 @@ void add_damping(const model::Model& model, const Dynamics& dynamics, const Fiel
 
 void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model, const Field& u,
                          Field& f) {
+    if (pressures.empty()) return;
     Field x(u.size());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = model.X[i] + u[i];
     for (const FollowerLoad& load : pressures)
@@ -60,17 +65,22 @@ bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pres
                              inertia + rate * dynamics_->mass_damping, mass());
     }
     const std::size_t n = u_start_.size();
-    Field by_M(n), mean_v(n);
+    Field by_M(n);
     for (std::size_t i = 0; i < n; ++i) {
-        const Vec3 v = kinematics_.velocity(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
         const Vec3 a = kinematics_.acceleration(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
-        mean_v[i] = (1 - w.alpha_f) * v + w.alpha_f * v_start_[i];
         by_M[i] = (1 - w.alpha_m) * a + w.alpha_m * a_start_[i];
     }
     force_start_.assign(n, Vec3::Zero());
     mass().multiply_add(by_M, force_start_, threads_);
     model_.K.multiply_add(u_start_, force_start_, threads_);
-    add_damping(model_, *dynamics_, mean_v, force_start_, threads_);
+    if (damped(*dynamics_)) {
+        Field mean_v(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vec3 v = kinematics_.velocity(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
+            mean_v[i] = (1 - w.alpha_f) * v + w.alpha_f * v_start_[i];
+        }
+        add_damping(model_, *dynamics_, mean_v, force_start_, threads_);
+    }
     if (follower_pressure_) add_pressures(-w.alpha_f, false, u_start_, force_start_);
     return changed;
 }
@@ -169,6 +179,7 @@ BodyWork BodyForces::work(const model::State& state) const {
         work.follower = dot(Du, f);
     }
 
+    if (!damped(*dynamics_)) return work;
     f.assign(f.size(), Vec3::Zero());
     add_damping(model_, *dynamics_, weighted(1 - w.alpha_f, state.v, w.alpha_f, v_start_), f, threads_);
     work.damping = dot(Du, f);
@@ -184,9 +195,10 @@ BodyWork BodyForces::work(const model::State& state) const {
 }
 
 Field BodyForces::outer_forces(const model::State& state) const {
+    if (dynamics_ == nullptr && !follower_pressure_) return {};
     Field f(state.u.size(), Vec3::Zero());
     if (dynamics_ == nullptr) {
-        if (follower_pressure_) add_pressures(1, true, state.u, f);
+        add_pressures(1, true, state.u, f);
         return f;
     }
     const Integrator& w = dynamics_->integrator;

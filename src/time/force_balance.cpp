@@ -42,8 +42,9 @@ ForceBalance force_balance(const model::Model& model, const Equilibrium& equilib
         for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node) {
             const auto i = static_cast<std::size_t>(node);
             const Vec3 reaction = equilibrium.constraints().reaction(node, unbalanced[i]);
-            sum += reaction + load[i] + outer[i] + contact[i];
-            balance.acting += reaction.norm() + load[i].norm() + outer[i].norm() + contact[i].norm();
+            const Vec3 other = outer.empty() ? Vec3(Vec3::Zero()) : outer[i];
+            sum += reaction + load[i] + other + contact[i];
+            balance.acting += reaction.norm() + load[i].norm() + other.norm() + contact[i].norm();
         }
         balance.left_over = std::max(balance.left_over, sum.norm());
     }

@@ -140,7 +140,7 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
     int failures = 0, slow = 0; // slow: not on the way across a gap
     const auto newton = [&](bool springs) {
         if (springs)
-            equilibrium.stabilise({how.share, stiffness, anchor});
+            equilibrium.stabilise({&how.share(), stiffness, anchor});
         else
             equilibrium.release();
         equilibrium.set_statuses(statuses, StatusRule::natural, force_first && result.stabilised_solves == 0);
@@ -272,7 +272,7 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     result.worst_element = equilibrium.worst_element();
     result.astray = !(largest_component(equilibrium.displacements(z)) <= options.farthest);
     const StabilisationOptions& how = options.stabilisation;
-    if (result.converged() || how.share == nullptr || !(singular || options.last_chance)) return result;
+    if (result.converged() || !how.share || !(singular || options.last_chance)) return result;
     const Vector last = z;
     const Statuses last_statuses = equilibrium.statuses();
     z = first;

@@ -119,7 +119,10 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
 
 StabilisationOptions Stepper::stabilisation_options() const {
     StabilisationOptions how;
-    how.share = &volume_shares_;
+    how.share = [this]() -> const std::vector<double>& {
+        if (volume_shares_.empty()) volume_shares_ = model::volume_shares(model_);
+        return volume_shares_;
+    };
     how.farthest = characteristic_length_;
     constexpr double part = 0.05; // of the model, where there is no facet to compare with
     how.finest = part * characteristic_length_;
@@ -187,11 +190,17 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         return std::sqrt(sum);
     };
     std::vector<Vec3> internal = model::internal_force(model_, state_.u, options_.threads);
-    std::vector<Vec3> external = load.force;
-    std::vector<FollowerLoad> pressures = load.pressures;
-    for (FollowerLoad& pressure : pressures) pressure.start = pressure.end;
-    add_follower_forces(pressures, model_, state_.u, external);
-    double carried = std::max(norm(external), norm(internal));
+    double external = 0;
+    if (load.pressures.empty()) {
+        external = norm(load.force);
+    } else {
+        std::vector<Vec3> force = load.force;
+        std::vector<FollowerLoad> pressures = load.pressures;
+        for (FollowerLoad& pressure : pressures) pressure.start = pressure.end;
+        add_follower_forces(pressures, model_, state_.u, force);
+        external = norm(force);
+    }
+    double carried = std::max(external, norm(internal));
     if (stage.dynamics) {
         // a thousandth of the force that would stop every motion within the step
         constexpr double share = 1e-3;

@@ -77,8 +77,6 @@ Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions 
     }
     characteristic_length_ = (high - low).norm();
     largest_stiffness_ = model::largest_stiffness(model);
-    const bool statics = std::ranges::any_of(stages_, [](const Stage& s) { return !s.dynamics.has_value(); });
-    if (options_.stabilisation && statics) volume_shares_ = model::volume_shares(model);
 }
 
 double Stepper::end_time() const {
@@ -119,10 +117,13 @@ double Stepper::local_error(const Dynamics& dynamics, const Constraints& constra
 }
 
 void Stepper::refresh_patches() {
-    if (model_.pairs.empty()) return;
-    std::vector<Vec3> x = model_.X;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state_.u[i];
-    for (auto& pair : model_.pairs) refreshed_patches_ += pair->refresh(x);
+    std::vector<Vec3> x;
+    for (auto& pair : model_.pairs) {
+        if (!pair->master().refreshes()) continue;
+        if (x.empty())
+            for (std::size_t i = 0; i < model_.X.size(); ++i) x.push_back(model_.X[i] + state_.u[i]);
+        refreshed_patches_ += pair->refresh(x);
+    }
 }
 
 void Stepper::start_motion(const Stage& stage, const Constraints& constraints, StepLoad load) {
@@ -218,7 +219,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             forced = starting_statuses(equilibrium, z, statuses);
         else
             for (const model::ContactHistory& history : state_.contact) statuses.push_back(history.status);
-        if (dynamics == nullptr && !volume_shares_.empty()) ladder.stabilisation = stabilisation_options();
+        if (dynamics == nullptr && options_.stabilisation) ladder.stabilisation = stabilisation_options();
         ladder.last_chance = cannot_be_cut(stage.limits, dt, repeats);
         if (ladder.reference_force == 0) ladder.reference_force = imbalance(equilibrium, z, statuses, forced);
         const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};

@@ -32,8 +32,10 @@ protected:
             x.push_back(s);
         }
         const std::vector<Index> master_nodes = surface->vertex_nodes();
+        ContactOptions options;
+        options.friction = 0.3;
         term = std::make_unique<ContactTerm>("pair", x, slaves, std::move(surface), MasterNodes{master_nodes},
-                                             std::move(master), ContactOptions{});
+                                             std::move(master), options);
         term->begin_step(x, term->initial_history(), timings, 1);
         term->evaluate(x, timings, 1);
     }

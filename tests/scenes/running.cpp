@@ -194,7 +194,14 @@ TEST_F(Run, FramesAreWrittenAsOftenAsAskedAndAtTheEnd) {
     const fs::path files = run(press, {"output.frame_every=3", "output.slave_fields=[]", "output.master_fields=[]"});
     EXPECT_THAT(names_in(files / "frames"), ElementsAre("base_00000.vtu", "base_00003.vtu", "base_00004.vtu",
                                                         "cap_00000.vtu", "cap_00003.vtu", "cap_00004.vtu"));
-    EXPECT_FALSE(fs::exists(run(press, {"output.frame_every=0"}) / "frames" / "base_00000.vtu"));
+    run(press, {"output.frame_every=0"}); // what the run before wrote is gone, too
+    EXPECT_THAT(names_in(files), ElementsAre("history.csv", "scene.yaml", "steps.csv", "summary.json"));
+}
+
+TEST_F(Run, SaysWhereFramesAreOnlyWhereItWritesSome) {
+    EXPECT_THAT(osculate({"run", press, "-o", "run"}).out, HasSubstr("see run/series.pvd and run/history.csv"));
+    EXPECT_THAT(osculate({"run", press, "-o", "run", "--set", "output.frame_every=0"}).out,
+                HasSubstr(" s; see run/history.csv"));
 }
 
 TEST_F(Run, MinimalTemplateWritesNothingUnnamed) {

@@ -12,11 +12,19 @@
 
 namespace osculate::app {
 
+/// What a part takes, estimated from counts of the plan: good to a factor of two or so.
+struct PlanCost {
+    double bytes = 0;   ///< held while the run goes
+    double count = 0;   ///< of `unit`
+    std::string unit{}; ///< such as "elements an iteration"
+};
+
 /// A part of the plan that is there or left out, and why.
 struct PlanItem {
     std::string part;
     bool present = false;
     std::string reason;
+    PlanCost cost{}; ///< zeros where the part is left out, or where there is nothing worth counting
 };
 
 struct Plan {

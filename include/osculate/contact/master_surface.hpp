@@ -52,6 +52,8 @@ public:
         (void)from, (void)to;
         return true;
     }
+    /// Whether refresh() may ever do anything.
+    [[nodiscard]] virtual bool refreshes() const { return false; }
     /// Fits patches anew at converged positions x where the surface has been bent by more than 60 degrees within one, so
     /// that its frozen coordinates have become misleading. To be called between steps only.
     /// @returns how many

@@ -106,6 +106,9 @@ public:
     [[nodiscard]] std::vector<Index> patch_nodes(Index facet) const;
     /// Displacement of slave j relative to the master between two displacement fields, at its current contact point, m.
     [[nodiscard]] Vec3 drift(Index j, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const;
+    /// The same since the step began, to positions x of all nodes.
+    [[nodiscard]] Vec3 drift(Index j, const std::vector<Vec3>& x) const { return drift(j, x_start_, x); }
+    /// What the law needs to know: without friction no drift.
     [[nodiscard]] contact::ContactState state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const;
     /// c of the complementarity function of slave j, N/m: stiffness and, in dynamics, what inertia adds to it.
     [[nodiscard]] double stiffness(Index j) const { return slaves_.stiffness[j] + inertia_[j]; }

@@ -13,7 +13,7 @@ class Snapshot {
 public:
     using Stress = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-    /// @param reactions       (nodes) what supports and driven motions exert on each node, N
+    /// @param reactions       (nodes) what supports and driven motions exert on each node, N; empty: nobody asks for them
     /// @param out_of_balance  (nodes) forces that nothing balances, N, of an iterate that is no equilibrium; empty: none
     Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
              std::vector<Vec3> out_of_balance = {});
@@ -21,20 +21,24 @@ public:
     [[nodiscard]] const model::Model& model() const { return model_; }
     [[nodiscard]] const model::State& state() const { return state_; }
     [[nodiscard]] const std::vector<Vec3>& reactions() const { return reactions_; }
+    /// Empty where the state is an equilibrium.
     [[nodiscard]] const std::vector<Vec3>& out_of_balance() const { return out_of_balance_; }
-    /// Current positions x = X + u of all nodes, m.
-    [[nodiscard]] const std::vector<Vec3>& x() const { return x_; }
+    /// Current positions x = X + u of all nodes, m; computed when first asked for.
+    [[nodiscard]] const std::vector<Vec3>& x() const;
     /// Nodal stress of a body (nodes x 6), Pa; computed when first asked for.
     [[nodiscard]] const Stress& stress(Index body) const;
-    /// Contact state of a slave node at x: gap, normal, force, drift of the step.
+    /// Contact state of a slave node at x: gap, normal, force; no drift.
     [[nodiscard]] contact::ContactState contact(Index pair, Index slave) const;
+    /// Displacement of a slave node relative to the master within the step, m.
+    [[nodiscard]] Vec3 drift(Index pair, Index slave) const { return model_.pairs[pair]->drift(slave, x()); }
     /// Whether the master has a point that the slave node can touch, or has passed.
     [[nodiscard]] bool has_partner(Index pair, Index slave) const;
 
 private:
     const model::Model& model_;
     const model::State& state_;
-    std::vector<Vec3> reactions_, out_of_balance_, x_;
+    std::vector<Vec3> reactions_, out_of_balance_;
+    mutable std::vector<Vec3> x_;
     mutable std::map<Index, Stress> stress_;
 };
 

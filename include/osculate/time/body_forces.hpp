@@ -65,7 +65,7 @@ public:
     /// Work over the step that ended in `state`.
     [[nodiscard]] BodyWork work(const model::State& state) const;
     /// What acts from outside of the bodies over that step but for dead loads: follower pressures, less inertia and damping
-    /// by mass. (nodes) N
+    /// by mass. (nodes) N; empty where there is neither
     [[nodiscard]] std::vector<Vec3> outer_forces(const model::State& state) const;
 
 private:

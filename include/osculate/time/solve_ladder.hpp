@@ -3,15 +3,18 @@
 
 #include "osculate/time/equilibrium.hpp"
 
+#include <functional>
+
 namespace osculate::time {
 
 /// The last rung, in statics: bodies lean on springs (see Stabilisation) that are moved after them and made softer until
 /// equilibrium holds without them.
 struct StabilisationOptions {
-    const std::vector<double>* share = nullptr; ///< model::volume_shares; null: the rung is left out
-    double finest = 0;                          ///< m, motions below it end on this side of whatever they meet
-    double gap = 0;                             ///< m, smallest at the start
-    double farthest = 0;                        ///< m, travel after which a body counts as held by nothing
+    std::function<const std::vector<double>&()>
+        share;           ///< model::volume_shares, when needed; none: the rung is left out
+    double finest = 0;   ///< m, motions below it end on this side of whatever they meet
+    double gap = 0;      ///< m, smallest at the start
+    double farthest = 0; ///< m, travel after which a body counts as held by nothing
 };
 
 struct LadderOptions {

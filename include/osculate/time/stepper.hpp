@@ -117,8 +117,8 @@ private:
     int stabilised_steps_ = 0;
     long factorisations_ = 0, gmres_iterations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;
-    double largest_stiffness_ = 0;      ///< model::largest_stiffness
-    std::vector<double> volume_shares_; ///< model::volume_shares; empty without stabilisation
+    double largest_stiffness_ = 0;              ///< model::largest_stiffness
+    mutable std::vector<double> volume_shares_; ///< model::volume_shares, once a ladder has asked for them
 };
 
 } // namespace osculate::time

@@ -1,0 +1,111 @@
+/// A scene that asks for little: nothing is made of what it leaves out.
+
+#include "osculate/app/compile.hpp"
+#include "osculate/scene/reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+
+namespace osculate::app {
+namespace {
+
+/// Static, linear, facets, no friction.
+const std::string little = R"(
+bodies:
+  base:
+    mesh: {block: {size: [2 m, 2 m, 0.5 m], divisions: [4, 4, 1]}}
+    material: {linear_elastic: {E: 10 MPa, nu: 0.3, density: 1000 kg/m^3}}
+  cap:
+    mesh: {block: {origin: [0.5 m, 0.5 m, 0.5 m], size: [1 m, 1 m, 0.5 m], divisions: [3, 3, 1]}}
+    material: {linear_elastic: {E: 10 MPa, nu: 0.3, density: 1000 kg/m^3}}
+    initial_velocity: [0, 0, -1 m/s]
+sets:
+  bed: {body: base, surface: z_min}
+  ground: {body: base, surface: z_max}
+  under: {body: cap, surface: z_min}
+  top: {body: cap, surface: z_max}
+supports:
+  bed: {fix: [x, y, z]}
+  top: {fix: [x, y]}
+contact:
+  joint: {slave: under, master: {set: ground, surface: facets}}
+stages:
+  press: {steps: 3, pressure: {top: 10 kPa}}
+)";
+
+struct LittleRun final : time::StepObserver {
+    LittleRun() {
+        const scene::Scene scene = scene::parse_scene(little, "scene.yaml");
+        plan = compile(scene, build_meshes(scene), 1, timings);
+        stepper = std::make_unique<time::Stepper>(plan.model, plan.stages, plan.stepper, timings);
+    }
+    void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
+    void accepted(const time::AcceptedStep& step) override {
+        ++steps;
+        EXPECT_EQ(step.ledger, nullptr);
+        EXPECT_TRUE(step.state.v.empty());
+        EXPECT_TRUE(step.state.a.empty());
+        const time::BodyForces& bodies = step.equilibrium.bodies();
+        EXPECT_FALSE(bodies.dynamic());
+        EXPECT_FALSE(bodies.stabilised());
+        EXPECT_EQ(&bodies.tangent(), &plan.model.K) << "the stiffness itself, no copy";
+        EXPECT_TRUE(bodies.outer_forces(step.state).empty());
+    }
+    Timings timings;
+    Plan plan;
+    std::unique_ptr<time::Stepper> stepper;
+    int steps = 0;
+};
+
+TEST(LeaveOut, NothingIsCompiledThatTheSceneDoesNotAskFor) {
+    const Plan plan = LittleRun().plan;
+    const model::Model& model = plan.model;
+    EXPECT_EQ(model.finite_strain, nullptr);
+    EXPECT_TRUE(model.consistent_mass.empty());
+    EXPECT_TRUE(model.lumped_mass.empty());
+    EXPECT_TRUE(model.initial_velocity.empty()) << "nothing moves in statics, whatever the body says";
+    ASSERT_EQ(plan.stages.size(), 1U);
+    const time::Stage& stage = plan.stages[0];
+    EXPECT_FALSE(stage.dynamics);
+    EXPECT_FALSE(stage.follow_paths);
+    EXPECT_FALSE(std::isfinite(stage.limits.allowed_interpenetration)) << "no trial solves";
+    EXPECT_TRUE(stage.courses.empty() && stage.course_forces.empty() && stage.follower_pressures.empty());
+
+    ASSERT_EQ(model.pairs.size(), 1U);
+    const model::ContactTerm& pair = *model.pairs[0];
+    EXPECT_FALSE(pair.master().refreshes());
+    for (Index f = 0; f < pair.surface().facet_count(); ++f) {
+        EXPECT_TRUE(std::ranges::equal(pair.master().patch_vertices(f), pair.surface().facet_vertices(f)))
+            << "a facet, no patch";
+        EXPECT_TRUE(std::isinf(pair.thickness(f))) << "asked for by the collision check alone";
+    }
+    EXPECT_FALSE(pair.mirrored());
+    EXPECT_TRUE(pair.slaves().in_plane.empty());
+}
+
+TEST(LeaveOut, NothingIsMadeWhileItRuns) {
+    LittleRun run;
+    run.stepper->run(run);
+    EXPECT_EQ(run.steps, 3);
+    EXPECT_EQ(run.stepper->paths_followed(), 0);
+    EXPECT_EQ(run.stepper->refreshed_patches(), 0);
+    EXPECT_EQ(run.stepper->stabilised_steps(), 0);
+    const model::ContactTerm& pair = *run.plan.model.pairs[0];
+    const auto far = run.plan.model.X; // from where the step began every slave node has moved
+    contact::ContactVariation variation;
+    Matrix dd;
+    for (Index j = 0; j < pair.size(); ++j) {
+        ASSERT_TRUE(pair.point(j).found);
+        EXPECT_EQ(pair.point(j).trace, nullptr) << "kept by smooth surfaces alone";
+        EXPECT_FALSE(pair.drift(j, far).isZero(0));
+        EXPECT_TRUE(pair.state(j, far, Vec3::Zero()).drift.isZero(0)) << "of no concern without friction";
+        pair.vary(j, far, variation);
+        pair.drift_variation(j, far, variation, dd);
+        EXPECT_TRUE(dd.isZero(0));
+    }
+}
+
+} // namespace
+} // namespace osculate::app

@@ -79,6 +79,18 @@ TEST(LinearSolvers, GiveTheSameMotion) {
                                                  {"bodies.contactor.mesh.contactor.divisions", "[4, 5, 1]"}});
 }
 
+TEST(LinearSolvers, GiveTheSameAtFiniteStrain) {
+    const support::FloatingPointTraps suspended(false);
+    SceneRun direct, multigrid;
+    const auto by = [](const char* solver) {
+        return std::vector<scene::Override>{{"solver.tolerance", "1e-12"}, {"solver.linear_solver", solver}};
+    };
+    support::run_scene(direct, support::shipped("extreme/rubber_mu_10.yaml"), by("direct"));
+    support::run_scene(multigrid, support::shipped("extreme/rubber_mu_10.yaml"), by("multigrid"));
+    ASSERT_EQ(direct.steps.size(), multigrid.steps.size());
+    EXPECT_LT(difference(direct, multigrid), same);
+}
+
 TEST(LinearSolvers, GiveTheSameBitsForAnyNumberOfThreads) {
     for (const char* solver : {"condensed", "iterative", "multigrid"}) {
         auto overrides = coarse;

@@ -44,9 +44,11 @@ void Equilibrium::linearise(std::size_t p, Index j, contact::VariationForm form,
     tangent.reaches = reaches(p, j);
     if (!tangent.reaches) return;
     pair.vary(j, x_, tangent.variation);
-    pair.drift_variation(j, x_, tangent.variation, tangent.dd);
-    tangent.A.noalias() =
-        law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn + law.by_drift * tangent.dd;
+    tangent.A.noalias() = law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn;
+    if (pair.options().friction > 0) {
+        pair.drift_variation(j, x_, tangent.variation, tangent.dd);
+        tangent.A.noalias() += law.by_drift * tangent.dd;
+    }
     tangent.A = kept * tangent.A;
     tangent.E = -pair.master_force_by_lambda(j); // the forces stand on the right of the equilibrium
     pair.fold(j, tangent.A, tangent.E);

@@ -46,7 +46,7 @@ struct Summary {
     std::vector<Pair> pairs;
     Steps steps;
     long iterations = 0, factorisations = 0;
-    long gmres_iterations = 0; ///< on the whole tangent
+    long gmres_iterations = 0;                 ///< on the whole tangent
     double total_seconds = 0, cpu_seconds = 0; ///< wall and processor time of the whole run
     Timings timings;                           ///< wall time by part
     long peak_memory_bytes = 0;

@@ -21,6 +21,7 @@ if(OSCULATE_SANITIZE)
   set(OSCULATE_PYTHON OFF) # an interpreter without the sanitizer cannot load what has it
 endif()
 if(OSCULATE_PYTHON)
+  find_program(PYTHON_EXECUTABLE python3 HINTS /usr/bin NO_DEFAULT_PATH DOC "Python the module is for: Debian's has NumPy")
   find_package(pybind11 2.10 QUIET)
   if(NOT pybind11_FOUND)
     message(STATUS "pybind11 (pybind11-dev) is not there: no Python module")

@@ -117,14 +117,16 @@ osculate=${{OSCULATE:-{program}}}
 line=$(sed -n "${{SLURM_ARRAY_TASK_ID}}p" cases.txt)
 [ -n "$line" ] || {{ echo "cases.txt has no line ${{SLURM_ARRAY_TASK_ID}}" >&2; exit 1; }}
 folder=runs/${{line%%$'\t'*}}
-eval "arguments=(${{line#*$'\t'}})" code = 0 srun "$osculate"
-                                                  "${{arguments[@]}}" > "$folder/messages.txt" 2 > & 1 ||
-                                           code = $
-    ? echo $code > "$folder/{code}"[$code - eq 0] || [$code - eq 3] #a run that gives up is a result) ";
+eval "arguments=(${{line#*$'\t'}})"
+rm -f "$folder/{code}"
+code=0
+srun "$osculate" "${{arguments[@]}}" > "$folder/messages.txt" 2>&1 || code=$?
+echo $code > "$folder/{code}"
+[ $code -eq 0 ] || [ $code -eq 3 ] # a run that gives up is a result
+)sh";
 
-    /// A text within a string that Snakemake formats.
-    std::string
-    unformatted(const std::string& text) {
+/// A text within a string that Snakemake formats.
+std::string unformatted(const std::string& text) {
     std::string doubled;
     for (const char c : text) doubled += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
     return doubled;

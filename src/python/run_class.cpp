@@ -170,6 +170,7 @@ void wait(Session& session) {
 /// The next accepted step; nothing where the run has ended. An interruption leaves the run where it can go on.
 std::optional<Session::Step> next(Session& session) {
     refuse_while_computing(session);
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!session.has_news()) {
         session.go_on();
         wait(session);

@@ -67,9 +67,7 @@ public:
     /// @throws RunFailure where it cannot be one
     void resume(Checkpoint checkpoint);
 
-    /// The last accepted one. Displacements and contact forces stay at their addresses as long as the stepper lives,
-    /// velocities and accelerations from the first dynamic step on.
-    [[nodiscard]] const model::State& state() const { return state_; }
+    [[nodiscard]] const model::State& state() const { return state_; } ///< accepted last; its arrays stay in place
     [[nodiscard]] long factorisations() const { return factorisations_; }
     [[nodiscard]] long gmres_iterations() const { return gmres_iterations_; }
     /// Master patches fitted anew between steps, see contact::MasterSurface::refresh().

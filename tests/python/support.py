@@ -76,11 +76,10 @@ def frame(path):
         at = int(array.get("offset"))
         blocks = struct.unpack("<Q", decoded(at, 8)[0])[0]
         head, after = decoded(at, 8 * (3 + blocks))
-        whole, last, *sizes = struct.unpack(f"<{2 + blocks}Q", head[8:])
+        _, _, *sizes = struct.unpack(f"<{2 + blocks}Q", head[8:])
         packed, unpacked = decoded(after, sum(sizes))[0], b""
-        for i, size in enumerate(sizes):
-            length = last if i == blocks - 1 and last else whole
-            unpacked += packed[:size] if size == length else lz4(packed[:size])
+        for size in sizes:
+            unpacked += lz4(packed[:size])
             packed = packed[size:]
         found = numpy.frombuffer(unpacked, types[array.get("type")])
         components = int(array.get("NumberOfComponents", 1))

@@ -1,5 +1,7 @@
 """The lines that docs/python.md begins with do what they say."""
+import contextlib
 import importlib.util
+import io
 import os
 import re
 import sys
@@ -26,7 +28,9 @@ class Example(InFolder):
         os.symlink(SOURCE / "configs", self.folder / "configs")
         os.chdir(self.folder)
         names = {}
-        exec(lines, names)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            exec(lines, names)
+        self.assertIn("stage 'slide'", said.getvalue())
         self.assertTrue(names["run"].completed)
         self.assertGreater(names["drag"][-1], 0)
         if plots:

@@ -165,7 +165,7 @@ class Scenes(unittest.TestCase):
                                        "stages.press.pressure": {"top": "0.2 MPa"}})
         self.assertEqual((scene.name, scene.bodies, scene.pairs, scene.stages),
                          ("press", ["base", "cap"], ["joint"], ["press", "pull"]))
-        for words in ("rpim", "friction: 0.25", "iterations: true", "200000"):
+        for words in ("rpim", "friction: 0.25", "iterations: true", "top: 2.0e+05"):
             self.assertIn(words, scene.yaml)
 
     def test_may_be_texts(self):

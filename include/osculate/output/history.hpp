@@ -25,6 +25,10 @@ public:
     History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets,
             bool ledger, std::optional<std::uintmax_t> keep = std::nullopt);
 
+    /// Names of the columns that such a history has, in their order.
+    [[nodiscard]] static std::vector<std::string> columns(const model::Model& model, bool pairs,
+                                                          const std::vector<Index>& sets, bool ledger);
+
     /// A direction that several sets hold at one node counts for the set that Constraints names, so that the sets'
     /// reactions add up to the whole.
     /// @param ledger  null in a static step: its cells stay empty

@@ -125,7 +125,7 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
              {0, places, "places a row"});
     list.say("plots", !out.plots.empty(), out.plots.empty() ? "none is asked for" : "drawn at the end of the run",
              {0, static_cast<double>(out.plots.size()), "pictures"});
-    list.say("paraview.py", frames && out.paraview,
+    list.say("show_in_paraview.py", frames && out.paraview,
              !frames        ? "no frame is written"
              : out.paraview ? "asked for"
                             : not_asked);

@@ -21,10 +21,11 @@ from paraview.simple import *
 try:
     folder = os.path.dirname(os.path.abspath(__file__))
 except NameError:  # a shell that does not say which script it runs
-    folder = FOLDER
+    folder = os.getcwd()
 
 view = GetActiveViewOrCreate("RenderView")
 view.OrientationAxesVisibility = 1
+LoadPalette("WhiteBackground")
 
 
 def read(part, reader, ending):
@@ -46,6 +47,7 @@ def colour(display, field, unit):
     bar = GetScalarBar(GetColorTransferFunction(field), view)
     bar.Title = field.replace("_", " ") + (", " + unit if unit else "")
     bar.ComponentTitle = ""
+    bar.TitleFontSize, bar.LabelFontSize, bar.HorizontalTitle = 12, 10, 1
 
 
 def size_of(source):
@@ -66,12 +68,15 @@ for source, part, place in sources:
     source.UpdatePipeline(view.ViewTime)
     size = max(size, size_of(source))
 for source, part, place in sources:
+    if place == "master":  # lies on its body: shown when asked for
+        Hide(source, view)
+        continue
     display = Show(source, view)
     display.Representation = "Surface With Edges" if place == "body" else "Surface"
     display.EdgeColor = [0.55, 0.55, 0.55]
     field, unit = COLOURS[place]
     if place == "body" and COLOURS["slave"][0]:
-        display.Opacity = 0.4  # so that the contact shows
+        display.Opacity = 0.25  # so that the contact shows
     if field:
         colour(display, field, unit)
     if place in ARROWS:
@@ -82,7 +87,8 @@ for source, part, place in sources:
             arrows.OrientationArray = ["POINTS", "contact_force"]
             arrows.ScaleArray = ["POINTS", "contact_force"]
             arrows.GlyphMode = "All Points"
-            arrows.ScaleFactor = 0.15 * size / largest
+            arrows.ScaleFactor = 0.1 * size / largest
+            arrows.GlyphType.TipRadius, arrows.GlyphType.ShaftRadius = 0.06, 0.02
             shown = Show(arrows, view)
             ColorBy(shown, None)
             shown.DiffuseColor = [0.1, 0.1, 0.1]
@@ -126,13 +132,12 @@ void write_paraview_script(const std::filesystem::path& folder, const model::Mod
     const std::string text = fmt::format(
         "\"\"\"Shows the frames of this folder: Tools > Python Shell > Run Script in ParaView, or\n"
         "    pvbatch {} PICTURE.png\n\"\"\"\n"
-        "FOLDER = \"{}\"  # where the run was\n"
         "SCALE = 1.0  # of displacements\n"
         "BODIES = {}\nSLAVES = {}\nMASTERS = {}\n"
         "# what each part is coloured by, and its unit\n"
         "COLOURS = {{\n    \"body\": {},\n    \"slave\": {},\n    \"master\": {},\n}}\n"
         "ARROWS = {}\nVECTORS = {}\n",
-        paraview_script_file, std::filesystem::absolute(folder).lexically_normal().string(), list_of(bodies),
+        paraview_script_file, list_of(bodies),
         list_of(slaves), list_of(masters),
         first_of(FieldPlace::body, {"von_mises", "stress_max", "energy_density", "velocity", "displacement"},
                  fields.body),

@@ -153,7 +153,7 @@ void describe_output(Visitor& v, Output& output) {
            .item = "plot"},
           output.plots, group);
     v.flag({.name = "paraview",
-            .meaning = "Write paraview.py beside the series, which shows it.",
+            .meaning = "Write show_in_paraview.py beside the series, which shows it.",
             .default_text = from_template},
            output.paraview);
     v.flag({.name = "report", .meaning = "Write a report at the end of the run.", .default_text = from_template},

@@ -95,7 +95,7 @@ struct Output {
     int frame_every = 1;     ///< accepted steps between frames; 0 writes none
     Named<Probe> probes;
     Named<Plot> plots;
-    bool paraview = false;      ///< write paraview.py beside the series
+    bool paraview = false;      ///< write show_in_paraview.py beside the series
     bool report = false;        ///< write report.html at the end
     bool failed_iterate = true; ///< write the last iterate of a run that gives up
     bool operator==(const Output&) const = default;

@@ -58,21 +58,20 @@ void advise_on_stiffness(const LoadedScene& loaded, const Pairing& found, PairCh
 
 void warn_of_facing(const model::Model& model, const PairCheck& check, std::vector<Warning>& warnings) {
     const Facing& f = check.facing;
-    if (f.away.empty()) return;
-    const mesh::Facet& first = check.pair->slaves().facets[f.away.front()];
-    const Vec3 at = mesh::facet_centroid(first, model.X) + model.origin;
     const std::string key = "contact." + check.pair->name();
-    if (f.master_turned())
+    if (f.sides_wrong()) {
+        warnings.push_back({key + ".master.set",
+                            fmt::format("{} of {} slave facets do not look towards the master: it is the wrong side "
+                                        "of its body, or the slave is",
+                                        f.turned, f.facets)});
+    } else if (!f.away.empty()) {
+        const Vec3 at = mesh::facet_centroid(check.pair->slaves().facets[f.away.front()], model.X) + model.origin;
         warnings.push_back(
-            {key + ".master.set",
-             fmt::format("{} of {} slave facets do not look towards the master: it is the wrong side of its body, or "
-                         "the slave is",
-                         f.away.size(), f.facets)});
-    else
-        warnings.push_back(
-            {key + ".slave", fmt::format("{} of {} facets look away from the master, the first at ({:.4g}, {:.4g}, "
-                                         "{:.4g}) m: leave them out of the set",
-                                         f.away.size(), f.facets, at.x(), at.y(), at.z())});
+            {key + ".slave",
+             fmt::format("{} of {} facets are near the master and look away from it, the first at ({:.4g}, "
+                         "{:.4g}, {:.4g}) m: leave them out of the set",
+                         f.away.size(), f.facets, at.x(), at.y(), at.z())});
+    }
 }
 
 Check examine(const LoadedScene& loaded, int threads) {
@@ -161,9 +160,16 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
     for (const PairCheck& pair : check.pairs) say_pair(plan.model, pair, text);
     for (const time::Stage& stage : plan.stages)
         fmt::format_to(out, "stage {}: {} step(s) in {:.6g} s\n", stage.name, stage.steps, stage.duration);
-    for (const FreeMotion& free : check.free)
-        fmt::format_to(out, "free: {} {}{}\n", free.bodies, free.motion,
-                       free.rubs ? "; friction alone can hold that" : "; neither supports nor contact hold that");
+    for (std::size_t i = 0; i < check.free.size();) { // a line for what is said of the same bodies
+        const FreeMotion& first = check.free[i];
+        std::string motions;
+        for (; i < check.free.size() && check.free[i].bodies == first.bodies; ++i)
+            motions += (motions.empty() ? "" : ", ") + check.free[i].motion;
+        fmt::format_to(out, "free: {} {}; {}\n", first.bodies, motions,
+                       first.rubs    ? "friction alone can hold that"
+                       : first.apart ? "nothing holds that until contact is made"
+                                     : "neither supports nor contact hold that");
+    }
     for (const Warning& warning : check.warnings) fmt::format_to(out, "warning: {}: {}\n", warning.key, warning.text);
     return fmt::to_string(text);
 }
@@ -218,8 +224,11 @@ std::string as_json(const LoadedScene& loaded, const Check& check) {
     for (const time::Stage& stage : plan.stages)
         json["stages"].push_back({{"name", stage.name}, {"steps", stage.steps}, {"duration", stage.duration}});
     for (const FreeMotion& free : check.free)
-        json["free_motions"].push_back(
-            {{"bodies", free.bodies}, {"motion", free.motion}, {"held_by", free.rubs ? "friction" : "nothing"}});
+        json["free_motions"].push_back({{"bodies", free.bodies},
+                                        {"motion", free.motion},
+                                        {"held_by", free.rubs    ? "friction"
+                                                    : free.apart ? "nothing yet"
+                                                                 : "nothing"}});
     for (const Warning& warning : check.warnings)
         json["warnings"].push_back({{"key", warning.key}, {"text", warning.text}});
     return json.dump(2) + "\n";

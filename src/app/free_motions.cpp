@@ -10,9 +10,9 @@ namespace osculate::app {
 
 namespace {
 
-/// Of a Gram matrix. The normals of a smooth master are those of the body to some 1e-4: a lever arm of 1e-3 of the size
-/// holds nothing.
-constexpr double rank_tolerance = 1e-6;
+/// Of a Gram matrix. Supports are exact; the normals of a smooth master are those of the body to some 1e-3 of a radian, so
+/// that a lever arm of as much of the size holds nothing.
+constexpr double held_tolerance = 1e-12, pressed_tolerance = 1e-6;
 constexpr double alike = 1e-3; ///< of unit vectors
 
 std::string triple(const Vec3& v, double scale) {
@@ -64,7 +64,7 @@ Split split(const Eigen::MatrixXd& m) {
     for (Eigen::Index k = 0; k < m.cols(); ++k) {
         const double value = eigen.eigenvalues()(k);
         const Eigen::VectorXd combination = eigen.eigenvectors().col(k);
-        if (value > rank_tolerance && result.range.cols() < 3) {
+        if (value > pressed_tolerance && result.range.cols() < 3) {
             result.range.conservativeResize(3, result.range.cols() + 1);
             result.range.rightCols(1) = m * combination / std::sqrt(value);
         } else {
@@ -78,7 +78,7 @@ Split split(const Eigen::MatrixXd& m) {
 /// Points and directions that hold a body.
 struct Holds {
     std::vector<std::pair<Vec3, Vec3>> supports, contact;
-    bool rubs = false;
+    bool rubs = false, apart = false;
 };
 
 class Finder {
@@ -96,7 +96,7 @@ public:
         for (std::size_t b = 0; b < holds_.size(); ++b) {
             own.push_back(motions({b}, true));
             for (const std::string& motion : own.back())
-                found.push_back({plan_.model.bodies[b].name, motion, holds_[b].rubs});
+                found.push_back({plan_.model.bodies[b].name, motion, holds_[b].rubs, holds_[b].apart});
         }
         for (std::size_t g = 0; g < holds_.size(); ++g) add_group(g, own, found);
         return found;
@@ -120,7 +120,10 @@ private:
             holds_[slave].contact.emplace_back(s, point.normal);
             holds_[master].contact.emplace_back(point.foot, point.normal);
         }
-        if (!touches) return;
+        if (!touches) {
+            holds_[slave].apart = holds_[master].apart = true;
+            return;
+        }
         for (const std::size_t b : {slave, master}) holds_[b].rubs = holds_[b].rubs || pair.options().friction > 0;
         const std::size_t from = group_[slave], to = group_[master];
         std::ranges::replace(group_, from, to);
@@ -138,7 +141,7 @@ private:
         for (const std::size_t b : bodies) {
             for (const auto& [point, direction] : holds_[b].supports) freedom.hold(point, direction);
             if (with_contact)
-                for (const auto& [point, direction] : holds_[b].contact) freedom.hold(point, direction);
+                for (const auto& [point, direction] : holds_[b].contact) freedom.press(point, direction);
         }
         return freedom.in_words(plan_.model.origin);
     }
@@ -156,7 +159,7 @@ private:
             // what each of them can do by itself has been said
             if (std::ranges::all_of(bodies, [&](std::size_t b) { return std::ranges::count(own[b], motion) > 0; }))
                 continue;
-            found.push_back({names, motion + ", as one", false});
+            found.push_back({names, motion + ", as one"});
         }
     }
 
@@ -167,17 +170,37 @@ private:
 
 } // namespace
 
-void RigidFreedom::hold(const Vec3& point, const Vec3& direction) {
+namespace {
+
+/// Columns: orthonormal combinations of the columns of `basis` that a Gram matrix does not see.
+Eigen::MatrixXd unseen(const Eigen::Matrix<double, 6, 6>& gram, const Eigen::MatrixXd& basis, double tolerance) {
+    const double most = gram.trace();
+    if (basis.cols() == 0 || !(most > 0)) return basis;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(basis.transpose() * gram * basis);
+    Eigen::Index free = 0;
+    while (free < basis.cols() && eigen.eigenvalues()(free) <= tolerance * most) ++free;
+    return basis * eigen.eigenvectors().leftCols(free);
+}
+
+void add_row(const Vec3& arm, const Vec3& direction, Eigen::Matrix<double, 6, 6>& gram) {
     Eigen::Matrix<double, 6, 1> row;
-    row << direction, ((point - centre_) / size_).cross(direction);
-    gram_ += row * row.transpose();
+    row << direction, arm.cross(direction);
+    gram += row * row.transpose();
+}
+
+} // namespace
+
+void RigidFreedom::hold(const Vec3& point, const Vec3& direction) {
+    add_row((point - centre_) / size_, direction, held_);
+}
+
+void RigidFreedom::press(const Vec3& point, const Vec3& normal) {
+    add_row((point - centre_) / size_, normal, pressed_);
 }
 
 std::vector<std::string> RigidFreedom::in_words(const Vec3& origin) const {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram_);
-    Eigen::Index free = 0;
-    while (free < 6 && !(eigen.eigenvalues()(free) > rank_tolerance * eigen.eigenvalues()(5))) ++free;
-    const Eigen::MatrixXd motions = eigen.eigenvectors().leftCols(free);
+    const Eigen::MatrixXd left = unseen(held_, Eigen::MatrixXd::Identity(6, 6), held_tolerance);
+    const Eigen::MatrixXd motions = unseen(pressed_, left, pressed_tolerance);
     const Eigen::MatrixXd T = motions.topRows(3), W = motions.bottomRows(3);
     const Split turning = split(W);
     const Eigen::Matrix3Xd sliding = split(T * turning.kernel).range;

@@ -12,6 +12,7 @@ struct FreeMotion {
     std::string bodies; ///< "cap", or several that move as one: "cap, base"
     std::string motion; ///< "slides along x", "turns about the axis along z through (0.5, 0, 1) m"
     bool rubs = false;  ///< friction may hold it once the bodies are pressed together
+    bool apart = false; ///< a pair of the body does not touch yet
 };
 
 /// Those of the first static stage; none where every stage is dynamic, as inertia holds every body. A slave node holds
@@ -26,13 +27,15 @@ public:
     /// @param size  of the body, m
     RigidFreedom(const Vec3& centre, double size) : centre_(centre), size_(size) {}
     void hold(const Vec3& point, const Vec3& direction);
+    /// The same by contact, whose normals are not exact.
+    void press(const Vec3& point, const Vec3& normal);
     /// @param origin  added to places
     [[nodiscard]] std::vector<std::string> in_words(const Vec3& origin) const;
 
 private:
     Vec3 centre_;
     double size_;
-    Eigen::Matrix<double, 6, 6> gram_ = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 6> held_ = Eigen::Matrix<double, 6, 6>::Zero(), pressed_ = held_; ///< Gram matrices
 };
 
 } // namespace osculate::app

@@ -5,6 +5,7 @@
 #include "osculate/scene/keys.hpp"
 #include "osculate/scene/study.hpp"
 #include "osculate/scene/surface_study.hpp"
+#include "osculate/scene/units.hpp"
 #include "scene_text.hpp"
 
 #include <filesystem>

@@ -1,11 +1,11 @@
 #include "app/check.hpp"
 
-#include "app/estimate.hpp"
 #include "app/facing.hpp"
 #include "app/free_motions.hpp"
 #include "app/gaps.hpp"
 #include "app/pairing_advice.hpp"
 #include "app/unit_warnings.hpp"
+#include "osculate/app/estimate.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/version.hpp"
 
@@ -216,10 +216,14 @@ std::string as_json(const LoadedScene& loaded, const Check& check) {
             {{"name", body.name}, {"nodes", body.nodes()}, {"elements", body.mesh.element_count()}});
     json["dofs"] = check.dofs;
     json["unknowns"] = check.dofs + 3 * slave_nodes(plan);
+    Json terms = Json::array();
+    for (const CostTerm& term : cost_terms(loaded.scene, plan))
+        terms.push_back({{"what", term.what}, {"count", term.count}, {"seconds_each", term.seconds}});
     json["estimate"] = {{"steps", check.cost.steps},
                         {"cpu_seconds", check.cost.seconds},
                         {"memory_bytes", check.cost.bytes},
-                        {"factor", Estimate::factor}};
+                        {"factor", Estimate::factor},
+                        {"terms", std::move(terms)}};
     for (const PairCheck& pair : check.pairs) json["pairs"].push_back(as_json(plan.model, pair));
     for (const time::Stage& stage : plan.stages)
         json["stages"].push_back({{"name", stage.name}, {"steps", stage.steps}, {"duration", stage.duration}});

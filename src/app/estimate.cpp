@@ -1,11 +1,10 @@
-#include "app/estimate.hpp"
+#include "osculate/app/estimate.hpp"
 
 #include "app/plan_items.hpp"
 #include "osculate/time/linear_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace osculate::app {
 
@@ -69,7 +68,7 @@ double factor_bytes(double unknowns) {
 }
 
 double bytes(const Plan& plan, bool multigrid, bool condensed) {
-    constexpr double program = 6e7;       // libraries, before anything is read
+    constexpr double program = 2.8e7;     // libraries, before anything is read
     constexpr double by_multigrid = 5300; // an unknown, PETSc's copies and all
     constexpr double element = 2000;      // mesh, surfaces, search
     double sum = program;
@@ -85,7 +84,7 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
 
 } // namespace
 
-std::vector<double> cost_terms(const scene::Scene& scene, const Plan& plan) {
+std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
     const bool follows =
         std::ranges::any_of(plan.stages, [](const time::Stage& s) { return !s.follower_pressures.empty(); });
     const bool multigrid = time::goes_by_multigrid(plan.model, plan.stepper.linear_solver);
@@ -100,31 +99,30 @@ std::vector<double> cost_terms(const scene::Scene& scene, const Plan& plan) {
     const double frames = scene.output.frame_every > 0 ? all / scene.output.frame_every : 0;
     const double fields = 1.0 + static_cast<double>(scene.output.body_fields.size());
     const double factorisations = condensed ? 1 : changing ? all : static_cast<double>(plan.stages.size());
-    return {1,
-            elements,
-            frames * fields * nodes,
-            solves * s.facets,
-            solves * s.rpim,
-            solves * s.blend,
-            multigrid ? 0 : factorisations * cost.factorising,
-            multigrid ? solves * nodes : 0,
-            condensed ? cost.condensed : 0,
-            condensed ? solves * s.all * s.all : 0,
-            solves * blocks,
-            steps(plan, true) * blocks,
-            solves * finite_elements(plan)};
+    return {
+        {"start", 1, 0.019},
+        {"elements", elements, 1.6e-5},
+        {"steps", all, 1.3e-3},
+        {"values in frames", frames * fields * nodes, 1e-7},
+        {"evaluations of facets", solves * s.facets, 2e-6},
+        {"evaluations of rpim", solves * s.rpim, 3.5e-5},
+        {"evaluations of blend", solves * s.blend, 8.6e-5},
+        {"operations of factorisations", multigrid ? 0 : factorisations * cost.factorising, 2e-11},
+        // by docs/data/growth.md
+        {"nodes in cycles", multigrid ? solves * nodes : 0, 5e-5},
+        {"factors' bytes, GMRES", changing && !multigrid && !condensed ? solves * factor_bytes(3 * nodes) : 0, 1.2e-9},
+        {"operations of condensation", condensed ? cost.condensed : 0, 7.5e-10},
+        {"3x3 blocks, Newton", solves * blocks, 1.6e-7},
+        {"3x3 blocks, dynamic steps", steps(plan, true) * blocks, 1.5e-8},
+        {"elements at finite strain", solves * finite_elements(plan), 2.6e-5}};
 }
 
 Estimate estimate(const scene::Scene& scene, const Plan& plan) {
-    // seconds a unit of each term, from docs/data/estimates.csv
-    static const std::vector<double> seconds{0.1,  2e-5,  1e-6, 2e-6, 3e-5, 8e-5, 3e-10,
-                                             5e-5, 3e-10, 5e-8, 1e-7, 1e-7, 1e-5};
     const bool follows =
         std::ranges::any_of(plan.stages, [](const time::Stage& s) { return !s.follower_pressures.empty(); });
-    const std::vector<double> terms = cost_terms(scene, plan);
     Estimate result;
     result.steps = steps(plan, false) + steps(plan, true);
-    result.seconds = std::inner_product(terms.begin(), terms.end(), seconds.begin(), 0.0);
+    for (const CostTerm& term : cost_terms(scene, plan)) result.seconds += term.count * term.seconds;
     result.bytes = bytes(plan, time::goes_by_multigrid(plan.model, plan.stepper.linear_solver),
                          time::condenses(plan.model, plan.stepper.linear_solver, follows));
     return result;

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -114,7 +115,8 @@ private:
         bool touches = false;
         for (Index j = 0; j < pair.size(); ++j) {
             const contact::ContactPoint& point = pair.point(j);
-            if (!point.found || point.gap > pair.surface().facet_size(point.facet)) continue;
+            const double own = std::sqrt(pair.slaves().area[static_cast<std::size_t>(j)]);
+            if (!point.found || point.gap > std::min(own, pair.surface().facet_size(point.facet))) continue;
             touches = true;
             const Vec3& s = plan_.model.X[static_cast<std::size_t>(pair.slaves().node[static_cast<std::size_t>(j)])];
             holds_[slave].contact.emplace_back(s, point.normal);

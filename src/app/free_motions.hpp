@@ -16,7 +16,7 @@ struct FreeMotion {
 };
 
 /// Those of the first static stage; none where every stage is dynamic, as inertia holds every body. A slave node holds
-/// its body, and the master's, along the normal where it is nearer to the master than a facet is long; each body is taken
+/// its body, and the master's, along the normal where it is nearer to the master than facets of either side are long; each body is taken
 /// by itself, the others at rest, and then all that touch one another as one.
 /// @pre the pairs have been evaluated in the reference configuration
 [[nodiscard]] std::vector<FreeMotion> free_motions(const Plan& plan);

@@ -54,7 +54,8 @@ TEST_F(Check, WarnsOfValuesThatAreWrongByPowersOfTen) {
                 HasSubstr("warning: stages.press.pressure.top: 2e+07 Pa on a body of E = 1e+07 Pa"));
     EXPECT_THAT(warning("stages.press.pressure.top={table: [[0 s, 0], [0.5 s, 20 MPa], [1 s, 0]]}"),
                 HasSubstr("warning: stages.press.pressure.top: 2e+07 Pa"));
-    EXPECT_THAT(warning("bodies.cap.mesh.scale=1e-5"), HasSubstr("bodies that differ in size by a factor of "));
+    EXPECT_THAT(checked(press, {"bodies.cap.mesh.scale=1e-5", "bodies.cap.mesh.translate=[0.5, 0.5, 1]"}),
+                HasSubstr("bodies that differ in size by a factor of "));
 }
 
 /// The rear of the cap is 1 m from its front: held there, a pull of 2 m stretches it to three times its length.

@@ -15,8 +15,13 @@ struct Estimate {
     static constexpr double factor = 3;
 };
 
-/// What the processor's time goes into, as counts: a run takes their sum, each times its seconds a unit.
-[[nodiscard]] std::vector<double> cost_terms(const scene::Scene& scene, const Plan& plan);
+/// One of the things that the processor's time goes into.
+struct CostTerm {
+    const char* what;
+    double count;   ///< in the whole run
+    double seconds; ///< each; fitted by `scripts/estimates --fit` to docs/data/estimates.csv
+};
+[[nodiscard]] std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan);
 
 /// From counts of the plan and figures measured on one processor of a server of 2020; scenes whose steps are cut, or that
 /// give up, take longer.

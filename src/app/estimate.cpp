@@ -110,8 +110,8 @@ std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
         {"operations of factorisations", multigrid ? 0 : factorisations * cost.factorising, 2e-11},
         // by docs/data/growth.md
         {"nodes in cycles", multigrid ? solves * nodes : 0, 5e-5},
-        {"factors' bytes, GMRES", changing && !multigrid && !condensed ? solves * factor_bytes(3 * nodes) : 0, 1.2e-9},
-        {"operations of condensation", condensed ? cost.condensed : 0, 7.5e-10},
+        {"factors' bytes, GMRES", changing && !multigrid && !condensed ? solves * factor_bytes(3 * nodes) : 0, 1.1e-9},
+        {"operations of condensation", condensed ? cost.condensed : 0, 8e-10},
         {"3x3 blocks, Newton", solves * blocks, 1.6e-7},
         {"3x3 blocks, dynamic steps", steps(plan, true) * blocks, 1.5e-8},
         {"elements at finite strain", solves * finite_elements(plan), 2.6e-5}};

@@ -10,6 +10,7 @@
 #include "osculate/app/version.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -108,14 +109,20 @@ Vec3 place(const model::Model& model, Index node) {
 
 // ---- in words ------------------------------------------------------------------------------------------------------------
 
+/// Two digits, without an exponent.
+std::string two_digits(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return fmt::format("{:.{}f}", std::round(value / unit) * unit, unit < 0.1 ? 2 : unit < 1 ? 1 : 0);
+}
+
 std::string seconds_in_words(double seconds) {
     constexpr double minute = 60, hour = 3600;
-    if (seconds < 2 * minute) return fmt::format("{:.1g} s", seconds);
-    return seconds < 2 * hour ? fmt::format("{:.2g} min", seconds / minute) : fmt::format("{:.2g} h", seconds / hour);
+    if (seconds < 2 * minute) return two_digits(std::max(0.01, seconds)) + " s";
+    return seconds < 2 * hour ? two_digits(seconds / minute) + " min" : two_digits(seconds / hour) + " h";
 }
 
 std::string bytes_in_words(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.2g} MB", std::max(1.0, 1e-6 * bytes)) : fmt::format("{:.2g} GB", 1e-9 * bytes);
+    return bytes < 1e9 ? two_digits(std::max(1.0, 1e-6 * bytes)) + " MB" : two_digits(1e-9 * bytes) + " GB";
 }
 
 void say_pair(const model::Model& model, const PairCheck& check, fmt::memory_buffer& text) {
@@ -154,9 +161,9 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
         fmt::format_to(out, "body {}: {} nodes, {} elements\n", body.name, body.nodes(), body.mesh.element_count());
     fmt::format_to(out, "degrees of freedom: {}\n", check.dofs);
     fmt::format_to(out, "unknowns: {}, contact forces among them\n", check.dofs + 3 * slave_nodes(plan));
-    fmt::format_to(out,
-                   "estimate, good to a factor of {:.0f} where no step is cut: {} on one processor, {} of memory\n",
-                   Estimate::factor, seconds_in_words(check.cost.seconds), bytes_in_words(check.cost.bytes));
+    fmt::format_to(
+        out, "estimate, mostly within a factor of {:.0f} where no step is cut: {} of one processor, {} of memory\n",
+        Estimate::factor, seconds_in_words(check.cost.seconds), bytes_in_words(check.cost.bytes));
     for (const PairCheck& pair : check.pairs) say_pair(plan.model, pair, text);
     for (const time::Stage& stage : plan.stages)
         fmt::format_to(out, "stage {}: {} step(s) in {:.6g} s\n", stage.name, stage.steps, stage.duration);

@@ -144,8 +144,8 @@ void say_pair(const model::Model& model, const PairCheck& check, fmt::memory_buf
     for (std::size_t i = 0; i < std::min(most, gaps.overlaps.size()); ++i) {
         const Overlap& overlap = gaps.overlaps[i];
         const Vec3 at = place(model, overlap.node);
-        fmt::format_to(out, "    {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps by {:.4g} m\n",
-                       node_name(model, overlap.node), at.x(), at.y(), at.z(), overlap.depth);
+        fmt::format_to(out, "    {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps facet {} of the master by {:.4g} m\n",
+                       node_name(model, overlap.node), at.x(), at.y(), at.z(), overlap.facet, overlap.depth);
     }
     if (gaps.overlaps.size() > most) fmt::format_to(out, "    and {} more\n", gaps.overlaps.size() - most);
     for (const std::string& sentence : check.advice) fmt::format_to(out, "  advice: {}\n", sentence);
@@ -195,6 +195,7 @@ Json as_json(const model::Model& model, const PairCheck& check) {
         overlaps.push_back({{"body", body.name},
                             {"node", overlap.node - body.first_node},
                             {"position", vector(place(model, overlap.node))},
+                            {"master_facet", overlap.facet},
                             {"master_point", vector(overlap.foot + model.origin)},
                             {"depth", overlap.depth},
                             {"of_facet_size", overlap.of_facet}});

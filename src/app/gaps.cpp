@@ -23,7 +23,8 @@ PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timi
         }
         const double of_facet = -point.gap / pair.surface().facet_size(point.facet);
         gaps.largest_overlap = std::max(gaps.largest_overlap, of_facet);
-        if (of_facet > round_off) gaps.overlaps.push_back({pair.slaves().node[j], -point.gap, point.foot, of_facet});
+        if (of_facet > round_off)
+            gaps.overlaps.push_back({pair.slaves().node[j], point.facet, -point.gap, point.foot, of_facet});
     }
     std::ranges::stable_sort(gaps.overlaps, std::ranges::greater{}, &Overlap::depth);
     if (gaps.above == 0) gaps.least = gaps.largest = 0;

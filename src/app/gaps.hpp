@@ -10,6 +10,7 @@ namespace osculate::app {
 
 struct Overlap {
     Index node = -1;          ///< global
+    Index facet = -1;         ///< of the master
     double depth = 0;         ///< m
     Vec3 foot = Vec3::Zero(); ///< on the master, from Model::origin
     double of_facet = 0;      ///< depth over the size of the facet

@@ -64,5 +64,25 @@ TEST_F(Init, NamesTheNearestTutorial) {
     EXPECT_EQ(osculate({"init"}).code, 2);
 }
 
+/// What bash offers for the last word.
+std::string completed(const std::string& words, int last) {
+    const std::filesystem::path program = OSCULATE_PROGRAM;
+    const std::string command = "PATH=" + program.parent_path().string() + ":$PATH bash -c 'source " +
+                                scene_file("scripts/completion.bash") + "; COMP_WORDS=(" + words +
+                                "); COMP_CWORD=" + std::to_string(last) + "; _osculate; echo ${COMPREPLY[@]}'";
+    FILE* pipe = popen(command.c_str(), "r");
+    std::string text;
+    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+    pclose(pipe);
+    return text;
+}
+
+TEST(Completion, OffersCommandsOptionsTutorialsAndKeys) {
+    EXPECT_EQ(completed("osculate exp", 1), "explain\n");
+    EXPECT_EQ(completed("osculate init pre", 2), "press_block\n");
+    EXPECT_EQ(completed("osculate run a.yaml --thr", 3), "--threads\n");
+    EXPECT_EQ(completed("osculate run a.yaml --set solver.tol", 4), "solver.tolerance\n");
+}
+
 } // namespace
 } // namespace osculate::scenes

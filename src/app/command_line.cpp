@@ -1,5 +1,7 @@
 #include "osculate/app/command_line.hpp"
 
+#include "app/check.hpp"
+#include "app/init_command.hpp"
 #include "app/study_command.hpp"
 #include "app/surface_command.hpp"
 #include "osculate/app/diary.hpp"
@@ -10,6 +12,7 @@
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/scene/keys.hpp"
+#include "osculate/scene/schema.hpp"
 #include "osculate/scene/study.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,13 +28,13 @@ namespace {
 enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
 
 struct Arguments {
-    std::string scene, output, key_path, run_folder, checkpoint_every, from;
+    std::string scene, output, key_path, run_folder, checkpoint_every, from, schema = "scene";
     std::vector<std::string> changes;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
     SurfaceOptions surface;
     StudyOptions study;
-    bool formulas = false;
+    bool formulas = false, list = false, json = false;
 
     [[nodiscard]] RunOptions run_options() const {
         return {output, threads, quiet,
@@ -150,6 +153,11 @@ ExitCode show_keys(const std::string& path) {
     return done;
 }
 
+std::string schema(const std::string& kind) {
+    if (kind == "study") return scene::study_schema(study::method_names());
+    return kind == "template" ? scene::template_schema() : scene::scene_schema();
+}
+
 ExitCode run_command(int argc, char** argv) {
     Arguments arguments;
     CLI::App program("Deformable bodies in frictional contact on smooth surfaces.", "osculate");
@@ -162,8 +170,8 @@ ExitCode run_command(int argc, char** argv) {
     resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     resume->add_option("--from", arguments.from, "Another checkpoint than DIR/checkpoint/state")->type_name("FILE");
     add_run_options(resume, arguments);
-    CLI::App* check = add_scene_command(program, "check",
-                                        "Validate a scene; show sizes, pairs, initial gaps and overlaps", arguments);
+    CLI::App* check = add_scene_command(
+        program, "check", "Validate a scene; show sizes, cost, pairs, initial gaps, and what looks wrong", arguments);
     add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
     CLI::App* surface = add_scene_command(
         program, "surface", "Write the master surfaces as the solver sees them, before any run", arguments);
@@ -175,6 +183,15 @@ ExitCode run_command(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
     CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
     keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
+    CLI::App* schemas =
+        program.add_subcommand("schema", "Print the JSON Schema of scenes, studies or output templates, for editors");
+    schemas->add_option("KIND", arguments.schema, "scene, study or template [scene]")
+        ->check(CLI::IsMember({"scene", "study", "template"}));
+    CLI::App* init = program.add_subcommand("init", "Write a commented scene to start from");
+    init->add_option("TUTORIAL", arguments.scene, "One of those that --list shows");
+    init->add_flag("--list", arguments.list, "List the tutorials");
+    init->add_option("-o,--output", arguments.output, "The new scene file [TUTORIAL.yaml]")->type_name("FILE");
+    check->add_flag("--json", arguments.json, "As JSON, for programs");
     CLI::App* study = add_study_command(program, arguments);
     CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
     steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
@@ -198,12 +215,19 @@ ExitCode run_command(int argc, char** argv) {
         run_study(arguments);
     } else if (*keys) {
         return show_keys(arguments.key_path);
+    } else if (*schemas) {
+        print(schema(arguments.schema));
+    } else if (*init) {
+        print(arguments.list ? tutorial_list() : init_scene(arguments.scene, arguments.output));
     } else if (*steps) {
         print(diary(arguments.run_folder));
     } else {
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
-        print(*check ? report(loaded.plan, arguments.threads) : app::explain(loaded.plan));
+        if (*check)
+            print(check_scene(loaded, arguments.threads, arguments.json));
+        else
+            print(app::explain(loaded.plan));
     }
     return done;
 }

@@ -6,6 +6,7 @@
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
+#include "osculate/app/run_report.hpp"
 #include "osculate/app/surface_study.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
@@ -107,6 +108,15 @@ void run_scene(const Arguments& arguments) {
                       frames ? folder + "/series.pvd and " : "", folder));
 }
 
+void report_run(const std::string& folder) {
+    const WrittenReport report = write_report(folder);
+    constexpr double mega = 1e6;
+    print(fmt::format("{} ({:.1f} MB); pictures and plots in {}\n", report.page.string(),
+                      static_cast<double>(std::filesystem::file_size(report.page)) / mega,
+                      (report.page.parent_path() / "report").string()));
+    for (const std::string& note : report.notes) print("  " + note + "\n");
+}
+
 void run_study(Arguments arguments) {
     if (arguments.formulas) return print(formula_table());
     if (arguments.scene.empty()) {
@@ -166,6 +176,9 @@ ExitCode run_command(int argc, char** argv) {
     CLI::App* study = add_study_command(program, arguments);
     CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
     steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    CLI::App* report_page =
+        program.add_subcommand("report", "Write report.html of a run: one file that shows it, to mail or to keep");
+    report_page->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -184,6 +197,8 @@ ExitCode run_command(int argc, char** argv) {
         return show_keys(arguments.key_path);
     } else if (*steps) {
         print(diary(arguments.run_folder));
+    } else if (*report_page) {
+        report_run(arguments.run_folder);
     } else {
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
@@ -199,6 +214,9 @@ int command_line(int argc, char** argv) {
         return run_command(argc, argv);
     } catch (const SceneError& error) {
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
+        return bad_scene;
+    } catch (const ReportFailure& error) {
+        fmt::print(stderr, "the report cannot be written: {}\n", error.what());
         return bad_scene;
     } catch (const GaveUp& error) {
         fmt::print(stderr, "the run gave up: {}\n{}", error.what(), error.post_mortem());

@@ -1,9 +1,9 @@
 // One plot over time: lines, marks, a cursor that follows the view. SVG by D3.
 import {clock} from "clock";
 import {make} from "page";
-import {digits, measure, scaleFor} from "units";
+import {digits, measure, pretty, scaleFor} from "units";
 
-const margin = {left: 58, right: 14, top: 10, bottom: 34}, height = 232;
+const margin = {left: 54, right: 14, top: 22, bottom: 34}, height = 240;
 
 /// Numbers a line may go through: per pixel the first, the least and the largest one.
 function thinned(x, y, toX) {
@@ -37,6 +37,7 @@ function extent(series, log) {
   if (log) return [low / 1.5, high * 1.5];
   if (low > 0 && low < 0.7 * high) low = 0;
   if (high < 0 && high > 0.7 * low) high = 0;
+  if (low === high && low !== 0) return [Math.min(0, 1.2 * low), Math.max(0, 1.2 * high)];
   const air = 0.05 * (high - low) || Math.abs(high) * 0.05 || 1;
   return [low === 0 ? 0 : low - air, high === 0 ? 0 : high + air];
 }
@@ -112,7 +113,7 @@ export function chart(place, plot) {
       if (!(b > a) || plot.stages.length < 2) continue;
       if (k % 2 === 1)
         drawing.append("rect").attr("class", "stage").attr({x: a, y: margin.top, width: b - a, height: height - margin.top - margin.bottom});
-      if (b - a > 34) drawing.append("text").attr("class", "stage").attr({x: a + 5, y: margin.top + 12}).text(stage.name);
+      if (b - a > 34) drawing.append("text").attr("class", "stage").attr({x: a + 3, y: margin.top - 5}).text(stage.name);
     }
     const xAxis = d3.svg.axis().scale(toX).orient("bottom").ticks(Math.max(3, width / 90)).tickSize(4).tickFormat((v) => digits(v));
     const yAxis = d3.svg.axis().scale(toY).orient("left").tickSize(-(width - margin.left - margin.right)).tickPadding(6);
@@ -129,7 +130,7 @@ export function chart(place, plot) {
     drawing.append("g").attr("class", "axis").attr("transform", `translate(0,${height - margin.bottom})`).call(xAxis);
     drawing.append("text").attr("class", "label").attr({x: width - margin.right, y: height - 4, "text-anchor": "end"})
       .text(plot.xLabel + (plot.xUnit ? `, ${plot.xUnit}` : ""));
-    if (!log && unit) drawing.append("text").attr("class", "label").attr({x: margin.left + 4, y: height - margin.bottom - 6}).text(unit);
+    if (!log && unit) drawing.append("text").attr("class", "label").attr({x: margin.left - 6, y: margin.top - 8, "text-anchor": "end"}).text(pretty(unit));
 
     plot.series.forEach((series, s) => {
       if (hidden.has(s)) return;

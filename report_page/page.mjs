@@ -23,7 +23,8 @@ export function makeContents() {
   for (const section of document.querySelectorAll("main > section")) {
     const link = document.createElement("a");
     link.href = "#" + section.id;
-    link.textContent = section.querySelector("h2").textContent;
+    link.textContent = section.id[0].toUpperCase() + section.id.slice(1).replace("-", " ");
+    link.title = section.querySelector("h2").textContent;
     contents.append(link);
   }
 }

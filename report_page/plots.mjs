@@ -70,8 +70,10 @@ function contact(history) {
 }
 
 function reactions(history) {
-  groups(place("reactions"), namesOf(history, "set.", ".reaction_x"), (grid, set) =>
-    overTime(grid, history, `Reaction of ${set}`, "N", vector(`set.${set}.reaction`)));
+  const grid = make("div", {class: "grid"});
+  place("reactions").append(grid);
+  for (const set of namesOf(history, "set.", ".reaction_x"))
+    overTime(grid, history, `Reaction of ${set}`, "N", vector(`set.${set}.reaction`));
 }
 
 function energies(history) {

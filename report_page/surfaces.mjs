@@ -21,7 +21,7 @@ const fragmentShader = `
   varying vec3 seen;
   void main() {
     vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
-    float light = 0.45 + 0.55 * abs(dot(normal, normalize(seen)));
+    float light = 0.6 + 0.4 * abs(dot(normal, normalize(seen)));
     vec3 colour = plain;
     if (share < 1.5) {
       float at = clamp(share, 0.0, 1.0);
@@ -32,12 +32,18 @@ const fragmentShader = `
   }`;
 const edgeVertexShader = `
   attribute vec3 displacement;
+  attribute float value;
   uniform float scale;
-  void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position + scale * displacement, 1.0); }`;
+  varying float share;
+  void main() {
+    share = value;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + scale * displacement, 1.0);
+  }`;
 const edgeFragmentShader = `
   uniform vec3 colour;
   uniform float opacity;
-  void main() { gl_FragColor = vec4(colour, opacity); }`;
+  varying float share;
+  void main() { gl_FragColor = share < 0.35 ? vec4(1.0, 1.0, 1.0, 0.7 * opacity) : vec4(colour, opacity); } // light on dark`;
 
 const noColour = 9; // beyond all shares
 
@@ -88,7 +94,7 @@ export class Part {
       polygonOffset: true, polygonOffsetFactor: surface ? -1 : 1, polygonOffsetUnits: surface ? -1 : 1,
     }));
     const outline = new THREE.BufferGeometry();
-    for (const name of ["position", "displacement"]) outline.setAttribute(name, geometry.getAttribute(name));
+    for (const name of ["position", "displacement", "value"]) outline.setAttribute(name, geometry.getAttribute(name));
     outline.setIndex(new THREE.BufferAttribute(edgesOf(facets), 1));
     part.lines = new THREE.LineSegments(outline, new THREE.ShaderMaterial({
       uniforms: {scale: shared.scale, colour: shared.edge, opacity: {value: 0.35}},

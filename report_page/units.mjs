@@ -23,9 +23,13 @@ export function digits(value, count = 4) {
   return String(+value.toPrecision(count)).replace("-", "−");
 }
 
+export function pretty(unit) {
+  return unit.replace("^2", "²").replace("^3", "³");
+}
+
 export function measure(value, unit, count = 4) {
   const {factor, unit: shown} = scaleFor(value, unit);
-  return digits(value * factor, count) + (shown ? " " + shown : "");
+  return digits(value * factor, count) + (shown ? " " + pretty(shown) : "");
 }
 
 /// von_mises -> von Mises; names of arrays in words.

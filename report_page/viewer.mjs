@@ -4,7 +4,7 @@ import {clock} from "clock";
 import {report} from "data";
 import {cssColour, make, onThemeChange, save} from "page";
 import {Part, rangeOf} from "surfaces";
-import {digits, measure, scaleFor, words} from "units";
+import {digits, measure, pretty, scaleFor, words} from "units";
 
 const kinds = {body: "Bodies", slave: "Slave surfaces", master: "Master surfaces"};
 const tensor = ["xx", "yy", "zz", "xy", "yz", "zx"], vector = ["x", "y", "z"];
@@ -100,7 +100,7 @@ class Viewer {
       const needed = Math.max(Math.abs(corner.dot(up)), Math.abs(corner.dot(right)) / this.camera.aspect) / tangent;
       distance = Math.max(distance, needed + corner.dot(eye));
     }
-    this.camera.position.copy(middle).addScaledVector(eye, 1.06 * distance);
+    this.camera.position.copy(middle).addScaledVector(eye, distance);
     this.controls.target.copy(middle);
     this.controls.update();
     this.draw();
@@ -235,7 +235,7 @@ class Viewer {
     } else if (quantity) {
       const {factor, unit} = scaleFor(Math.max(Math.abs(low), Math.abs(high)), quantity.unit);
       const ticks = [0, 0.25, 0.5, 0.75, 1].map((t) => make("span", {}, digits((low + t * (high - low)) * factor, 3)));
-      this.legend.append(make("b", {}, `${quantity.label}${unit ? ", " + unit : ""}`), make("i", {class: "map"}),
+      this.legend.append(make("b", {}, `${quantity.label}${unit ? ", " + pretty(unit) : ""}`), make("i", {class: "map"}),
                          make("div", {class: "ticks"}, ...ticks));
     }
     if (this.arrows && this.forces.checked)

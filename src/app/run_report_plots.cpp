@@ -28,13 +28,13 @@ std::string quoted(const std::string& text) {
 
 /// Both files of one plot of history.csv; nothing without curves.
 std::string plot(const std::string& name, const std::string& title, const std::string& y, const std::vector<Curve>& curves,
-                 const std::string& style = "lines lw 1.5") {
+                 const std::string& style = "lines lw 1.5", const std::string& range = "*:*") {
     if (curves.empty()) return "";
     std::string lines;
     for (const Curve& curve : curves)
         lines += fmt::format("{} '../history.csv' using 1:{} with {} title {}", lines.empty() ? "" : ", \\\n    ", curve.column,
                              style, quoted(curve.title));
-    std::string text = fmt::format("set title {}\nset ylabel {}\n", quoted(title), quoted(y));
+    std::string text = fmt::format("set title {}\nset ylabel {}\nset yrange [{}]\n", quoted(title), quoted(y), range);
     for (const auto& [terminal, ending] : {std::pair{"svg", "svg"}, std::pair{"pngcairo", "png"}})
         text += fmt::format("set terminal {} size 1000,600 font 'sans,13' background 'white'\nset output '{}.{}'\nplot{}\n"
                             "unset output\n",
@@ -56,7 +56,7 @@ std::string script(const std::vector<std::string>& names) {
            "set key outside right top samplen 3 noenhanced\nset title noenhanced\nset xlabel 'time, s'\n"
            "set format y '%.3s %c'\n" +
            plot("contact", "Contact forces: sums of the nodes'", "N", contact) + plot("reactions", "Reactions", "N", reactions) +
-           plot("energies", "Energies", "J", energies) + plot("steps", "Accepted steps", "dt, s", steps, "steps lw 1.5");
+           plot("energies", "Energies", "J", energies) + plot("steps", "Accepted steps", "dt, s", steps, "steps lw 1.5", "0:*");
 }
 
 } // namespace

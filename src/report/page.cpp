@@ -247,7 +247,8 @@ std::string pictures_section(const MovingSurfaces& surfaces, Page& page) {
         legend = element("p class=\"legend\"", "<span>" + measure(options.field.low, options.field.unit) +
                                                    "</span><i class=\"map\"></i><span>" +
                                                    measure(options.field.high, options.field.unit) + "</span> " +
-                                                   escaped(options.field.name) + ", not deformed beyond truth");
+                                                   escaped(options.field.name == "von_mises" ? "von Mises stress" : options.field.name) +
+                                                   "; displacements are drawn true to scale");
     return section("pictures", "Pictures", "<div class=\"pictures\">" + figures + "</div>" + legend);
 }
 

@@ -107,7 +107,7 @@ public:
         const Vec3 normal = (b.at - a.at).cross(c.at - a.at);
         const double area = normal.z();
         if (!normal.allFinite() || std::abs(area) < 1e-9) return;
-        const double light = 0.42 + 0.58 * std::abs(area) / normal.norm();
+        const double light = 0.6 + 0.4 * std::abs(area) / normal.norm();
         const auto bound = [](double value, int limit) { return static_cast<int>(std::clamp(value, 0., double(limit))); };
         const int x0 = bound(std::floor(std::min({a.at.x(), b.at.x(), c.at.x()})), width_);
         const int x1 = bound(std::ceil(std::max({a.at.x(), b.at.x(), c.at.x()})) + 1, width_);
@@ -131,7 +131,7 @@ public:
         const double length = std::max(std::abs(b.x() - a.x()), std::abs(b.y() - a.y()));
         if (!std::isfinite(length) || length > 1e5) return;
         const int steps = static_cast<int>(length) + 1;
-        constexpr double before = 2.5, strength = 0.55; // samples; share of what lies below that shows
+        constexpr double before = 2.5, strength = 0.4; // samples; of the line over what lies below
         for (int k = 0; k <= steps; ++k) {
             const Vec3 p = a + (b - a) * (static_cast<double>(k) / steps);
             const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
@@ -139,7 +139,8 @@ public:
             const std::size_t i = index(x, y);
             if (p.z() + before < depth_[i] || lined_[i]) continue;
             lined_[i] = true;
-            colours_[i] *= strength;
+            const bool dark = colours_[i].sum() < 1.1; // there lines are light
+            colours_[i] = (1 - strength) * colours_[i] + (dark ? strength / 2 : 0) * (colours_[i] + Vec3::Ones());
         }
     }
 
@@ -201,9 +202,9 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> edges_of(const MovingPart& par
 } // namespace
 
 const std::vector<std::array<std::uint8_t, 3>>& colour_map() {
-    static const std::vector<std::array<std::uint8_t, 3>> viridis{{68, 1, 84},   {71, 45, 123},  {59, 82, 139},
-                                                                  {44, 114, 142}, {33, 145, 140}, {40, 174, 128},
-                                                                  {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
+    static const std::vector<std::array<std::uint8_t, 3>> viridis{{65, 68, 135}, {53, 95, 141},  {42, 120, 142},
+                                                                  {33, 145, 140}, {34, 168, 132}, {68, 191, 112},
+                                                                  {122, 209, 81}, {189, 223, 38}, {253, 231, 37}};
     return viridis;
 }
 

@@ -28,7 +28,7 @@ bool idle(const OutlineItem& item) {
     const OutlineItem* angle = item.find("angle");
     return item.text.starts_with("(0, 0, 0)") || item.text == "none" || (item.key == "scale" && item.text == "1") ||
            (item.key == "density" && item.text.starts_with("0 ")) ||
-           (item.key == "rotate" && angle != nullptr && angle->text == "0 deg");
+           (item.key == "axes" && item.text == "(1, 0, 0), (0, 1, 0)") || (item.key == "rotate" && angle != nullptr && angle->text == "0 deg");
 }
 
 /// "half tube (inner radius 3 m, thickness 1 m)"
@@ -108,7 +108,7 @@ std::string pairs(const OutlineItem& all) {
                         text_of(pair, "discretisation"),
                         others(pair, {"slave", "master", "friction", "discretisation"})});
     }
-    return table({"Pair", "Slave", "Master", "Surface of the master", "Friction", "Enforced at", "More"}, rows, {4});
+    return table({"Pair", "Slave", "Master", "Surface of the master", "Friction coefficient", "Enforced at", "More"}, rows, {4});
 }
 
 std::string stages(const OutlineItem& all) {
@@ -118,7 +118,7 @@ std::string stages(const OutlineItem& all) {
                                           "follower_pressure", "body_force"});
         list += element("li", element("b", escaped(stage.key)) + ": " + escaped(phrases(stage.find("analysis"))) +
                                   ", " + escaped(text_of(stage, "duration")) + " in " + escaped(text_of(stage, "steps")) +
-                                  " step(s)" + loads(stage) + element("div class=\"fine\"", escaped(more)));
+                                  (text_of(stage, "steps") == "1" ? " step" : " steps") + loads(stage) + element("div class=\"fine\"", escaped(more)));
     }
     return list.empty() ? "" : element("ol class=\"stages\"", list);
 }

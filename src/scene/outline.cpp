@@ -141,17 +141,22 @@ OutlineItem outline(const Scene& scene) {
 }
 
 std::string engineering(double value, const std::string& unit) {
-    static constexpr std::array prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
+    const auto shown = [](double number, std::string with) {
+        for (const auto& [power, sign] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}})
+            if (const std::size_t at = with.find(power); at != std::string::npos) with.replace(at, 2, sign);
+        return digits(number) + (with.empty() ? "" : " " + with);
+    };
+    static const std::array<std::string, 9> prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
     constexpr int none = 4, last = 8;
     static const std::array<std::string, 6> starts{"Pa", "N", "J", "W", "s", "m"};
     const std::string first = unit.substr(0, unit.find('/'));
     const bool prefixed = std::ranges::count(starts, first) > 0 && (first != "m" || unit == "m");
-    if (!prefixed || !std::isfinite(value) || value == 0) return digits(value) + (unit.empty() ? "" : " " + unit);
+    if (!prefixed || !std::isfinite(value) || value == 0) return shown(value, unit);
     // a metre takes no larger prefix than kilo, a second none above itself
     const int largest = first == "s" ? none : unit == "m" ? none + 1 : last;
     int p = none + static_cast<int>(std::floor(std::log10(std::abs(value)) / 3 + 1e-9));
     p = std::clamp(p, 0, largest);
-    return digits(value * std::pow(10., -3 * (p - none))) + " " + prefixes[static_cast<std::size_t>(p)] + unit;
+    return shown(value * std::pow(10., -3 * (p - none)), prefixes[static_cast<std::size_t>(p)] + unit);
 }
 
 } // namespace osculate::scene

@@ -39,7 +39,7 @@ struct MovingSurfaces {
 
 /// How much of a run is taken.
 struct FrameBudget {
-    std::size_t frames = 1000;
+    std::size_t frames = 1200;
     std::size_t values = 16'000'000; ///< numbers of all frames together
 };
 

@@ -10,7 +10,8 @@
 
 namespace osculate::report {
 
-/// Colours from the least to the largest value, evenly spaced: viridis, perceptually uniform.
+/// Colours from the least to the largest value, evenly spaced: viridis, perceptually uniform, without its darkest fifth,
+/// which a dark ground would swallow.
 [[nodiscard]] const std::vector<std::array<std::uint8_t, 3>>& colour_map();
 
 /// What pictures and the page show at first: a field of the bodies as a number.

@@ -36,13 +36,14 @@ export class Arrows {
     this.tips.material.color.set(value);
   }
 
-  show(frame, scale) {
+  /// From where the points are shown.
+  show(frame) {
     const up = new THREE.Vector3(0, 1, 0), matrix = new THREE.Matrix4(), none = new THREE.Matrix4().makeScale(0, 0, 0);
     let i = 0;
     for (const part of this.parts) {
       const force = part.fields.get("contact_force");
       for (let p = 0; p < part.size; ++p, ++i) {
-        const from = part.position(frame, p, scale);
+        const from = new THREE.Vector3().fromArray(part.places.array, 3 * p);
         const f = new THREE.Vector3(force.at(frame, 0, p), force.at(frame, 1, p), force.at(frame, 2, p));
         const size = f.length() / (this.largest || 1);
         const to = size > 1e-3 ? from.clone().addScaledVector(f.normalize(), size * this.length) : from;

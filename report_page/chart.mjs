@@ -53,7 +53,7 @@ function nearest(x, at) {
   return Math.abs(x[low] - at) <= Math.abs(x[high] - at) ? low : high;
 }
 
-/// @param plot  {title, unit, xLabel, xUnit, series: [{name, x, y, steps}], marks: [{x, y, kind, text}], log, stages, timed}
+/// @param plot  {title, unit, xLabel, xUnit, series: [{name, x, y, steps, colour}], marks: [{x, y, kind, text}], log, stages, timed}
 export function chart(place, plot) {
   const log = plot.log;
   const figure = make("figure", {class: "chart"}, make("figcaption", {}, plot.title));
@@ -62,11 +62,11 @@ export function chart(place, plot) {
   figure.append(legend, drawing.node());
   place.append(figure);
 
-  const hidden = new Set();
+  const hidden = new Set(), colour = (s) => `l${(plot.series[s].colour ?? s) % 7}`;
   const kinds = [...new Set((plot.marks ?? []).map((mark) => mark.kind))];
   const keys = plot.series.map((series, s) => {
     const value = make("b");
-    const key = make("button", {type: "button", title: "Show or hide"}, make("i", {class: `line l${s % 7}`}), series.name, value);
+    const key = make("button", {type: "button", title: "Show or hide"}, make("i", {class: `line ${colour(s)}`}), series.name, value);
     key.addEventListener("click", () => {
       hidden.has(s) && hidden.delete(s) || hidden.add(s);
       key.classList.toggle("off", hidden.has(s));
@@ -138,10 +138,10 @@ export function chart(place, plot) {
       const line = d3.svg.line().x((i) => toX(series.x[i])).y((i) => y(series.y[i])).defined(good)
         .interpolate(series.steps ? "step-before" : "linear");
       const chosen = thinned(series.x, series.y, toX);
-      drawing.append("path").attr("class", `line l${s % 7}`).attr("d", line(chosen));
+      drawing.append("path").attr("class", `line ${colour(s)}`).attr("d", line(chosen));
       if (chosen.length <= 60)
         drawing.append("g").selectAll("circle").data(chosen.filter(good)).enter().append("circle")
-          .attr("class", `dot l${s % 7}`).attr({r: 2, cx: (i) => toX(series.x[i]), cy: (i) => y(series.y[i])});
+          .attr("class", `dot ${colour(s)}`).attr({r: 2, cx: (i) => toX(series.x[i]), cy: (i) => y(series.y[i])});
     });
     for (const mark of plot.marks ?? []) {
       if (!isFinite(mark.y) || (log && mark.y <= 0)) continue;

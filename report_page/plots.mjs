@@ -20,8 +20,8 @@ function some(values) {
 /// One chart of columns that are there and more than round-off beside the others.
 function overTime(where, history, title, unit, columns, more = {}) {
   const roundOff = 1e-9 * Math.max(...columns.map(([, column]) => largest(history.get(column))));
-  const series = columns.filter(([, column]) => largest(history.get(column)) > roundOff)
-    .map(([name, column]) => ({name, x: history.get("time"), y: history.get(column)}));
+  const series = columns.map(([name, column], colour) => ({name, colour, x: history.get("time"), y: history.get(column)}))
+    .filter(({y}) => largest(y) > roundOff);
   if (series.length > 0)
     chart(where, {title, unit, series, xLabel: "time", xUnit: "s", stages: report.stages, timed: true, ...more});
 }

@@ -1,14 +1,12 @@
-// The parts of the view as objects of three.js: facets in the colours of a field, their edges, deformed by the graphics card.
+// The parts of the view as objects of three.js: facets in the colours of a field, their edges, deformed.
 import {Field, floats, integers} from "data";
 
 const vertexShader = `
-  attribute vec3 displacement;
   attribute float value;
-  uniform float scale;
   varying float share;
   varying vec3 seen;
   void main() {
-    vec4 at = modelViewMatrix * vec4(position + scale * displacement, 1.0);
+    vec4 at = modelViewMatrix * vec4(position, 1.0);
     share = value;
     seen = at.xyz;
     gl_Position = projectionMatrix * at;
@@ -25,25 +23,24 @@ const fragmentShader = `
     vec3 colour = plain;
     if (share < 1.5) {
       float at = clamp(share, 0.0, 1.0);
-      if (bands > 0.0) at = (floor(min(at, 0.9999) * bands) + 0.5) / bands;
+      if (bands < 0.0) at = floor(2.0 * at + 0.5) / 2.0; // open, stick, slip
+      else if (bands > 0.0) at = (floor(min(at, 0.9999) * bands) + 0.5) / bands;
       colour = texture2D(map, vec2(at, 0.5)).rgb;
     }
     gl_FragColor = vec4(colour * light, opacity);
   }`;
 const edgeVertexShader = `
-  attribute vec3 displacement;
   attribute float value;
-  uniform float scale;
   varying float share;
   void main() {
     share = value;
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + scale * displacement, 1.0);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   }`;
 const edgeFragmentShader = `
   uniform vec3 colour;
   uniform float opacity;
   varying float share;
-  void main() { gl_FragColor = share < 0.35 ? vec4(1.0, 1.0, 1.0, 0.7 * opacity) : vec4(colour, opacity); } // light on dark`;
+  void main() { gl_FragColor = share < 0.35 ? vec4(1.0, 1.0, 1.0, 0.5 * opacity) : vec4(colour, opacity); } // light on dark`;
 
 const noColour = 9; // beyond all shares
 
@@ -71,7 +68,7 @@ function edgesOf(facets) {
 
 export class Part {
   static async read(described, frames, shared) {
-    const part = Object.assign(new Part(), {name: described.name, kind: described.kind, size: described.size});
+    const part = Object.assign(new Part(), {name: described.name, kind: described.kind, body: described.body, size: described.size});
     const [points, nodes, facets] =
       await Promise.all([floats(described.points), integers(described.nodes), integers(described.facets)]);
     part.points = points;
@@ -81,42 +78,52 @@ export class Part {
     part.facetCount = facets.length / 4;
 
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-    part.displacement = new THREE.BufferAttribute(new Float32Array(3 * part.size), 3);
+    part.places = new THREE.BufferAttribute(new Float32Array(points), 3);
+    geometry.setAttribute("position", part.places);
     part.value = new THREE.BufferAttribute(new Float32Array(part.size).fill(noColour), 1);
-    geometry.setAttribute("displacement", part.displacement);
     geometry.setAttribute("value", part.value);
     geometry.setIndex(new THREE.BufferAttribute(trianglesOf(facets), 1));
     const surface = part.kind !== "body";
-    part.uniforms = {scale: shared.scale, map: shared.map, plain: shared.plain, bands: shared.bands, opacity: {value: 1}};
+    part.uniforms = {map: shared.map, plain: shared.plain, bands: shared.bands, opacity: {value: 1}};
     part.mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
       uniforms: part.uniforms, vertexShader, fragmentShader, side: THREE.DoubleSide, extensions: {derivatives: true},
       polygonOffset: true, polygonOffsetFactor: surface ? -1 : 1, polygonOffsetUnits: surface ? -1 : 1,
     }));
     const outline = new THREE.BufferGeometry();
-    for (const name of ["position", "displacement", "value"]) outline.setAttribute(name, geometry.getAttribute(name));
+    for (const name of ["position", "value"]) outline.setAttribute(name, geometry.getAttribute(name));
     outline.setIndex(new THREE.BufferAttribute(edgesOf(facets), 1));
     part.lines = new THREE.LineSegments(outline, new THREE.ShaderMaterial({
-      uniforms: {scale: shared.scale, colour: shared.edge, opacity: {value: 0.35}},
+      uniforms: {colour: shared.edge, opacity: {value: 0.35}},
       vertexShader: edgeVertexShader, fragmentShader: edgeFragmentShader, transparent: true, depthWrite: false,
     }));
     for (const object of [part.mesh, part.lines]) object.frustumCulled = false;
     return part;
   }
 
-  /// Where a point is in a frame. @param scale  of the displacement
-  position(frame, point, scale) {
+  /// Where a point is in a frame.
+  position(frame, point) {
     const u = this.fields.get("displacement");
-    return new THREE.Vector3(...[0, 1, 2].map((c) => this.points[3 * point + c] + (u ? scale * u.at(frame, c, point) : 0)));
+    return new THREE.Vector3(...[0, 1, 2].map((c) => this.points[3 * point + c] + (u ? u.at(frame, c, point) : 0)));
   }
 
+  /// Mean displacement of all points.
+  motion(frame) {
+    const u = this.fields.get("displacement"), mean = [0, 0, 0];
+    for (let p = 0; u && p < this.size; ++p) for (let c = 0; c < 3; ++c) mean[c] += u.at(frame, c, p) / this.size;
+    return mean;
+  }
+
+  /// @param scale     of the displacement beside the mean one of the body: a body that slides or flies stays where it is
   /// @param quantity  {kind, field, which}, or undefined
   /// @param range     [low, high] in SI
-  show(frame, quantity, range) {
+  show(frame, scale, quantity, range) {
     const u = this.fields.get("displacement");
     if (u) {
-      for (let p = 0; p < this.size; ++p) for (let c = 0; c < 3; ++c) this.displacement.array[3 * p + c] = u.at(frame, c, p);
-      this.displacement.needsUpdate = true;
+      const whole = this.carrier.motion(frame);
+      for (let p = 0; p < this.size; ++p)
+        for (let c = 0; c < 3; ++c)
+          this.places.array[3 * p + c] = this.points[3 * p + c] + whole[c] + scale * (u.at(frame, c, p) - whole[c]);
+      this.places.needsUpdate = true;
     }
     const field = quantity && quantity.kind === this.kind ? this.fields.get(quantity.field) : undefined;
     const [low, high] = range;

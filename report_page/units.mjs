@@ -3,10 +3,10 @@
 const prefixes = ["p", "n", "µ", "m", "", "k", "M", "G", "T"], none = 4;
 const takesPrefix = new Set(["Pa", "N", "J", "W", "s", "m"]);
 
-/// Prefix and factor that leave 1 to 1000 of the number before the unit.
+/// Prefix and factor that leave 1 to 1000 of the number before the unit; what is next to nothing keeps the unit.
 export function scaleFor(largest, unit) {
   const first = unit.split("/")[0];
-  if (!takesPrefix.has(first) || (first === "m" && unit !== "m") || !(Math.abs(largest) > 0) || !isFinite(largest))
+  if (!takesPrefix.has(first) || (first === "m" && unit !== "m") || !(Math.abs(largest) >= 1e-13) || !isFinite(largest))
     return {factor: 1, unit};
   const most = first === "s" ? none : unit === "m" ? none + 1 : prefixes.length - 1;
   const p = Math.min(most, Math.max(0, none + Math.floor(Math.log10(Math.abs(largest)) / 3 + 1e-9)));

@@ -45,7 +45,7 @@ function colourMap() {
 function boxOf(parts, frames) {
   const box = new THREE.Box3();
   for (const part of parts)
-    for (const frame of [0, frames >> 1, frames - 1]) for (let p = 0; p < part.size; ++p) box.expandByPoint(part.position(frame, p, 1));
+    for (const frame of [0, frames >> 1, frames - 1]) for (let p = 0; p < part.size; ++p) box.expandByPoint(part.position(frame, p));
   return box;
 }
 
@@ -100,7 +100,7 @@ class Viewer {
       const needed = Math.max(Math.abs(corner.dot(up)), Math.abs(corner.dot(right)) / this.camera.aspect) / tangent;
       distance = Math.max(distance, needed + corner.dot(eye));
     }
-    this.camera.position.copy(middle).addScaledVector(eye, distance);
+    this.camera.position.copy(middle).addScaledVector(eye, 1.05 * distance);
     this.controls.target.copy(middle);
     this.controls.update();
     this.draw();
@@ -153,7 +153,7 @@ class Viewer {
     });
     return make("div", {class: "panel"},
       label("Colour by", this.field), label("Colours", this.bands), label("Range", this.span),
-      label("Deformation", this.scale, this.scaleText),
+      label("Deformation, beside the motion as a whole", this.scale, this.scaleText),
       make("div", {class: "checks"}, ...shown),
       make("div", {class: "checks"}, make("label", {class: "check"}, this.edges, "Edges"),
            make("label", {class: "check"}, this.through, "See through"),
@@ -208,18 +208,17 @@ class Viewer {
     const quantity = this.quantities.get(this.field.value);
     const range = this.rangeFor(quantity), frame = clock.frame;
     const scale = scales[+this.scale.value];
-    this.shared.scale.value = scale;
-    this.shared.bands.value = quantity?.field === "status" ? 3 : +this.bands.value;
+    this.shared.bands.value = quantity?.field === "status" ? -1 : +this.bands.value;
     this.scaleText.textContent = "× " + scale;
     for (const part of this.parts) {
-      part.show(frame, quantity, range);
+      part.show(frame, scale, quantity, range);
       part.mesh.visible = part.kind === "body" ? part.shown : quantity !== undefined && part.kind === quantity.kind;
       part.lines.visible = part.mesh.visible && this.edges.checked;
       part.opacity = part.kind === "body" && this.through.checked ? 0.16 : 1;
     }
     if (this.arrows) {
       this.arrows.group.visible = this.forces.checked;
-      if (this.forces.checked) this.arrows.show(frame, scale);
+      if (this.forces.checked) this.arrows.show(frame);
     }
     this.slider.value = frame;
     this.moment.textContent = `${measure(clock.time, "s")}  (${frame + 1} of ${this.frames})`;
@@ -268,15 +267,15 @@ class Viewer {
     if (this.quantities.has(wanted)) this.field.value = wanted;
     clock.times = report.view.times;
     clock.listen(() => this.update());
-    let looked = false;
+    let moved = false; // by hand
+    this.controls.addEventListener("start", () => (moved = true));
     new ResizeObserver(() => {
       const {clientWidth: width, clientHeight: height} = stage;
       if (width === 0 || height === 0) return;
       this.renderer.setSize(width, height, false);
       this.camera.aspect = width / height;
       this.camera.updateProjectionMatrix();
-      if (!looked) this.look(report.view.eye);
-      looked = true;
+      if (!moved) this.look(report.view.eye);
       this.draw();
     }).observe(stage);
     onThemeChange(() => this.retint());
@@ -292,11 +291,12 @@ function hasWebGl() {
 export async function makeViewer(place) {
   if (!hasWebGl()) throw new Error("this browser has no WebGL; the pictures below show start, middle and end");
   const shared = {
-    scale: {value: 1}, bands: {value: 0}, map: {value: colourMap()},
+    bands: {value: 0}, map: {value: colourMap()},
     plain: {value: new THREE.Color(cssColour("--part"))}, edge: {value: new THREE.Color(cssColour("--edge"))},
   };
   const parts = [];
   for (const described of report.view.parts) parts.push(await Part.read(described, report.view.times.length, shared));
+  for (const part of parts) part.carrier = parts.find((one) => one.kind === "body" && one.name === part.body) ?? part;
   const viewer = new Viewer(place, parts);
   viewer.makeStage(shared);
   viewer.make();

@@ -27,18 +27,20 @@ std::string quoted(const std::string& text) {
 }
 
 /// Both files of one plot of history.csv; nothing without curves.
-std::string plot(const std::string& name, const std::string& title, const std::string& y, const std::vector<Curve>& curves,
-                 const std::string& style = "lines lw 1.5", const std::string& range = "*:*") {
+std::string plot(const std::string& name, const std::string& title, const std::string& y,
+                 const std::vector<Curve>& curves, const std::string& style = "lines lw 1.5",
+                 const std::string& range = "*:*") {
     if (curves.empty()) return "";
     std::string lines;
     for (const Curve& curve : curves)
-        lines += fmt::format("{} '../history.csv' using 1:{} with {} title {}", lines.empty() ? "" : ", \\\n    ", curve.column,
-                             style, quoted(curve.title));
+        lines += fmt::format("{} '../history.csv' using 1:{} with {} title {}", lines.empty() ? "" : ", \\\n    ",
+                             curve.column, style, quoted(curve.title));
     std::string text = fmt::format("set title {}\nset ylabel {}\nset yrange [{}]\n", quoted(title), quoted(y), range);
     for (const auto& [terminal, ending] : {std::pair{"svg", "svg"}, std::pair{"pngcairo", "png"}})
-        text += fmt::format("set terminal {} size 1000,600 font 'sans,13' background 'white'\nset output '{}.{}'\nplot{}\n"
-                            "unset output\n",
-                            terminal, name, ending, lines);
+        text +=
+            fmt::format("set terminal {} size 1000,600 font 'sans,13' background 'white'\nset output '{}.{}'\nplot{}\n"
+                        "unset output\n",
+                        terminal, name, ending, lines);
     return text;
 }
 
@@ -47,7 +49,8 @@ std::string script(const std::vector<std::string>& names) {
     for (std::size_t c = 0; c < names.size(); ++c) {
         const std::string& name = names[c];
         const Curve curve{c + 1, name};
-        if (name.starts_with("pair.") && (name.ends_with(".normal") || name.ends_with(".friction"))) contact.push_back(curve);
+        if (name.starts_with("pair.") && (name.ends_with(".normal") || name.ends_with(".friction")))
+            contact.push_back(curve);
         if (name.starts_with("set.")) reactions.push_back(curve);
         if (name.starts_with("energy.")) energies.push_back(curve);
         if (name == "dt") steps.push_back(curve);
@@ -55,8 +58,9 @@ std::string script(const std::vector<std::string>& names) {
     return "set encoding utf8\nset datafile separator ','\nset datafile columnheaders\nset grid lc rgb '#dddddd'\n"
            "set key outside right top samplen 3 noenhanced\nset title noenhanced\nset xlabel 'time, s'\n"
            "set format y '%.3s %c'\n" +
-           plot("contact", "Contact forces: sums of the nodes'", "N", contact) + plot("reactions", "Reactions", "N", reactions) +
-           plot("energies", "Energies", "J", energies) + plot("steps", "Accepted steps", "dt, s", steps, "steps lw 1.5", "0:*");
+           plot("contact", "Contact forces: sums of the nodes'", "N", contact) +
+           plot("reactions", "Reactions", "N", reactions) + plot("energies", "Energies", "J", energies) +
+           plot("steps", "Accepted steps", "dt, s", steps, "steps lw 1.5", "0:*");
 }
 
 } // namespace
@@ -77,7 +81,8 @@ std::string write_report_plots(const fs::path& run_folder) {
     }
     switch (run_gnuplot(folder, "plots.gp")) {
     case Gnuplot::drawn: return "";
-    case Gnuplot::missing: return "There are no plots as files: gnuplot is not installed; report/plots.gp draws them later.";
+    case Gnuplot::missing:
+        return "There are no plots as files: gnuplot is not installed; report/plots.gp draws them later.";
     case Gnuplot::failed: break;
     }
     return "There are no plots as files: gnuplot failed on report/plots.gp.";

@@ -15,7 +15,8 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& path) {
         for (const auto& [tag, node] : tree.get_child("VTKFile.Collection")) {
             if (tag != "DataSet") continue;
             const auto file = node.get<std::string>("<xmlattr>.file");
-            entries.push_back({node.get<double>("<xmlattr>.timestep"), node.get("<xmlattr>.name", std::string()), file});
+            entries.push_back(
+                {node.get<double>("<xmlattr>.timestep"), node.get("<xmlattr>.name", std::string()), file});
         }
         return entries;
     } catch (const pt::ptree_error& error) {

@@ -19,8 +19,7 @@ namespace osculate::report {
 const std::vector<Asset>& assets() {
     static const std::vector<Asset> all{
 #define OSCULATE_ASSET(symbol, name, path)                                                                             \
-    {name,                                                                                                             \
-     {osculate_asset_##symbol, static_cast<std::size_t>(osculate_asset_end_##symbol - osculate_asset_##symbol)}},
+    {name, {osculate_asset_##symbol, static_cast<std::size_t>(osculate_asset_end_##symbol - osculate_asset_##symbol)}},
 #include "report_assets.inc"
 #undef OSCULATE_ASSET
     };

@@ -126,7 +126,8 @@ MovingSurfaces read(const fs::path& folder, const FrameBudget& budget) {
         for (const PartField& field : part.fields)
             per_frame += part.points.size() * static_cast<std::size_t>(field.values.components);
     }
-    const std::size_t fitting = std::clamp<std::size_t>(budget.values / std::max<std::size_t>(per_frame, 1), 2, budget.frames);
+    const std::size_t fitting =
+        std::clamp<std::size_t>(budget.values / std::max<std::size_t>(per_frame, 1), 2, budget.frames);
     const std::vector<std::size_t> chosen = evenly(list.times.size(), fitting);
     for (const std::size_t f : chosen) {
         for (std::size_t p = 0; p < list.parts.size(); ++p)
@@ -152,8 +153,9 @@ MovingSurfaces read_moving_surfaces(const fs::path& run_folder, const FrameBudge
     const WithoutTraps values_may_be_no_numbers;
     MovingSurfaces none;
     if (!fs::exists(run_folder / "series.pvd")) {
-        none.notes.emplace_back("The run wrote no frames (output.frame_every: 0, or a template without fields): there is "
-                                "nothing to show in three dimensions.");
+        none.notes.emplace_back(
+            "The run wrote no frames (output.frame_every: 0, or a template without fields): there is "
+            "nothing to show in three dimensions.");
         return none;
     }
     try {

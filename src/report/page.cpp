@@ -164,9 +164,10 @@ std::string cost_section(const RunFiles& files) {
     for (const auto& [name, value] : parts) largest = std::max(largest, value);
     std::string bars;
     for (const auto& [name, value] : parts)
-        bars += fmt::format("<li><span>{}</span><span class=\"bar\"><i style=\"width:{:.2f}%\"></i></span>"
-                            "<span class=\"number\">{}</span><span class=\"number\">{:.1f} %</span></li>\n",
-                            escaped(name), largest > 0 ? 100 * value / largest : 0, duration(value), 100 * value / total);
+        bars +=
+            fmt::format("<li><span>{}</span><span class=\"bar\"><i style=\"width:{:.2f}%\"></i></span>"
+                        "<span class=\"number\">{}</span><span class=\"number\">{:.1f} %</span></li>\n",
+                        escaped(name), largest > 0 ? 100 * value / largest : 0, duration(value), 100 * value / total);
     std::string text = element("ul class=\"bars\"", bars);
     std::vector<std::vector<std::string>> rows{
         {"Wall time, CPU time", duration(total) + ", " + duration(member(seconds, "cpu"))},
@@ -189,12 +190,14 @@ std::string reproduce_section(const RunFiles& files) {
                                         element("code", "--set") + " is in it. Then");
     text += "<pre class=\"command\"><code id=\"command\">" + escaped(command) + "</code></pre>\n";
     text += element("p", "gives the same numbers with any number of threads" +
-                             (files.text("version", "").empty() ? std::string(".")
-                                                                : ", with osculate " + escaped(files.text("version", "")) + ".") +
+                             (files.text("version", "").empty()
+                                  ? std::string(".")
+                                  : ", with osculate " + escaped(files.text("version", "")) + ".") +
                              " Meshes that the scene reads from files have to be beside it.");
     text += "<div class=\"tools\"><button type=\"button\" data-copy=\"command\">Copy command</button>"
             "<button type=\"button\" data-copy=\"scene-yaml\">Copy scene</button>"
-            "<button type=\"button\" data-save=\"scene-yaml\" data-name=\"" + escaped(name) + ".yaml\">Save scene</button></div>\n";
+            "<button type=\"button\" data-save=\"scene-yaml\" data-name=\"" +
+            escaped(name) + ".yaml\">Save scene</button></div>\n";
     text += element("details", element("summary", escaped(name + ".yaml")) + "<pre id=\"scene-yaml\">" +
                                    escaped(files.scene_text) + "</pre>");
     return section("reproduce", "Run it again", text);
@@ -202,7 +205,8 @@ std::string reproduce_section(const RunFiles& files) {
 
 std::string about_section(const RunFiles& files, const PageOptions& options) {
     std::vector<std::vector<std::string>> rows;
-    if (const std::string version = files.text("version", ""); !version.empty()) rows.push_back({"Run by", "osculate " + version});
+    if (const std::string version = files.text("version", ""); !version.empty())
+        rows.push_back({"Run by", "osculate " + version});
     rows.push_back({"Report by", "osculate " + options.version});
     for (const auto& [name, version] : options.libraries) rows.push_back({name, version});
     if (!files.ended.empty()) rows.push_back({"Last written by the run", files.ended});
@@ -237,18 +241,20 @@ std::string pictures_section(const MovingSurfaces& surfaces, Page& page) {
         }
         const std::string time = scene::engineering(std::stod(fmt::format("{:.4g}", surfaces.times[frame])), "s");
         page.pictures.emplace_back(std::string(name) + ".png", std::string(png.begin(), png.end()));
-        page.pictures.emplace_back(std::string(name) + ".svg", with_legend(png, options, std::string(name) + ", " + time));
+        page.pictures.emplace_back(std::string(name) + ".svg",
+                                   with_legend(png, options, std::string(name) + ", " + time));
         figures += fmt::format("<figure><img alt=\"The bodies at {0}\" src=\"data:image/png;base64,{1}\">"
                                "<figcaption><b>{2}</b> {0}</figcaption></figure>\n",
                                escaped(time), base64(png), name);
     }
     std::string legend;
     if (!options.field.name.empty())
-        legend = element("p class=\"legend\"", "<span>" + measure(options.field.low, options.field.unit) +
-                                                   "</span><i class=\"map\"></i><span>" +
-                                                   measure(options.field.high, options.field.unit) + "</span> " +
-                                                   escaped(options.field.name == "von_mises" ? "von Mises stress" : options.field.name) +
-                                                   "; displacements are drawn true to scale");
+        legend =
+            element("p class=\"legend\"",
+                    "<span>" + measure(options.field.low, options.field.unit) + "</span><i class=\"map\"></i><span>" +
+                        measure(options.field.high, options.field.unit) + "</span> " +
+                        escaped(options.field.name == "von_mises" ? "von Mises stress" : options.field.name) +
+                        "; displacements are drawn true to scale");
     return section("pictures", "Pictures", "<div class=\"pictures\">" + figures + "</div>" + legend);
 }
 
@@ -258,7 +264,8 @@ std::string charts(const char* id, const char* title) {
 
 std::string gradient() {
     std::string stops;
-    for (const auto& c : colour_map()) stops += fmt::format("{}rgb({},{},{})", stops.empty() ? "" : ",", c[0], c[1], c[2]);
+    for (const auto& c : colour_map())
+        stops += fmt::format("{}rgb({},{},{})", stops.empty() ? "" : ",", c[0], c[1], c[2]);
     return ":root{--map:linear-gradient(to right," + stops + ")}";
 }
 
@@ -276,9 +283,7 @@ json stage_ends(const RunFiles& files) {
 /// The scripts as one module each, found by name without any request.
 std::string scripts(bool three) {
     std::string text;
-    const auto library = [&](const char* name) {
-        text += "<script>" + std::string(asset(name)) + "</script>\n";
-    };
+    const auto library = [&](const char* name) { text += "<script>" + std::string(asset(name)) + "</script>\n"; };
     if (three) {
         library("three.min.js");
         library("OrbitControls.js");
@@ -287,12 +292,24 @@ std::string scripts(bool three) {
     std::string imports;
     for (const Asset& one : assets()) {
         if (!one.name.ends_with(".mjs")) continue;
-        imports += fmt::format("{}\"{}\":\"data:text/javascript;base64,{}\"", imports.empty() ? "" : ",\n",
-                               one.name.substr(0, one.name.size() - 4),
-                               base64(Bytes(one.content.begin(), one.content.end())));
+        imports +=
+            fmt::format("{}\"{}\":\"data:text/javascript;base64,{}\"", imports.empty() ? "" : ",\n",
+                        one.name.substr(0, one.name.size() - 4), base64(Bytes(one.content.begin(), one.content.end())));
     }
     text += "<script type=\"importmap\">{\"imports\":{" + imports + "}}</script>\n";
     return text + "<script type=\"module\">import \"main\";</script>\n";
+}
+
+/// Contact surfaces move with their bodies, which the scene names.
+void name_bodies(MovingSurfaces& surfaces, const RunFiles& files) {
+    if (!files.scene) return;
+    for (MovingPart& part : surfaces.parts) {
+        const scene::Pair* pair = part.kind == PartKind::body ? nullptr : scene::find(files.scene->contact, part.name);
+        if (pair == nullptr) continue;
+        const scene::SetSpec* set =
+            scene::find(files.scene->sets, part.kind == PartKind::slave ? pair->slave : pair->master.set);
+        if (set != nullptr) part.body = set->body;
+    }
 }
 
 double last_time(const RunFiles& files, const PageOptions& options) {
@@ -315,9 +332,11 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
     page.notes = files.notes;
     page.notes.insert(page.notes.end(), options.notes.begin(), options.notes.end());
     if (files.status() == "running")
-        page.notes.insert(page.notes.begin(), "The run had not ended when this report was written: it shows what there was.");
+        page.notes.insert(page.notes.begin(),
+                          "The run had not ended when this report was written: it shows what there was.");
 
     MovingSurfaces surfaces = read_moving_surfaces(run_folder, options.frames);
+    name_bodies(surfaces, files);
     page.notes.insert(page.notes.end(), surfaces.notes.begin(), surfaces.notes.end());
     const bool frames = !surfaces.times.empty();
     const bool three = frames && !asset("three.min.js").empty() && !asset("OrbitControls.js").empty();
@@ -325,7 +344,8 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
         page.notes.emplace_back("There is no three-dimensional view: this program was built without three.js "
                                 "(Debian: libjs-three).");
     if (asset("d3.min.js").empty())
-        page.notes.emplace_back("There are no plots in this page: this program was built without d3 (Debian: libjs-d3).");
+        page.notes.emplace_back(
+            "There are no plots in this page: this program was built without d3 (Debian: libjs-d3).");
 
     PageData data;
     data.json["name"] = files.name();

@@ -57,9 +57,11 @@ void PageData::add_attempts(const std::vector<time::Attempt>& attempts, std::vec
             cut.push_back({a.time, a.dt, a.iterations, a.attempt, time::name(a.reason), a.body, a.node, a.value});
         }
     }
-    if (every > 1) notes.push_back(fmt::format("The plot of steps shows every {}-th of {} accepted ones.", every, accepted));
+    if (every > 1)
+        notes.push_back(fmt::format("The plot of steps shows every {}-th of {} accepted ones.", every, accepted));
     if (rejected > most_rejected)
-        notes.push_back(fmt::format("The plot of steps marks the first {} of {} rejected ones.", most_rejected, rejected));
+        notes.push_back(
+            fmt::format("The plot of steps marks the first {} of {} rejected ones.", most_rejected, rejected));
     json["attempts"] = {{"accepted", taken}, {"rejected", cut}};
 }
 
@@ -92,6 +94,7 @@ Json PageData::view_of(const MovingSurfaces& surfaces) {
         }
         parts.push_back({{"name", part.name},
                          {"kind", name_of(part.kind)},
+                         {"body", part.body},
                          {"size", part.points.size()},
                          {"points", add(packed_floats(points))},
                          {"nodes", add(packed_integers(nodes))},
@@ -123,19 +126,22 @@ void PageData::add_view(MovingSurfaces& surfaces, std::size_t largest, std::vect
                                             "mailed; the folder of the run has them all.",
                                             frames, all));
             if (size > largest)
-                notes.push_back(fmt::format("The three-dimensional view takes {} MB, with two frames only.", size / 1000000));
+                notes.push_back(
+                    fmt::format("The three-dimensional view takes {} MB, with two frames only.", size / 1000000));
             json["view"] = std::move(view);
             return;
         }
         const double share = 0.95 * static_cast<double>(largest) / static_cast<double>(size);
-        thin_out(surfaces, std::clamp<std::size_t>(static_cast<std::size_t>(share * static_cast<double>(frames)), 2, frames - 1));
+        thin_out(surfaces,
+                 std::clamp<std::size_t>(static_cast<std::size_t>(share * static_cast<double>(frames)), 2, frames - 1));
     }
 }
 
 std::string PageData::html() const {
     std::string text;
     std::string plain = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    for (std::size_t at = plain.find('<'); at != std::string::npos; at = plain.find('<', at)) plain.replace(at, 1, "\\u003c");
+    for (std::size_t at = plain.find('<'); at != std::string::npos; at = plain.find('<', at))
+        plain.replace(at, 1, "\\u003c");
     text += "<script type=\"application/json\" id=\"report-data\">" + plain + "</script>\n";
     for (std::size_t i = 0; i < arrays_.size(); ++i)
         text += fmt::format("<script type=\"text/plain\" id=\"array-{}\">{}</script>\n", i, arrays_[i]);

@@ -100,7 +100,7 @@ class Canvas {
 public:
     Canvas(int width, int height)
         : width_(width), height_(height), depth_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-                                                -std::numeric_limits<double>::infinity()),
+                                                 -std::numeric_limits<double>::infinity()),
           colours_(depth_.size(), Vec3::Zero()), lined_(depth_.size(), false) {}
 
     void triangle(const Corner& a, const Corner& b, const Corner& c, bool plainly) {
@@ -108,7 +108,9 @@ public:
         const double area = normal.z();
         if (!normal.allFinite() || std::abs(area) < 1e-9) return;
         const double light = 0.6 + 0.4 * std::abs(area) / normal.norm();
-        const auto bound = [](double value, int limit) { return static_cast<int>(std::clamp(value, 0., double(limit))); };
+        const auto bound = [](double value, int limit) {
+            return static_cast<int>(std::clamp(value, 0., double(limit)));
+        };
         const int x0 = bound(std::floor(std::min({a.at.x(), b.at.x(), c.at.x()})), width_);
         const int x1 = bound(std::ceil(std::max({a.at.x(), b.at.x(), c.at.x()})) + 1, width_);
         const int y0 = bound(std::floor(std::min({a.at.y(), b.at.y(), c.at.y()})), height_);
@@ -202,7 +204,7 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> edges_of(const MovingPart& par
 } // namespace
 
 const std::vector<std::array<std::uint8_t, 3>>& colour_map() {
-    static const std::vector<std::array<std::uint8_t, 3>> viridis{{65, 68, 135}, {53, 95, 141},  {42, 120, 142},
+    static const std::vector<std::array<std::uint8_t, 3>> viridis{{65, 68, 135},  {53, 95, 141},  {42, 120, 142},
                                                                   {33, 145, 140}, {34, 168, 132}, {68, 191, 112},
                                                                   {122, 209, 81}, {189, 223, 38}, {253, 231, 37}};
     return viridis;
@@ -263,7 +265,8 @@ Bytes draw(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptio
 std::string with_legend(const Bytes& png, const PictureOptions& options, const std::string& title) {
     const int foot = 90, head = 50;
     std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 {0} {1}\" "
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 {0} "
+        "{1}\" "
         "width=\"{0}\" height=\"{1}\" font-family=\"sans-serif\" font-size=\"18\" fill=\"#222\">\n"
         "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n<text x=\"24\" y=\"34\" font-size=\"20\">{2}</text>\n"
         "<image x=\"0\" y=\"{3}\" width=\"{0}\" height=\"{4}\" xlink:href=\"data:image/png;base64,{5}\"/>\n",
@@ -276,12 +279,15 @@ std::string with_legend(const Bytes& png, const PictureOptions& options, const s
                                static_cast<double>(i) / static_cast<double>(map.size() - 1), map[i][0], map[i][1],
                                map[i][2]);
         const int y = options.height + head + 24;
-        const auto value = [&](double v) { return escaped(scene::engineering(std::stod(fmt::format("{:.3g}", v)), options.field.unit)); };
-        svg += fmt::format("</linearGradient></defs>\n<rect x=\"24\" y=\"{}\" width=\"360\" height=\"16\" fill=\"url(#map)\"/>\n"
-                           "<text x=\"24\" y=\"{}\">{}</text><text x=\"384\" y=\"{}\" text-anchor=\"end\">{}</text>"
-                           "<text x=\"404\" y=\"{}\">{}</text>\n",
-                           y, y + 40, value(options.field.low), y + 40, value(options.field.high), y + 15,
-                           escaped(options.field.name));
+        const auto value = [&](double v) {
+            return escaped(scene::engineering(std::stod(fmt::format("{:.3g}", v)), options.field.unit));
+        };
+        svg += fmt::format(
+            "</linearGradient></defs>\n<rect x=\"24\" y=\"{}\" width=\"360\" height=\"16\" fill=\"url(#map)\"/>\n"
+            "<text x=\"24\" y=\"{}\">{}</text><text x=\"384\" y=\"{}\" text-anchor=\"end\">{}</text>"
+            "<text x=\"404\" y=\"{}\">{}</text>\n",
+            y, y + 40, value(options.field.low), y + 40, value(options.field.high), y + 15,
+            escaped(options.field.name));
     }
     return svg + "</svg>\n";
 }

@@ -54,7 +54,8 @@ std::optional<output::NumberTable> read_table(const fs::path& path, const std::s
 void read_scene(const fs::path& folder, RunFiles& files) {
     const fs::path path = folder / "scene.yaml";
     if (!fs::exists(path)) {
-        files.notes.emplace_back("scene.yaml is missing: the scene is neither described nor can it be run again from here.");
+        files.notes.emplace_back(
+            "scene.yaml is missing: the scene is neither described nor can it be run again from here.");
         return;
     }
     files.scene_text = content(path);
@@ -97,7 +98,8 @@ RunFiles read_run_files(const fs::path& folder) {
         files.notes.emplace_back("summary.json is missing: sizes, checks and costs are not known.");
     }
     read_scene(folder, files);
-    files.history = read_table(folder / "history.csv", "history.csv is missing: there are no forces and energies to plot.", files);
+    files.history =
+        read_table(folder / "history.csv", "history.csv is missing: there are no forces and energies to plot.", files);
     files.iterations = read_table(folder / "iterations.csv", "", files);
     if (const fs::path path = folder / output::post_mortem_file; fs::exists(path)) {
         try {

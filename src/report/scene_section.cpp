@@ -27,8 +27,9 @@ std::string joined(const std::vector<std::string>& parts, const std::string& bet
 bool idle(const OutlineItem& item) {
     const OutlineItem* angle = item.find("angle");
     return item.text.starts_with("(0, 0, 0)") || item.text == "none" || (item.key == "scale" && item.text == "1") ||
-           (item.key == "density" && item.text.starts_with("0 ")) ||
-           (item.key == "axes" && item.text == "(1, 0, 0), (0, 1, 0)") || (item.key == "rotate" && angle != nullptr && angle->text == "0 deg");
+           ((item.key == "density" || item.key.ends_with("damping")) && item.text.starts_with("0 ")) ||
+           (item.key == "axes" && item.text == "(1, 0, 0), (0, 1, 0)") ||
+           (item.key == "rotate" && angle != nullptr && angle->text == "0 deg");
 }
 
 /// "half tube (inner radius 3 m, thickness 1 m)"
@@ -48,7 +49,6 @@ std::string phrases(const OutlineItem* group, const std::string& between = ", ")
         if (!idle(one)) parts.push_back(phrase(one));
     return joined(parts, between);
 }
-
 
 /// All items but those named.
 std::string others(const OutlineItem& group, const std::vector<std::string>& told) {
@@ -71,8 +71,10 @@ std::string loads(const OutlineItem& stage) {
         if (group == nullptr) continue;
         for (const OutlineItem& target : group->items) {
             std::string what = target.text;
-            for (const OutlineItem& one : target.items) what += (what.empty() ? "" : ", ") + one.key + " to " + one.text;
-            list += element("li", escaped(words(kind)) + " of " + element("b", escaped(target.key)) + ": " + escaped(what));
+            for (const OutlineItem& one : target.items)
+                what += (what.empty() ? "" : ", ") + one.key + " to " + one.text;
+            list +=
+                element("li", escaped(words(kind)) + " of " + element("b", escaped(target.key)) + ": " + escaped(what));
         }
     }
     return list.empty() ? "" : element("ul class=\"plain\"", list);
@@ -94,7 +96,8 @@ std::string sets(const OutlineItem& all, const OutlineItem* supports) {
     std::vector<std::vector<std::string>> rows;
     for (const OutlineItem& set : all.items) {
         const OutlineItem* held = supports == nullptr ? nullptr : supports->find(set.key);
-        rows.push_back({set.key, text_of(set, "body"), others(set, {"body"}), held == nullptr ? "" : phrases(held, "; ")});
+        rows.push_back(
+            {set.key, text_of(set, "body"), others(set, {"body"}), held == nullptr ? "" : phrases(held, "; ")});
     }
     return table({"Set", "Of body", "Selected by", "Supported"}, rows);
 }
@@ -108,17 +111,20 @@ std::string pairs(const OutlineItem& all) {
                         text_of(pair, "discretisation"),
                         others(pair, {"slave", "master", "friction", "discretisation"})});
     }
-    return table({"Pair", "Slave", "Master", "Surface of the master", "Friction coefficient", "Enforced at", "More"}, rows, {4});
+    return table({"Pair", "Slave", "Master", "Surface of the master", "Friction coefficient", "Enforced at", "More"},
+                 rows, {4});
 }
 
 std::string stages(const OutlineItem& all) {
     std::string list;
     for (const OutlineItem& stage : all.items) {
-        std::string more = others(stage, {"analysis", "duration", "steps", "displacement", "pressure",
-                                          "follower_pressure", "body_force"});
-        list += element("li", element("b", escaped(stage.key)) + ": " + escaped(phrases(stage.find("analysis"))) +
-                                  ", " + escaped(text_of(stage, "duration")) + " in " + escaped(text_of(stage, "steps")) +
-                                  (text_of(stage, "steps") == "1" ? " step" : " steps") + loads(stage) + element("div class=\"fine\"", escaped(more)));
+        std::string more = others(
+            stage, {"analysis", "duration", "steps", "displacement", "pressure", "follower_pressure", "body_force"});
+        list +=
+            element("li", element("b", escaped(stage.key)) + ": " + escaped(phrases(stage.find("analysis"))) + ", " +
+                              escaped(text_of(stage, "duration")) + " in " + escaped(text_of(stage, "steps")) +
+                              (text_of(stage, "steps") == "1" ? " step" : " steps") + loads(stage) +
+                              element("div class=\"fine\"", escaped(more)));
     }
     return list.empty() ? "" : element("ol class=\"stages\"", list);
 }

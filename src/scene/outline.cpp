@@ -31,11 +31,10 @@ public:
         if (value) add(key, quantity(*value, key));
     }
     void optional_relative_length(const Key& key, std::optional<RelativeLength>& value) override {
-        if (value) add(key, value->metres ? engineering(value->value, "m") : digits(value->value) + " of the facet size");
+        if (value)
+            add(key, value->metres ? engineering(value->value, "m") : digits(value->value) + " of the facet size");
     }
-    void vector(const Key& key, Vec3& value) override {
-        add(key, components(key, {value.x(), value.y(), value.z()}));
-    }
+    void vector(const Key& key, Vec3& value) override { add(key, components(key, {value.x(), value.y(), value.z()})); }
     void course(const Key& key, Course& value) override { add(key, in_words(value, key)); }
     void optional_course(const Key& key, std::optional<Course>& value) override {
         if (value) add(key, in_words(*value, key));
@@ -146,12 +145,13 @@ std::string engineering(double value, const std::string& unit) {
             if (const std::size_t at = with.find(power); at != std::string::npos) with.replace(at, 2, sign);
         return digits(number) + (with.empty() ? "" : " " + with);
     };
+    constexpr double next_to_nothing = 1e-13;
     static const std::array<std::string, 9> prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
     constexpr int none = 4, last = 8;
     static const std::array<std::string, 6> starts{"Pa", "N", "J", "W", "s", "m"};
     const std::string first = unit.substr(0, unit.find('/'));
     const bool prefixed = std::ranges::count(starts, first) > 0 && (first != "m" || unit == "m");
-    if (!prefixed || !std::isfinite(value) || value == 0) return shown(value, unit);
+    if (!prefixed || !std::isfinite(value) || std::abs(value) < next_to_nothing) return shown(value, unit);
     // a metre takes no larger prefix than kilo, a second none above itself
     const int largest = first == "s" ? none : unit == "m" ? none + 1 : last;
     int p = none + static_cast<int>(std::floor(std::log10(std::abs(value)) / 3 + 1e-9));

@@ -23,8 +23,9 @@ struct PartField {
 struct MovingPart {
     std::string name; ///< of the body, or of the pair
     PartKind kind = PartKind::body;
-    std::vector<Vec3> points;                         ///< reference positions, m
-    std::vector<Index> nodes;                         ///< the body's node of every point
+    std::string body;         ///< that a contact surface is part of; empty where it is not known
+    std::vector<Vec3> points; ///< reference positions, m
+    std::vector<Index> nodes; ///< the body's node of every point
     std::vector<std::array<std::uint32_t, 4>> facets; ///< of points; a triangle repeats its last one
     std::vector<PartField> fields;
 

@@ -13,11 +13,11 @@ namespace osculate::report {
 
 /// What is known beside the files of the run.
 struct PageOptions {
-    std::string version;                                           ///< of the program that writes the page
-    std::vector<std::pair<std::string, std::string>> libraries;    ///< name, version
-    std::vector<time::Attempt> attempts;                           ///< of steps.csv
-    std::string diary;                                             ///< the attempts' summary in words, lines
-    std::vector<std::string> notes;                                ///< what is missing, sentences
+    std::string version;                                        ///< of the program that writes the page
+    std::vector<std::pair<std::string, std::string>> libraries; ///< name, version
+    std::vector<time::Attempt> attempts;                        ///< of steps.csv
+    std::string diary;                                          ///< the attempts' summary in words, lines
+    std::vector<std::string> notes;                             ///< what is missing, sentences
     FrameBudget frames;
     std::size_t largest_view = 12'000'000; ///< bytes of the three-dimensional view in the page
 };

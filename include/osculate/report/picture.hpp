@@ -23,8 +23,8 @@ struct ShownField {
 [[nodiscard]] ShownField field_to_show(const MovingSurfaces& surfaces);
 
 struct PictureOptions {
-    int width = 1200, height = 750;    ///< pixels
-    Vec3 towards_eye{0.62, -1, 0.72};  ///< from the bodies; z is up
+    int width = 1200, height = 750;   ///< pixels
+    Vec3 towards_eye{0.62, -1, 0.72}; ///< from the bodies; z is up
     ShownField field;
 };
 

@@ -21,6 +21,7 @@ struct OutlineItem {
 [[nodiscard]] OutlineItem outline(const Scene& scene);
 
 /// "30 MPa", "50 mm", "2 kN/m³": a number of SI units with the prefix that leaves 1 to 1000 before it.
+/// Zero, and what is next to it, keeps the unit itself.
 /// @param unit  a product of powers of SI units; a prefix is put before Pa, N, J, W, s and m, and before kN/m^3 and the like
 [[nodiscard]] std::string engineering(double value, const std::string& unit);
 

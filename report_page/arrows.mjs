@@ -1,6 +1,6 @@
 // Contact forces as arrows from the slave nodes, seen through the bodies.
 
-const share = 0.16; // of the view's size: the longest arrow
+const share = 0.13; // of the view's size: the longest arrow
 
 export class Arrows {
   /// @param parts   slave surfaces with contact_force
@@ -20,8 +20,9 @@ export class Arrows {
     geometry.setAttribute("position", this.ends);
     this.material = new THREE.LineBasicMaterial({color: colour, depthTest: false, transparent: true});
     this.shafts = new THREE.LineSegments(geometry, this.material);
-    const tip = new THREE.ConeBufferGeometry(0.035 * this.length, 0.13 * this.length, 8);
-    tip.translate(0, -0.065 * this.length, 0);
+    const long = this.length * Math.min(0.14, 1.1 / Math.sqrt(count)); // many are thin
+    const tip = new THREE.ConeBufferGeometry(0.27 * long, long, 8);
+    tip.translate(0, -long / 2, 0);
     this.tips = new THREE.InstancedMesh(tip, new THREE.MeshBasicMaterial({color: colour, depthTest: false, transparent: true}), count);
     this.group = new THREE.Group();
     this.group.add(this.shafts, this.tips);

@@ -153,7 +153,7 @@ class Viewer {
     });
     return make("div", {class: "panel"},
       label("Colour by", this.field), label("Colours", this.bands), label("Range", this.span),
-      label("Deformation, beside the motion as a whole", this.scale, this.scaleText),
+      label("Deformation beside the motion", this.scale, this.scaleText),
       make("div", {class: "checks"}, ...shown),
       make("div", {class: "checks"}, make("label", {class: "check"}, this.edges, "Edges"),
            make("label", {class: "check"}, this.through, "See through"),

@@ -172,7 +172,7 @@ std::string cost_section(const RunFiles& files) {
     std::vector<std::vector<std::string>> rows{
         {"Wall time, CPU time", duration(total) + ", " + duration(member(seconds, "cpu"))},
         {"Threads", count(files.number("threads"))},
-        {"Peak memory", fmt::format("{:.3g} MB", files.number("peak_memory_bytes") / 1e6)},
+        {"Peak memory", figure(files.number("peak_memory_bytes") / 1e6) + " MB"},
         {"Factorisations", count(files.number("factorisations"))},
         {"GMRES iterations", count(files.number("gmres_iterations"))}};
     text += table({"Cost", ""}, rows, {1});

@@ -1,5 +1,6 @@
 #include "osculate/report/picture.hpp"
 
+#include "osculate/core/without_traps.hpp"
 #include "osculate/scene/outline.hpp"
 
 #include <Eigen/Geometry>
@@ -69,9 +70,9 @@ public:
                     high = high.cwiseMax(x);
                 }
         }
+        if (!(low.array() <= high.array()).all()) return; // no position at all
         const double width = samples * options.width, height = samples * options.height;
         const Vec3 extent = (high - low).cwiseMax(1e-12);
-        if (!extent.allFinite()) return;
         scale_ = (1 - 2 * margin) * std::min(width / extent.x(), height / extent.y());
         shift_ = Vec3(width / 2, height / 2, 0) - scale_ * (low + high) / 2;
         shift_.z() = 0;
@@ -236,6 +237,7 @@ ShownField field_to_show(const MovingSurfaces& surfaces) {
 
 Bytes draw(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptions& options) {
     if (surfaces.times.empty()) return {};
+    const WithoutTraps positions_may_be_no_numbers;
     const Projection project(surfaces, options);
     if (!project.valid()) return {};
     Canvas canvas(samples * options.width, samples * options.height);

@@ -1,0 +1,137 @@
+#include "osculate/report/page.hpp"
+
+#include "output/temporary_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+namespace osculate::report {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+class Page : public output::InTemporaryFolder {
+protected:
+    void file(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
+
+    /// The JSON that the page's scripts read.
+    static nlohmann::json data_of(const std::string& html) {
+        const std::string open = "id=\"report-data\">";
+        const std::size_t at = html.find(open) + open.size();
+        return nlohmann::json::parse(html.substr(at, html.find("</script>", at) - at));
+    }
+    static time::Attempt attempt(time::Verdict verdict, const std::string& body, double value) {
+        time::Attempt a;
+        a.attempt = 1;
+        a.time = a.dt = 1;
+        a.verdict = verdict;
+        a.body = body;
+        a.value = value;
+        return a;
+    }
+    /// The page without the browser libraries.
+    static std::string own_part(const std::string& html) { return html.substr(0, html.find("id=\"report-data\"")); }
+
+    static constexpr const char* summary = R"({"version": "0.1.0", "scene": "two", "status": "done", "dofs": 1234567,
+        "bodies": [{"name": "base", "nodes": 12, "elements": 2}], "pairs": [], "steps": {"accepted": 3, "rejected": 1},
+        "iterations": 9, "seconds": {"total": 2, "cpu": 1.5, "solve": 0.5}, "threads": 2, "plan": ["frames"]})";
+    PageOptions options;
+};
+
+TEST_F(Page, TellsWhatTheRunWas) {
+    file("summary.json", summary);
+    const std::string html = make_page(folder, options).html;
+    EXPECT_THAT(html, AllOf(HasSubstr("<title>two"), HasSubstr("Completed"), HasSubstr("1\u202f234\u202f567"),
+                            HasSubstr("25.0 %"), HasSubstr("There is no contact")));
+}
+
+TEST_F(Page, NamesCannotBecomeMarkup) {
+    const std::string evil = "</script><script>alert(1)</script><!--";
+    nlohmann::json json = nlohmann::json::parse(summary);
+    json["scene"] = evil;
+    json["failure"] = evil;
+    json["bodies"][0]["name"] = evil;
+    json["pairs"] = {{{"name", evil}, {"surface", evil}, {"slave_nodes", 1}, {"master_facets", 1}}};
+    file("summary.json", json.dump());
+    file("scene.yaml", evil);
+    file("history.csv", "time,pair." + evil + ".normal\n1,2\n");
+    options.attempts = {attempt(time::Verdict::retry, evil, 0)};
+    options.diary = evil;
+    options.notes = {evil};
+    const std::string html = make_page(folder, options).html;
+    EXPECT_EQ(html.find(evil), std::string::npos);
+    EXPECT_EQ(html.find("<script>alert"), std::string::npos);
+    EXPECT_EQ(data_of(html)["history"]["names"][1], "pair." + evil + ".normal");
+    EXPECT_EQ(data_of(html)["attempts"]["rejected"][0][5], evil);
+}
+
+TEST_F(Page, WhatIsNoTextIsStillWritten) {
+    file("summary.json", summary);
+    options.attempts = {attempt(time::Verdict::retry, "a\xff\xfe", 0)};
+    EXPECT_EQ(data_of(make_page(folder, options).html)["attempts"]["rejected"].size(), 1U);
+}
+
+TEST_F(Page, HoldsNoNumbersThatAreNone) {
+    file("summary.json", summary);
+    file("history.csv", "time,dt,energy.kinetic\n1,1,\n2,1,inf\n");
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    options.attempts = {attempt(time::Verdict::give_up, "", nan)};
+    const std::string html = make_page(folder, options).html;
+    const std::string json = data_of(html).dump(), words = own_part(html);
+    EXPECT_THAT(json, Not(AllOf(HasSubstr("nan"), HasSubstr("inf"))));
+    EXPECT_TRUE(data_of(html)["attempts"]["rejected"][0][7].is_null());
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(words, found, std::regex(R"([ >]-?(nan|inf)[ <])")))
+        << found.prefix().str().substr(found.prefix().length() - 80);
+}
+
+TEST_F(Page, AsksForNothingElsewhere) {
+    file("summary.json", summary);
+    const std::string html = make_page(folder, options).html;
+    const std::regex asks(R"((src|href|url|action|poster|data)\s*[=(]\s*["']?\s*(https?:)?//)");
+    EXPECT_FALSE(std::regex_search(own_part(html), asks));
+    EXPECT_EQ(html.find("<link rel=\"stylesheet\""), std::string::npos);
+    EXPECT_EQ(html.find("<script src"), std::string::npos);
+}
+
+TEST_F(Page, NamesWhatIsMissing) {
+    file("summary.json", R"({"scene": "two", "status": "running"})");
+    const report::Page page = make_page(folder, options);
+    EXPECT_THAT(page.notes, AllOf(Contains(HasSubstr("had not ended")), Contains(HasSubstr("no frames")),
+                                  Contains(HasSubstr("history.csv is missing")), Contains(HasSubstr("scene.yaml"))));
+    for (const std::string& note : page.notes) EXPECT_THAT(page.html, HasSubstr(escaped(note)));
+    EXPECT_THAT(page.html, HasSubstr("Not finished"));
+}
+
+TEST_F(Page, OfARunWithoutASummaryShowsTheRest) {
+    file("history.csv", "time,dt\n1,1\n2,1\n3,"); // the last row is not whole
+    const report::Page page = make_page(folder, options);
+    EXPECT_THAT(page.notes, Contains(HasSubstr("summary.json is missing")));
+    EXPECT_EQ(data_of(page.html)["history"]["rows"], 2);
+}
+
+TEST_F(Page, ADamagedSummaryIsNamed) {
+    file("summary.json", "{\"scene\": ");
+    EXPECT_THAT(output::runtime_error_of([&] { (void)make_page(folder, options); }), HasSubstr("summary.json"));
+}
+
+TEST_F(Page, ALongHistoryIsThinnedOutAndSaidSo) {
+    file("summary.json", summary);
+    std::string rows = "time,dt";
+    for (int c = 0; c < 98; ++c) rows += ",energy." + std::to_string(c);
+    rows += '\n';
+    std::string zeros;
+    for (int c = 0; c < 99; ++c) zeros += ",0";
+    for (int r = 0; r < 30000; ++r) rows += std::to_string(r) + zeros + '\n';
+    file("history.csv", rows);
+    const report::Page page = make_page(folder, options);
+    EXPECT_THAT(page.notes, Contains(HasSubstr("every 2-th of its 30000 rows")));
+    EXPECT_EQ(data_of(page.html)["history"]["rows"], 15001); // the last one too
+}
+
+} // namespace
+} // namespace osculate::report

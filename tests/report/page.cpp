@@ -1,6 +1,7 @@
 #include "osculate/report/page.hpp"
 
 #include "output/temporary_folder.hpp"
+#include "support/found_in.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -9,10 +10,12 @@
 namespace osculate::report {
 namespace {
 
+using support::found;
+using support::missing;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
-using testing::Not;
+using testing::IsEmpty;
 
 class Page : public output::InTemporaryFolder {
 protected:
@@ -45,8 +48,8 @@ protected:
 TEST_F(Page, TellsWhatTheRunWas) {
     file("summary.json", summary);
     const std::string html = make_page(folder, options).html;
-    EXPECT_THAT(html, AllOf(HasSubstr("<title>two"), HasSubstr("Completed"), HasSubstr("1\u202f234\u202f567"),
-                            HasSubstr("25.0 %"), HasSubstr("There is no contact")));
+    EXPECT_THAT(missing(html, {"<title>two", "Completed", "1\u202f234\u202f567", "25.0 %", "There is no contact"}),
+                IsEmpty());
 }
 
 TEST_F(Page, NamesCannotBecomeMarkup) {
@@ -63,8 +66,7 @@ TEST_F(Page, NamesCannotBecomeMarkup) {
     options.diary = evil;
     options.notes = {evil};
     const std::string html = make_page(folder, options).html;
-    EXPECT_EQ(html.find(evil), std::string::npos);
-    EXPECT_EQ(html.find("<script>alert"), std::string::npos);
+    EXPECT_THAT(found(html, {evil, "<script>alert"}), IsEmpty());
     EXPECT_EQ(data_of(html)["history"]["names"][1], "pair." + evil + ".normal");
     EXPECT_EQ(data_of(html)["attempts"]["rejected"][0][5], evil);
 }
@@ -82,11 +84,11 @@ TEST_F(Page, HoldsNoNumbersThatAreNone) {
     options.attempts = {attempt(time::Verdict::give_up, "", nan)};
     const std::string html = make_page(folder, options).html;
     const std::string json = data_of(html).dump(), words = own_part(html);
-    EXPECT_THAT(json, Not(AllOf(HasSubstr("nan"), HasSubstr("inf"))));
+    EXPECT_THAT(found(json, {"nan", "inf"}), IsEmpty());
     EXPECT_TRUE(data_of(html)["attempts"]["rejected"][0][7].is_null());
-    std::smatch found;
-    EXPECT_FALSE(std::regex_search(words, found, std::regex(R"([ >]-?(nan|inf)[ <])")))
-        << found.prefix().str().substr(found.prefix().length() - 80);
+    std::smatch match;
+    EXPECT_FALSE(std::regex_search(words, match, std::regex(R"([ >]-?(nan|inf)[ <])")))
+        << match.prefix().str().substr(match.prefix().length() - 80);
 }
 
 TEST_F(Page, AsksForNothingElsewhere) {
@@ -94,8 +96,7 @@ TEST_F(Page, AsksForNothingElsewhere) {
     const std::string html = make_page(folder, options).html;
     const std::regex asks(R"((src|href|url|action|poster|data)\s*[=(]\s*["']?\s*(https?:)?//)");
     EXPECT_FALSE(std::regex_search(own_part(html), asks));
-    EXPECT_EQ(html.find("<link rel=\"stylesheet\""), std::string::npos);
-    EXPECT_EQ(html.find("<script src"), std::string::npos);
+    EXPECT_THAT(found(html, {"<link rel=\"stylesheet\"", "<script src"}), IsEmpty());
 }
 
 TEST_F(Page, NamesWhatIsMissing) {
@@ -103,8 +104,8 @@ TEST_F(Page, NamesWhatIsMissing) {
     const report::Page page = make_page(folder, options);
     EXPECT_THAT(page.notes, AllOf(Contains(HasSubstr("had not ended")), Contains(HasSubstr("no frames")),
                                   Contains(HasSubstr("history.csv is missing")), Contains(HasSubstr("scene.yaml"))));
-    for (const std::string& note : page.notes) EXPECT_THAT(page.html, HasSubstr(escaped(note)));
-    EXPECT_THAT(page.html, HasSubstr("Not finished"));
+    for (const std::string& note : page.notes) EXPECT_THAT(missing(page.html, {escaped(note)}), IsEmpty());
+    EXPECT_THAT(missing(page.html, {"Not finished"}), IsEmpty());
 }
 
 TEST_F(Page, OfARunWithoutASummaryShowsTheRest) {

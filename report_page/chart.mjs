@@ -3,7 +3,7 @@ import {clock} from "clock";
 import {make} from "page";
 import {digits, measure, pretty, scaleFor} from "units";
 
-const margin = {left: 54, right: 14, top: 22, bottom: 34}, height = 240;
+const margin = {left: 54, right: 20, top: 22, bottom: 34}, height = 240;
 
 /// Numbers a line may go through: per pixel the first, the least and the largest one.
 function thinned(x, y, toX) {
@@ -115,7 +115,8 @@ export function chart(place, plot) {
         drawing.append("rect").attr("class", "stage").attr({x: a, y: margin.top, width: b - a, height: height - margin.top - margin.bottom});
       if (b - a > 34) drawing.append("text").attr("class", "stage").attr({x: a + 3, y: margin.top - 5}).text(stage.name);
     }
-    const xAxis = d3.svg.axis().scale(toX).orient("bottom").ticks(Math.max(3, width / 90)).tickSize(4).tickFormat((v) => digits(v));
+    const along = scaleFor(Math.max(Math.abs(ends[0]), Math.abs(ends[1])), plot.xUnit ?? "");
+    const xAxis = d3.svg.axis().scale(toX).orient("bottom").ticks(Math.max(3, width / 90)).tickSize(4).tickFormat((v) => digits(v * along.factor));
     const yAxis = d3.svg.axis().scale(toY).orient("left").tickSize(-(width - margin.left - margin.right)).tickPadding(6);
     if (log) {
       const decades = Math.log10(range[1] / range[0]);
@@ -129,7 +130,7 @@ export function chart(place, plot) {
     drawing.append("g").attr("class", "axis grid").attr("transform", `translate(${margin.left},0)`).call(yAxis);
     drawing.append("g").attr("class", "axis").attr("transform", `translate(0,${height - margin.bottom})`).call(xAxis);
     drawing.append("text").attr("class", "label").attr({x: width - margin.right, y: height - 4, "text-anchor": "end"})
-      .text(plot.xLabel + (plot.xUnit ? `, ${plot.xUnit}` : ""));
+      .text(plot.xLabel + (along.unit ? `, ${along.unit}` : ""));
     if (!log && unit) drawing.append("text").attr("class", "label").attr({x: margin.left - 6, y: margin.top - 8, "text-anchor": "end"}).text(pretty(unit));
 
     plot.series.forEach((series, s) => {

@@ -1,6 +1,7 @@
 #include "osculate/report/page.hpp"
 
 #include "osculate/core/without_traps.hpp"
+#include "osculate/output/post_mortem_file.hpp"
 #include "osculate/report/picture.hpp"
 #include "osculate/scene/outline.hpp"
 #include "report/assets.hpp"
@@ -94,7 +95,9 @@ std::string key_figures(const RunFiles& files, double last_time) {
     for (const json& body : list(files.summary, "bodies")) elements += member(body, "elements");
     add("Degrees of freedom", count(files.number("dofs")), count(elements) + " elements");
     add("Reached", std::isfinite(last_time) ? scene::engineering(last_time, "s") : "–", "of the scene's time");
-    add("Steps", count(member(steps, "accepted")), count(member(steps, "rejected")) + " attempts rejected");
+    add("Steps", count(member(steps, "accepted")),
+        count(member(steps, "rejected")) +
+            (member(steps, "rejected") == 1 ? " attempt rejected" : " attempts rejected"));
     add("Newton iterations", count(files.number("iterations")),
         figure(files.number("iterations") / (member(steps, "accepted") + member(steps, "rejected"))) + " per attempt");
     add("Wall time", duration(member(seconds, "total")), duration(member(seconds, "cpu")) + " CPU");
@@ -223,6 +226,25 @@ std::string notes_section(const std::vector<std::string>& notes) {
     std::string items;
     for (const std::string& note : notes) items += element("li", escaped(note));
     return section("notes", "What this report leaves out", element("ul", items));
+}
+
+/// What to try first, then all that was found.
+std::string failure_section(const RunFiles& files) {
+    const std::string failure = files.text("failure", "");
+    if (failure.empty() && !files.post_mortem) return "";
+    std::string text = failure.empty() ? "" : element("p class=\"lead\"", escaped(failure));
+    if (files.post_mortem) {
+        std::string advice;
+        for (const auto& [key, what] : files.post_mortem->advice)
+            advice += element("li", element("code", escaped(key)) + " " + escaped(what));
+        if (!advice.empty()) text += element("h3", "What to try") + element("ul", advice);
+        text += element("details", element("summary", "Everything that was found") +
+                                       element("pre", escaped(output::in_words(*files.post_mortem))));
+    }
+    if (files.failed_iterate)
+        text += element("p class=\"fine\"", "The last iterate is in the folder " + element("code", "failed") +
+                                                " of the run, for ParaView.");
+    return section("post-mortem", "Why the run gave up", text);
 }
 
 /// Start, middle and end; nothing where the bodies cannot be drawn.
@@ -369,11 +391,7 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
 
     const Status status = status_of(files);
     std::string body;
-    const std::string failure = files.text("failure", "");
-    if (!failure.empty() || !files.post_mortem.empty())
-        body += section("post-mortem", "Why the run gave up",
-                        (failure.empty() ? "" : element("p class=\"lead\"", escaped(failure))) +
-                            (files.post_mortem.empty() ? "" : element("pre", escaped(files.post_mortem))));
+    body += failure_section(files);
     const std::string pictures = pictures_section(surfaces, page); // of all frames, before any are thinned out
     if (three) {
         data.add_view(surfaces, options.largest_view, page.notes);

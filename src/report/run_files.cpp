@@ -103,7 +103,8 @@ RunFiles read_run_files(const fs::path& folder) {
     files.iterations = read_table(folder / "iterations.csv", "", files);
     if (const fs::path path = folder / output::post_mortem_file; fs::exists(path)) {
         try {
-            files.post_mortem = output::in_words(output::read_post_mortem(path));
+            files.post_mortem = output::read_post_mortem(path);
+            files.failed_iterate = fs::exists(folder / "failed" / "series.pvd");
         } catch (const std::runtime_error& error) {
             files.notes.push_back(std::string("post_mortem.json cannot be read: ") + error.what() + ".");
         }

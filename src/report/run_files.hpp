@@ -3,6 +3,7 @@
 
 #include "osculate/output/csv_reader.hpp"
 #include "osculate/scene/scene.hpp"
+#include "osculate/time/post_mortem.hpp"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -18,7 +19,8 @@ struct RunFiles {
     std::string scene_text;
     std::optional<scene::Scene> scene;
     std::optional<output::NumberTable> history, iterations;
-    std::string post_mortem; ///< in words
+    std::optional<time::PostMortem> post_mortem;
+    bool failed_iterate = false; ///< whether the last iterate of a run that gave up is there
     std::vector<std::string> notes;
 
     [[nodiscard]] std::string name() const;

@@ -91,7 +91,9 @@ function steps() {
   place("steps").append(grid);
   const {accepted, rejected} = report.attempts;
   const column = (rows, c) => Float64Array.from(rows, (row) => row[c]);
-  const time = column(accepted, 0), dt = column(accepted, 1);
+  // a step is drawn over the time it took, the first one too
+  const first = accepted.length > 0 ? [[accepted[0][0] - accepted[0][1], ...accepted[0].slice(1)]] : [];
+  const rows = first.concat(accepted), time = column(rows, 0), dt = column(rows, 1);
   const marks = rejected.map((row) => ({
     x: row[0], y: row[1], kind: `cut: ${words(row[4])}`,
     text: `attempt ${row[3]} to ${row[0]} s, ${row[4]}${row[5] ? `, ${row[5]}${row[6] >= 0 ? " node " + row[6] : ""}` : ""}`,
@@ -100,7 +102,7 @@ function steps() {
   const common = {xLabel: "time", xUnit: "s", stages: report.stages, timed: true, fromZero: true};
   chart(grid, {title: "Steps: dt, and attempts that were cut", unit: "s", series: [{name: "dt", x: time, y: dt, steps: true}],
                marks, log: d3.max(all) > 15 * d3.min(all), ...common});
-  chart(grid, {title: "Newton iterations of a step", unit: "", series: [{name: "iterations", x: time, y: column(accepted, 2), steps: true}],
+  chart(grid, {title: "Newton iterations of a step", unit: "", series: [{name: "iterations", x: time, y: column(rows, 2), steps: true}],
                ...common});
 }
 

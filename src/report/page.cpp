@@ -182,6 +182,12 @@ std::string cost_section(const RunFiles& files) {
     return section("cost", "Time and memory", text);
 }
 
+/// Values of keys that name files.
+void add_files(const scene::OutlineItem& item, std::vector<std::string>& files) {
+    if (item.key == "path" || item.key == "file") files.push_back(item.text);
+    for (const scene::OutlineItem& one : item.items) add_files(one, files);
+}
+
 std::string reproduce_section(const RunFiles& files) {
     if (files.scene_text.empty()) return "";
     const std::string name = files.name();
@@ -192,11 +198,17 @@ std::string reproduce_section(const RunFiles& files) {
                                         ". It is the scene as it was run: every default and every change given by " +
                                         element("code", "--set") + " is in it. Then");
     text += "<pre class=\"command\"><code id=\"command\">" + escaped(command) + "</code></pre>\n";
-    text += element("p", "gives the same numbers with any number of threads" +
-                             (files.text("version", "").empty()
-                                  ? std::string(".")
-                                  : ", with osculate " + escaped(files.text("version", "")) + ".") +
-                             " Meshes that the scene reads from files have to be beside it.");
+    const std::string version = files.text("version", "");
+    std::string after = "gives the same numbers with any number of threads";
+    if (!version.empty()) after += ", with osculate " + escaped(version);
+    if (files.scene) {
+        std::vector<std::string> meshes;
+        add_files(scene::outline(*files.scene), meshes);
+        if (!meshes.empty()) after += ". It reads meshes from files, which the report does not hold: ";
+        for (std::size_t m = 0; m < meshes.size(); ++m)
+            after += (m > 0 ? ", " : "") + element("code", escaped(meshes[m]));
+    }
+    text += element("p", after + ".");
     text += "<div class=\"tools\"><button type=\"button\" data-copy=\"command\">Copy command</button>"
             "<button type=\"button\" data-copy=\"scene-yaml\">Copy scene</button>"
             "<button type=\"button\" data-save=\"scene-yaml\" data-name=\"" +
@@ -254,6 +266,7 @@ std::string pictures_section(const MovingSurfaces& surfaces, Page& page) {
     std::string figures;
     const std::size_t last = surfaces.times.empty() ? 0 : surfaces.times.size() - 1;
     std::vector<std::pair<const char*, std::size_t>> moments{{"start", 0}, {"middle", last / 2}, {"end", last}};
+    if (last < 2) moments.erase(moments.begin() + 1);
     if (last == 0) moments.resize(1);
     for (const auto& [name, frame] : moments) {
         const Bytes png = draw(surfaces, frame, options);

@@ -1,6 +1,9 @@
 #include "osculate/report/page.hpp"
 
+#include "osculate/output/frames.hpp"
+#include "osculate/report/pack.hpp"
 #include "output/temporary_folder.hpp"
+#include "output/two_blocks.hpp"
 #include "support/found_in.hpp"
 
 #include <gmock/gmock.h>
@@ -118,6 +121,72 @@ TEST_F(Page, OfARunWithoutASummaryShowsTheRest) {
 TEST_F(Page, ADamagedSummaryIsNamed) {
     file("summary.json", "{\"scene\": ");
     EXPECT_THAT(output::runtime_error_of([&] { (void)make_page(folder, options); }), HasSubstr("summary.json"));
+}
+
+/// Text of the script that holds an array.
+Bytes array_of(const std::string& html, const std::string& name) {
+    const std::string open = "id=\"" + name + "\">";
+    const std::size_t at = html.find(open) + open.size();
+    const std::string text = html.substr(at, html.find("</script>", at) - at);
+    const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    Bytes bytes;
+    unsigned word = 0;
+    int bits = 0;
+    for (const char c : text) {
+        if (c == '=') break;
+        word = word << 6 | static_cast<unsigned>(letters.find(c));
+        bits += 6;
+        if (bits < 8) continue;
+        bits -= 8;
+        bytes.push_back(static_cast<std::uint8_t>(word >> bits & 255U));
+    }
+    return bytes;
+}
+
+class PageOfFrames : public Page {
+protected:
+    /// Frames in which the cap has moved by so many shifts. @param noise  of every node's own, m
+    void write(int frames, double noise = 0) {
+        file("summary.json", summary);
+        output::Frames files(folder, {{"displacement"}, {"gap"}, {}}, blocks.model);
+        for (int f = 0; f < frames; ++f) {
+            blocks.state.time = f;
+            for (Index i = 0; i < blocks.model.bodies[1].nodes(); ++i)
+                blocks.state.u[blocks.model.bodies[1].first_node + i] =
+                    f * output::TwoBlocks::shift + noise * std::sin(7. * f * (i + 1)) * Vec3::Ones();
+            files.write(blocks.snapshot(), f);
+        }
+        files.finish();
+    }
+    output::TwoBlocks blocks;
+};
+
+TEST_F(PageOfFrames, ItsArraysAreTheFields) {
+    write(3);
+    const std::string html = make_page(folder, options).html;
+    const nlohmann::json cap = data_of(html)["view"]["parts"][1], field = cap["fields"][0];
+    EXPECT_EQ(cap["name"], "cap");
+    EXPECT_EQ(field["name"], "displacement");
+    EXPECT_EQ(field["unit"], "m");
+    const Packed packed{field["low"], field["step"], array_of(html, field["array"])};
+    const FieldFrames values = unpack(packed, 3, cap["size"]);
+    for (std::size_t f = 0; f < 3; ++f)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(values.frames[f][static_cast<std::size_t>(c)],
+                        static_cast<double>(f) * output::TwoBlocks::shift[c], 1e-6);
+    const Bytes facets = inflated(array_of(html, cap["facets"]));
+    EXPECT_EQ(facets.size(), 10 * 4 * 4U);
+}
+
+TEST_F(PageOfFrames, ThatIsTooLargeHoldsFewerFramesAndSaysSo) {
+    write(40, 0.01);
+    options.largest_view = 5000;
+    const report::Page page = make_page(folder, options);
+    EXPECT_THAT(page.notes, Contains(HasSubstr("of 40 frames, so that the page can be mailed")));
+    const nlohmann::json view = data_of(page.html)["view"];
+    EXPECT_LT(view["times"].size(), 40U);
+    EXPECT_EQ(view["times"].back(), 39);
+    EXPECT_EQ(page.pictures.size(), 6U); // start, middle and end, each as PNG and SVG
 }
 
 TEST_F(Page, ALongHistoryIsThinnedOutAndSaidSo) {

@@ -358,6 +358,28 @@ bool has_columns(const RunFiles& files, const std::string& start) {
            std::ranges::any_of(files.history->names, [&](const std::string& name) { return name.starts_with(start); });
 }
 
+/// Places for the plots of what the run has; their data go to `data`.
+std::string plots_of(const RunFiles& files, const PageOptions& options, PageData& data,
+                     std::vector<std::string>& notes) {
+    std::string plots;
+    if (files.history) data.add_table("history", *files.history, notes);
+    if (has_columns(files, "pair."))
+        plots += charts("contact", "Contact");
+    else if (files.history && !list(files.summary, "pairs").empty())
+        notes.emplace_back("history.csv holds no columns of contact pairs (output.history).");
+    if (has_columns(files, "set.")) plots += charts("reactions", "Reactions");
+    if (has_columns(files, "energy.")) plots += charts("energies", "Energies and momenta");
+    if (!options.attempts.empty()) {
+        data.add_attempts(options.attempts, notes);
+        plots += charts("steps", "Steps and iterations");
+    }
+    if (files.iterations) {
+        data.add_table("iterations", *files.iterations, notes);
+        plots += charts("residuals", "Residuals");
+    }
+    return plots;
+}
+
 } // namespace
 
 Page make_page(const fs::path& run_folder, const PageOptions& options) {
@@ -378,29 +400,15 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
     if (frames && !three)
         page.notes.emplace_back("There is no three-dimensional view: this program was built without three.js "
                                 "(Debian: libjs-three).");
-    if (asset("d3.min.js").empty())
+    const bool drawing = !asset("d3.min.js").empty();
+    if (!drawing)
         page.notes.emplace_back(
             "There are no plots in this page: this program was built without d3 (Debian: libjs-d3).");
 
     PageData data;
     data.json["name"] = files.name();
     data.json["stages"] = stage_ends(files);
-    std::string plots;
-    if (files.history) data.add_table("history", *files.history, page.notes);
-    if (has_columns(files, "pair."))
-        plots += charts("contact", "Contact");
-    else if (files.history && !list(files.summary, "pairs").empty())
-        page.notes.emplace_back("history.csv holds no columns of contact pairs (output.history).");
-    if (has_columns(files, "set.")) plots += charts("reactions", "Reactions");
-    if (has_columns(files, "energy.")) plots += charts("energies", "Energies and momenta");
-    if (!options.attempts.empty()) {
-        data.add_attempts(options.attempts, page.notes);
-        plots += charts("steps", "Steps and iterations");
-    }
-    if (files.iterations) {
-        data.add_table("iterations", *files.iterations, page.notes);
-        plots += charts("residuals", "Residuals");
-    }
+    const std::string plots = drawing ? plots_of(files, options, data, page.notes) : "";
 
     const Status status = status_of(files);
     std::string body;

@@ -3,6 +3,7 @@
 #include "app/gaps.hpp"
 #include "app/plots.hpp"
 #include "osculate/app/report.hpp"
+#include "osculate/app/run_report.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/output/paraview_script.hpp"
@@ -298,8 +299,12 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
 void RunRecorder::write_pictures() {
     if (const std::string note = write_plots(scene_, settings_.directory); !note.empty())
         fmt::print(stderr, "{}\n", note);
-    if (scene_.output.report) {
-        // the report is written here, from the folder's files
+    if (!scene_.output.report) return;
+    try {
+        for (const std::string& note : write_report(settings_.directory).notes)
+            fmt::print(stderr, "report: {}\n", note);
+    } catch (const std::exception& error) { // a run is no worse for a report that cannot be written
+        fmt::print(stderr, "report: {}\n", error.what());
     }
 }
 

@@ -25,7 +25,7 @@ namespace {
 enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
 
 struct Arguments {
-    std::string scene, output, key_path, run_folder;
+    std::string scene, output, key_path, run_folder, checkpoint_every, from;
     std::vector<std::string> changes;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
@@ -33,6 +33,10 @@ struct Arguments {
     StudyOptions study;
     bool formulas = false;
 
+    [[nodiscard]] RunOptions run_options() const {
+        return {output, threads, quiet,
+                checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every)};
+    }
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> list;
         for (const std::string& change : changes) {
@@ -96,11 +100,18 @@ void print(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
-void run_scene(const Arguments& arguments) {
-    const output::Summary summary =
-        run(arguments.scene, arguments.overrides(), {arguments.output, arguments.threads, arguments.quiet});
+void add_run_options(CLI::App* run, Arguments& arguments) {
+    run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    run->add_option("--checkpoint-every", arguments.checkpoint_every,
+                    "Write a checkpoint after so many accepted steps, '20', or so much time, '5 min'")
+        ->type_name("STEPS|TIME");
+    run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
+}
+
+void show_run(const output::Summary& summary, const Arguments& arguments, const std::string& folder) {
     if (arguments.quiet) return;
-    const std::string folder = arguments.output.empty() ? "out/" + summary.scene : arguments.output;
     const bool frames = std::ranges::count(summary.plan, "frames") > 0;
     print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}{}/history.csv\n", summary.scene,
                       summary.steps.accepted, summary.iterations, summary.total_seconds,
@@ -146,10 +157,11 @@ ExitCode run_command(int argc, char** argv) {
     program.require_subcommand(1);
     CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
     run->add_option("-o,--output", arguments.output, "Folder of the run's files [out/<scene name>]")->type_name("DIR");
-    run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1024));
-    run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
+    add_run_options(run, arguments);
+    CLI::App* resume = program.add_subcommand("resume", "Go on with a run from its last checkpoint");
+    resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    resume->add_option("--from", arguments.from, "Another checkpoint than DIR/checkpoint/state")->type_name("FILE");
+    add_run_options(resume, arguments);
     CLI::App* check = add_scene_command(program, "check",
                                         "Validate a scene; show sizes, pairs, initial gaps and overlaps", arguments);
     add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
@@ -173,7 +185,11 @@ ExitCode run_command(int argc, char** argv) {
     }
 
     if (*run) {
-        run_scene(arguments);
+        const output::Summary summary = app::run(arguments.scene, arguments.overrides(), arguments.run_options());
+        show_run(summary, arguments, arguments.output.empty() ? "out/" + summary.scene : arguments.output);
+    } else if (*resume) {
+        show_run(app::resume(arguments.run_folder, arguments.from, arguments.run_options()), arguments,
+                 arguments.run_folder);
     } else if (*surface) {
         arguments.surface.directory = arguments.output;
         arguments.surface.threads = arguments.threads;
@@ -200,6 +216,9 @@ int command_line(int argc, char** argv) {
     } catch (const SceneError& error) {
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
         return bad_scene;
+    } catch (const Interrupted& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 128 + error.signal(); // as shells report it
     } catch (const GaveUp& error) {
         fmt::print(stderr, "the run gave up: {}\n{}", error.what(), error.post_mortem());
         return gave_up;

@@ -23,6 +23,11 @@ void remove_files(const std::filesystem::path& folder, const std::vector<std::st
 /// Writes `content` to a file beside `path` and renames it: a reader sees the file of before or the whole new one.
 /// Makes the folder when it is missing.
 /// @throws std::runtime_error with path and reason; the file of before is then untouched and nothing else is left
-void write_atomic(const std::filesystem::path& path, std::string_view content);
+/// @param durable  content and name have reached the disk when it returns
+void write_atomic(const std::filesystem::path& path, std::string_view content, bool durable = false);
+
+/// What has been written to a file, or listed in a folder, has reached the disk when it returns.
+/// @throws std::runtime_error with path and reason
+void sync(const std::filesystem::path& path);
 
 } // namespace osculate::output

@@ -70,9 +70,9 @@ std::vector<std::string> History::columns(const model::Model& model, bool pairs,
 }
 
 History::History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets,
-                 bool ledger)
+                 bool ledger, std::optional<std::uintmax_t> keep)
     : pairs_(pairs ? model.pairs.size() : 0), sets_(std::move(sets)), ledger_(ledger),
-      table_(path, columns(model, pairs, sets_, ledger)) {}
+      table_(path, columns(model, pairs, sets_, ledger), keep) {}
 
 void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
                   const time::Ledger* ledger) {

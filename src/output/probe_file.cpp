@@ -18,12 +18,13 @@ std::vector<std::string> headers(const Probe& probe) {
 
 } // namespace
 
-fs::path ProbeFile::path(const fs::path& folder, const std::string& name) {
-    return folder / probe_folder / (name + ".csv");
+std::string ProbeFile::relative_path(const std::string& name) {
+    return std::string(probe_folder) + "/" + name + ".csv";
 }
 
-ProbeFile::ProbeFile(const fs::path& folder, const std::string& name, const Probe& probe)
-    : probe_(probe), table_(path(folder, name), headers(probe)) {}
+ProbeFile::ProbeFile(const fs::path& folder, const std::string& name, const Probe& probe,
+                     std::optional<std::uintmax_t> keep)
+    : probe_(probe), table_(path(folder, name), headers(probe), keep) {}
 
 void ProbeFile::write(const Snapshot& snapshot) {
     for (const std::vector<double>& row : probe_.rows(snapshot)) {

@@ -130,7 +130,7 @@ void write_paraview_script(const std::filesystem::path& folder, const model::Mod
     for (const Field& f : all_fields())
         if (f.components == 3 && std::ranges::count(vectors, f.name) == 0) vectors.emplace_back(f.name);
     const std::string text =
-        fmt::format("\"\"\"Shows the frames of this folder: Tools > Python Shell > Run Script in ParaView, or\n"
+        fmt::format("\"\"\"Shows the frames of this folder: View > Python Shell > Run Script in ParaView, or\n"
                     "    pvbatch {} PICTURE.png\n\"\"\"\n"
                     "SCALE = 1.0  # of displacements\n"
                     "BODIES = {}\nSLAVES = {}\nMASTERS = {}\n"

@@ -24,8 +24,7 @@ public:
         if (!file) {
             const Words known = known_templates(directory);
             faults_.push_back(fault_at(
-                at, key,
-                name.ends_with(".yaml") ? "a template file that exists" : "an output template: " + join(known),
+                at, key, name.ends_with(".yaml") ? "a template file that exists" : "an output template: " + join(known),
                 "'" + name + "'", nearest(name, known)));
             return {};
         }
@@ -67,8 +66,8 @@ std::string read_template(const Tree& scene, const fs::path& directory, const Kn
     const Tree* given = section ? section->find("template") : nullptr;
     if (given && given->kind != Tree::Kind::scalar) return output.template_name; // reported by the reader
     const std::string name = given ? given->scalar : output.template_name;
-    const auto file = Chain(names, output, faults).read(name, given ? given->place : scene.place, "output.template",
-                                                        directory);
+    const auto file =
+        Chain(names, output, faults).read(name, given ? given->place : scene.place, "output.template", directory);
     return !file || file->shipped ? name : file->path.string();
 }
 

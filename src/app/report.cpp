@@ -21,6 +21,7 @@ std::string report(const Plan& plan, int threads) {
     const auto out = std::back_inserter(text);
     for (const model::Body& body : plan.model.bodies)
         fmt::format_to(out, "body {}: {} nodes, {} elements\n", body.name, body.nodes(), body.mesh.element_count());
+    for (const std::string& note : plan.mesh_notes) fmt::format_to(out, "{}\n", note);
     fmt::format_to(out, "degrees of freedom: {}\n", degrees_of_freedom(plan));
     Timings unused;
     for (const auto& pair : plan.model.pairs) {

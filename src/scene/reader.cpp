@@ -58,9 +58,13 @@ std::string read_template(const Tree& tree, const fs::path& directory, Output& o
 }
 
 void make_absolute(Scene& scene) {
-    for (auto& [name, body] : scene.bodies)
-        if (auto* file = std::get_if<FileMesh>(&body.mesh.source); file && !file->path.empty())
-            file->path = (fs::path(scene.directory) / file->path).lexically_normal().string();
+    const auto from_folder = [&](std::string& path) {
+        if (!path.empty()) path = (fs::path(scene.directory) / path).lexically_normal().string();
+    };
+    for (auto& [name, body] : scene.bodies) {
+        if (auto* file = std::get_if<FileMesh>(&body.mesh.source)) from_folder(file->path);
+        if (auto* cad = std::get_if<CadMesh>(&body.mesh.source)) from_folder(cad->path);
+    }
 }
 
 /// By place: the scene's own file first, then templates, overrides last.

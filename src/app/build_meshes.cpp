@@ -1,10 +1,10 @@
 #include "app/fault.hpp"
+#include "app/mesh_share.hpp"
 #include "app/overloaded.hpp"
 #include "osculate/app/compile.hpp"
 #include "osculate/mesh/generators.hpp"
 #include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/mesh_error.hpp"
-#include "osculate/mesh/mesh_file.hpp"
 
 #include <filesystem>
 #include <map>
@@ -28,17 +28,6 @@ struct Sources {
         return geometries.emplace_back(options, mesh::mesh_cad(options)).second;
     }
 };
-
-template <class FileSpec> mesh::MeshFileOptions share_of(const FileSpec& spec) {
-    mesh::MeshFileOptions options{spec.part, spec.piece, {}};
-    const auto wants = [&](const std::string& word) { return std::ranges::count(spec.repair, word) > 0; };
-    const std::vector<std::string>& words = mesh::repair_words();
-    for (std::size_t r = 0; r < words.size(); ++r) {
-        const bool in_all = static_cast<mesh::Repair>(r) != mesh::Repair::coincident_nodes;
-        options.repairs.wanted[r] = wants(words[r]) || (in_all && wants("all"));
-    }
-    return options;
-}
 
 mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, Sources& sources,
                     std::vector<std::string>& notes) {

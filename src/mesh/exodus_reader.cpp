@@ -5,6 +5,8 @@
 #include "osculate/mesh/mesh_error.hpp"
 #include "osculate/mesh/vtk_threads.hpp"
 
+#include <array>
+#include <fstream>
 #include <functional>
 #include <string_view>
 #include <vtkCellArray.h>
@@ -13,9 +15,18 @@
 #include <vtkExodusIIReader.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
+#include <vtk_exodusII.h>
 
 namespace osculate::mesh {
 namespace {
+
+/// Whether a file begins as Exodus files do; the library would print a report about any other.
+bool is_netcdf(const std::filesystem::path& path) {
+    std::array<char, 4> start{};
+    std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+    const std::string_view text(start.data(), start.size());
+    return text.starts_with("CDF") || text == "\x89HDF";
+}
 
 /// The file's name of a block or a set; VTK makes one up where there is none.
 std::string name_of(vtkExodusIIReader& reader, int kind, int index, const char* otherwise) {
@@ -56,12 +67,14 @@ RawFace face_of(const std::string& file, const std::string& set, int type, vtkId
 } // namespace
 
 RawMesh read_exodus_cells(const std::filesystem::path& path) {
+    if (!is_netcdf(path)) throw MeshError(path.string(), "not an Exodus II file");
     use_no_vtk_threads();
     const vtkNew<VtkErrors> errors;
     const vtkNew<vtkExodusIIReader> reader;
     errors->listen_to(*reader);
     reader->SetFileName(path.c_str());
     const WithoutTraps vtk;
+    ex_opts(0); // prints nothing
     if (reader->CanReadFile(path.c_str()) == 0) throw MeshError(path.string(), "not an Exodus II file");
     reader->UpdateInformation();
     reader->SetSqueezePoints(false); // every block has all the points, so that numbers mean the same in all

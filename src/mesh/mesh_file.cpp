@@ -37,23 +37,6 @@ Index root_of(std::vector<Index>& parent, Index i) {
     return i;
 }
 
-/// Cells of a connected piece, the first cell of which is the piece-th first among all pieces.
-std::vector<Index> pick_piece(const RawMesh& raw, const std::vector<Index>& cells, int piece, int& pieces) {
-    std::vector<Index> parent(raw.points.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    for (const Index c : cells)
-        for (const Index node : raw.cells[c]) parent[root_of(parent, node)] = root_of(parent, raw.cells[c].nodes[0]);
-    std::vector<int> number(raw.points.size(), 0);
-    std::vector<Index> picked;
-    pieces = 0;
-    for (const Index c : cells) {
-        int& of_root = number[root_of(parent, raw.cells[c].nodes[0])];
-        if (of_root == 0) of_root = ++pieces;
-        if (of_root == piece) picked.push_back(c);
-    }
-    return picked;
-}
-
 std::string names_of(const std::map<std::string, std::vector<Index>>& parts) {
     constexpr std::size_t shown = 20;
     std::string text;
@@ -79,8 +62,12 @@ RawMesh select(const RawMesh& raw, const MeshFileOptions& options) {
         cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     }
     if (options.piece > 0) {
-        int pieces = 0;
-        cells = pick_piece(raw, cells, options.piece, pieces);
+        const std::vector<int> numbers = pieces_of(raw, cells);
+        const int pieces = *std::max_element(numbers.begin(), numbers.end());
+        std::vector<Index> picked;
+        for (std::size_t k = 0; k < cells.size(); ++k)
+            if (numbers[k] == options.piece) picked.push_back(cells[k]);
+        cells = std::move(picked);
         if (cells.empty())
             throw MeshError(raw.file, "no piece " + std::to_string(options.piece) + ": what is asked for consists of " +
                                           std::to_string(pieces));
@@ -189,6 +176,21 @@ std::vector<std::string> mesh_file_endings() {
     std::vector<std::string> all;
     for (const Format& format : formats()) all.insert(all.end(), format.endings.begin(), format.endings.end());
     return all;
+}
+
+std::vector<int> pieces_of(const RawMesh& raw, const std::vector<Index>& cells) {
+    std::vector<Index> parent(raw.points.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    for (const Index c : cells)
+        for (const Index node : raw.cells[c]) parent[root_of(parent, node)] = root_of(parent, raw.cells[c].nodes[0]);
+    std::vector<int> of_root(raw.points.size(), 0), numbers;
+    int pieces = 0;
+    for (const Index c : cells) {
+        int& number = of_root[root_of(parent, raw.cells[c].nodes[0])];
+        if (number == 0) number = ++pieces;
+        numbers.push_back(number);
+    }
+    return numbers;
 }
 
 RawMesh read_mesh_file(const std::filesystem::path& path) {

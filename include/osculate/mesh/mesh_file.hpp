@@ -16,6 +16,9 @@ namespace osculate::mesh {
 /// surfaces name sets at most. Throws MeshError.
 [[nodiscard]] RawMesh read_mesh_file(const std::filesystem::path& path);
 
+/// Per cell given, the number of its connected piece, from 1, in order of their first cells. Cells are connected by nodes.
+[[nodiscard]] std::vector<int> pieces_of(const RawMesh& raw, const std::vector<Index>& cells);
+
 /// What is taken of a file.
 struct MeshFileOptions {
     std::string part; ///< a named set of cells; empty: all of them

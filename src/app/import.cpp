@@ -51,6 +51,7 @@ public:
     }
 
     ImportedScene write() {
+        if (bodies_.empty()) throw SceneError({fault("deck", "volume elements", "none")});
         if (model_.steps.empty())
             throw SceneError({fault("deck", "a *STEP with *STATIC or *DYNAMIC", "none that has a counterpart")});
         stages_.resize(model_.steps.size());
@@ -205,6 +206,11 @@ private:
                                       master = sets_.of_surface(b, pair.master);
                     if (slave.empty() || master.empty()) continue;
                     any = true;
+                    if (!covers_facets(a, pair.slave)) {
+                        leave(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
+                              "nodes that cover no facet of their body cannot be slaves");
+                        continue;
+                    }
                     text += "  " + fresh_name(slave + "_on_" + master, taken) + ":\n    slave: " + slave +
                             "\n    master: {set: " + master + "}\n";
                     if (pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave)))
@@ -218,6 +224,18 @@ private:
                       "no two pieces of the mesh have them: a body in contact with itself has no counterpart");
         }
         return text;
+    }
+
+    /// A surface does; a set of nodes where it has all the nodes of a facet.
+    bool covers_facets(std::size_t body, const std::string& key) const {
+        if (bodies_[body].mesh.surfaces.contains(surface_name(key))) return true;
+        const auto name = model_.mesh.node_set_names.find(key);
+        if (name == model_.mesh.node_set_names.end()) return false;
+        const std::vector<Index>& nodes = bodies_[body].mesh.node_sets.at(name->second);
+        return std::any_of(bodies_[body].exterior.begin(), bodies_[body].exterior.end(), [&](const mesh::Facet& facet) {
+            return std::all_of(facet.begin(), facet.end(),
+                               [&](Index n) { return std::binary_search(nodes.begin(), nodes.end(), n); });
+        });
     }
 
     std::string surface_name(const std::string& key) const {

@@ -47,9 +47,11 @@ std::string fault_of_msh(const std::string& path) {
     std::string version;
     int binary = -1, size = 0;
     format >> version >> binary >> size;
-    if ((version != "2.2" && version != "4.1") || (binary != 0 && binary != 1) || size != 8)
-        return "version '" + version + "' of Gmsh's format; 2.2 and 4.1 are read";
-    const bool version4 = version == "4.1";
+    const bool version4 = version == "4.1",
+               version2 = version == "2" || version == "2.0" || version == "2.1" || version == "2.2";
+    if ((!version2 && !version4) || (binary != 0 && binary != 1))
+        return "version '" + version + "' of Gmsh's format; 2 to 2.2 and 4.1 are read";
+    if (size != 8 && (binary == 1 || size != 4)) return "numbers of " + std::to_string(size) + " bytes; 8 are read";
     bool nodes = false, elements = false;
     // Sections one after the other; in binary ones anything may stand, so their ends are looked for, not parsed.
     rest = std::string_view(text).substr(0);

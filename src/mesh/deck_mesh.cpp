@@ -135,6 +135,7 @@ private:
             std::string known;
             for (const ElementType& one : element_types) known += (known.empty() ? "" : ", ") + std::string(one.name);
             fault(deck_.place(card), "*ELEMENT of type '" + name + "'; only " + known + " are read");
+            refused_ = true;
             return;
         }
         auto kind = std::find(mesh_.types.begin(), mesh_.types.end(), name);
@@ -266,7 +267,7 @@ private:
                     const Index number = look_up(dense, order, id);
                     if (number >= 0)
                         members.push_back(number);
-                    else
+                    else if (!refused_)
                         fault(deck_.place(*line),
                               std::string(parameter == std::string_view("NSET") ? "node " : "element ") +
                                   std::to_string(id) + " does not exist");
@@ -334,6 +335,7 @@ private:
             if ((total_ += cells.size()) > most_generated)
                 return fault(deck_.place(*line), "surfaces with too many faces");
             if (cells.empty()) {
+                if (refused_) continue;
                 fault(deck_.place(*line), "no element or element set '" + shown(fields_[0]) + "'");
                 continue;
             }
@@ -418,6 +420,7 @@ private:
     std::vector<std::vector<int>> exterior_;
     std::vector<std::string> faults_;
     std::size_t count_ = 0, total_ = 0;
+    bool refused_ = false; ///< elements of another type: what refers to them is no other fault
 };
 
 } // namespace

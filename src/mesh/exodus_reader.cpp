@@ -102,6 +102,7 @@ RawMesh read_exodus_cells(const std::filesystem::path& path) {
         next += grid->GetNumberOfCells();
         if (!part.empty()) raw.parts[name_of(*reader, blocks, b, "block")] = std::move(part);
     }
+    if (raw.cells.empty()) throw MeshError(raw.file, "no volume cells");
     for (int s = 0; s < reader->GetNumberOfObjects(side_sets); ++s) {
         vtkUnstructuredGrid* grid = grid_of(all, side_place, s);
         if (grid == nullptr) continue;

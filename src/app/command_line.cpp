@@ -4,13 +4,13 @@
 #include "app/study_command.hpp"
 #include "app/surface_command.hpp"
 #include "osculate/app/diary.hpp"
-#include "osculate/app/import.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
 #include "osculate/app/surface_study.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/deck/import_deck.hpp"
 #include "osculate/mesh/deck.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 #include "osculate/mesh/repair.hpp"
@@ -39,7 +39,7 @@ struct Arguments {
     bool formulas = false;
     MeshCommand mesh;
     std::string deck;
-    DeckUnits units = DeckUnits::si;
+    deck::DeckUnits units = deck::DeckUnits::si;
 
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> list;
@@ -137,8 +137,8 @@ void run_study(Arguments arguments) {
     print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
 }
 
-void import_scene(const std::string& path, DeckUnits units) try {
-    const ImportedScene scene = import_deck(mesh::read_deck(path), path, units);
+void import_scene(const std::string& path, deck::DeckUnits units) try {
+    const deck::ImportedScene scene = deck::import_deck(mesh::read_deck(path), path, units);
     for (const std::string& what : scene.left_out) fmt::print(stderr, "{}\n", what);
     print(scene.text);
 } catch (const mesh::MeshError& error) {
@@ -190,7 +190,7 @@ ExitCode run_command(int argc, char** argv) {
         ->check(CLI::PositiveNumber);
     CLI::App* import = program.add_subcommand("import", "Write an input deck of Abaqus or CalculiX as a scene");
     import->add_option("DECK", arguments.deck, "Input deck, .inp; the scene reads its mesh from it")->required();
-    const std::map<std::string, DeckUnits> units{{"si", DeckUnits::si}, {"mm", DeckUnits::mm}};
+    const std::map<std::string, deck::DeckUnits> units{{"si", deck::DeckUnits::si}, {"mm", deck::DeckUnits::mm}};
     import
         ->add_option("--units", arguments.units,
                      "Units of the deck's numbers: si (m, kg, s) or mm (mm, t, s, MPa) [si]")

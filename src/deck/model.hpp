@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace osculate::app {
+namespace osculate::deck {
 
 /// Something of a deck that the scene does not have, or not as it stands there.
 struct LeftOut {
@@ -83,4 +83,4 @@ struct DeckModel {
 /// Throws mesh::MeshError where the mesh cannot be read.
 [[nodiscard]] DeckModel read_deck_model(const mesh::Deck& deck);
 
-} // namespace osculate::app
+} // namespace osculate::deck

@@ -1,14 +1,14 @@
-#include "osculate/app/import.hpp"
+#include "osculate/deck/import_deck.hpp"
 
-#include "app/deck_bodies.hpp"
-#include "app/fault.hpp"
+#include "deck/bodies.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
+#include "osculate/mesh/mesh_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
-namespace osculate::app {
+namespace osculate::deck {
 namespace {
 
 /// Metres, pascals and kg/m^3 per unit of the deck.
@@ -51,9 +51,10 @@ public:
     }
 
     ImportedScene write() {
-        if (bodies_.empty()) throw SceneError({fault("deck", "volume elements", "none")});
+        if (bodies_.empty()) throw mesh::MeshError(model_.mesh.raw.file, "no volume elements");
         if (model_.steps.empty())
-            throw SceneError({fault("deck", "a *STEP with *STATIC or *DYNAMIC", "none that has a counterpart")});
+            throw mesh::MeshError(model_.mesh.raw.file,
+                                  "no *STEP with *STATIC or *DYNAMIC, which alone have counterparts");
         stages_.resize(model_.steps.size());
         const std::string bodies = write_bodies(), supports = write_supports(), contact = write_contact();
         for (std::size_t s = 0; s < model_.steps.size(); ++s) add_loads(s);
@@ -420,4 +421,4 @@ ImportedScene import_deck(const mesh::Deck& deck, const std::string& mesh_path, 
     return Importer(read_deck_model(deck), mesh_path, units).write();
 }
 
-} // namespace osculate::app
+} // namespace osculate::deck

@@ -1,14 +1,14 @@
 #pragma once
 /// The bodies of a deck, and sets of a scene for groups of their nodes and facets.
 
-#include "app/deck_model.hpp"
+#include "deck/model.hpp"
 #include "osculate/mesh/mesh.hpp"
 
 #include <set>
 #include <string>
 #include <vector>
 
-namespace osculate::app {
+namespace osculate::deck {
 
 /// A connected piece of a deck's mesh.
 struct DeckBody {
@@ -67,4 +67,4 @@ private:
 /// In double quotes, as YAML has it.
 [[nodiscard]] std::string in_quotes(const std::string& text);
 
-} // namespace osculate::app
+} // namespace osculate::deck

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace osculate::app {
+namespace osculate::deck {
 
 /// Units that the numbers of a deck are in.
 enum class DeckUnits {
@@ -22,7 +22,7 @@ struct ImportedScene {
 /// The deck as a scene: a body per connected piece of its mesh, which is read from the deck itself, loads and supports by steps,
 /// contact pairs, materials. What has no counterpart, or another meaning, is listed in comments too.
 /// @param mesh_path  of the deck, as the scene is to name it
-/// Throws mesh::MeshError where the deck has no mesh fit for use, SceneError where it has no step that can be run.
+/// Throws mesh::MeshError where the deck has no mesh fit for use, or no step that can be run.
 [[nodiscard]] ImportedScene import_deck(const mesh::Deck& deck, const std::string& mesh_path, DeckUnits units);
 
-} // namespace osculate::app
+} // namespace osculate::deck

@@ -1,4 +1,4 @@
-#include "app/deck_bodies.hpp"
+#include "deck/bodies.hpp"
 
 #include "osculate/mesh/mesh_file.hpp"
 
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <numeric>
 
-namespace osculate::app {
+namespace osculate::deck {
 namespace {
 
 /// Of a piece: the section of most of its elements.
@@ -203,4 +203,4 @@ std::string DeckSets::of_surface(std::size_t body, const std::string& in_capital
     return "";
 }
 
-} // namespace osculate::app
+} // namespace osculate::deck

@@ -1,9 +1,9 @@
-#include "app/deck_model.hpp"
+#include "deck/model.hpp"
 
 #include <algorithm>
 #include <set>
 
-namespace osculate::app {
+namespace osculate::deck {
 namespace {
 
 using mesh::DeckCard;
@@ -171,6 +171,9 @@ private:
         s.elements = name == nullptr ? "" : *name;
         s.material = capitals_of(card, "MATERIAL");
         s.cells = cells_of(s.elements);
+        if (const auto at = model_.mesh.element_set_names.find(in_capitals(s.elements));
+            at != model_.mesh.element_set_names.end())
+            s.elements = at->second;
         if (s.cells.empty()) return leave(card, "no element set '" + s.elements + "'");
         if (card.parameter("ORIENTATION") != nullptr) leave(card, "ORIENTATION: materials are isotropic");
         model_.sections.push_back(std::move(s));
@@ -422,4 +425,4 @@ DeckModel read_deck_model(const mesh::Deck& deck) {
     return Reader(deck).read();
 }
 
-} // namespace osculate::app
+} // namespace osculate::deck

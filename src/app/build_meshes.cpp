@@ -53,12 +53,12 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, S
             },
             [&](const scene::FileMesh& f) {
                 const auto path = (std::filesystem::path(directory) / f.path).string();
-                return mesh::make_mesh(sources.file(path), share_of(f), &notes);
+                return mesh::make_mesh(sources.file(path), {f.part, f.piece, repairs_of(f.repair)}, &notes);
             },
             [&](const scene::CadMesh& c) {
                 const mesh::CadOptions options{(std::filesystem::path(directory) / c.path).string(), c.size, c.smallest,
                                                c.per_circle, c.quadratic};
-                return mesh::make_mesh(sources.geometry(options), share_of(c), &notes);
+                return mesh::make_mesh(sources.geometry(options), {c.part, c.piece, {}}, &notes);
             },
         },
         spec.source);

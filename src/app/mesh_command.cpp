@@ -26,7 +26,7 @@ std::string describe_mesh(const MeshCommand& command) {
     try {
         const mesh::RawMesh raw = mesh::read_mesh_file(command.file);
         std::vector<std::string> notes;
-        const mesh::Mesh m = mesh::make_mesh(raw, share_of(command), &notes);
+        const mesh::Mesh m = mesh::make_mesh(raw, {command.part, command.piece, repairs_of(command.repair)}, &notes);
         fmt::memory_buffer text;
         const auto out = std::back_inserter(text);
         fmt::format_to(out, "{} nodes, {} elements:", m.node_count(), m.element_count());

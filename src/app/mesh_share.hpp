@@ -19,8 +19,4 @@ inline mesh::Repairs repairs_of(const std::vector<std::string>& asked) {
     return repairs;
 }
 
-template <class FileSpec> mesh::MeshFileOptions share_of(const FileSpec& spec) {
-    return {spec.part, spec.piece, repairs_of(spec.repair)};
-}
-
 } // namespace osculate::app

@@ -195,6 +195,15 @@ template <class FileSpec> void describe_share(Visitor& v, FileSpec& m) {
                .meaning = "Which connected piece of that is the body, counted in the file's order; 0: all of them.",
                .range = {.low = 0, .high = 1e9}},
               m.piece);
+}
+
+void describe(Visitor& v, FileMesh& m) {
+    v.text({.name = "path",
+            .meaning = "Mesh file: .vtu, .vtk, .msh (Gmsh), .inp (Abaqus, CalculiX), .e .ex2 .exo .exii .g (Exodus); a "
+                       "relative path starts at the scene's folder.",
+            .required = true},
+           m.path);
+    describe_share(v, m);
     static const Words repairs = [] {
         Words words = mesh::repair_words();
         words.emplace_back("all");
@@ -205,15 +214,6 @@ template <class FileSpec> void describe_share(Visitor& v, FileSpec& m) {
                         "coincident_nodes.",
              .default_text = "[]"},
             repairs, m.repair);
-}
-
-void describe(Visitor& v, FileMesh& m) {
-    v.text({.name = "path",
-            .meaning = "Mesh file: .vtu, .vtk, .msh (Gmsh), .inp (Abaqus, CalculiX), .e .ex2 .exo .exii .g (Exodus); a "
-                       "relative path starts at the scene's folder.",
-            .required = true},
-           m.path);
-    describe_share(v, m);
 }
 
 void describe(Visitor& v, CadMesh& m) {

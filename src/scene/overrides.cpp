@@ -43,7 +43,7 @@ void expand_mesh(Tree& mesh) {
             source->kind = Tree::Kind::map;
             source->children = {std::move(path)};
         }
-        Tree* repair = source->kind == Tree::Kind::map ? source->find("repair") : nullptr;
+        Tree* repair = source->kind == Tree::Kind::map && source->key == "file" ? source->find("repair") : nullptr;
         if (!repair || repair->kind != Tree::Kind::scalar) continue;
         if (repair->scalar != "true" && repair->scalar != "false") continue;
         Tree all = *repair;

@@ -99,7 +99,6 @@ struct CadMesh {
     bool quadratic = false; ///< tet10; false: tet4
     std::string part;
     int piece = 0;
-    std::vector<std::string> repair;
     bool operator==(const CadMesh&) const = default;
 };
 

@@ -309,17 +309,21 @@ private:
         }
     }
 
-    void add_pressure(std::size_t s, const DeckPressure& p) {
-        std::map<std::array<Index, 4>, std::pair<std::size_t, Index>> exterior;
+    /// Facets at the outside of bodies, by their corners among the points of the deck.
+    void find_exterior() {
         for (std::size_t b = 0; b < bodies_.size(); ++b)
             for (std::size_t f = 0; f < bodies_[b].exterior.size(); ++f) {
+                const mesh::Facet& facet = bodies_[b].exterior[f];
                 std::array<Index, 4> corners{-1, -1, -1, -1};
-                for (int c = 0; c < bodies_[b].exterior[f].count; ++c)
-                    corners[static_cast<std::size_t>(c)] = bodies_[b].points[static_cast<std::size_t>(
-                        bodies_[b].exterior[f].nodes[static_cast<std::size_t>(c)])];
+                for (std::size_t c = 0; c < static_cast<std::size_t>(facet.count); ++c)
+                    corners[c] = bodies_[b].points[static_cast<std::size_t>(facet.nodes[c])];
                 std::sort(corners.begin(), corners.end());
-                exterior[corners] = {b, static_cast<Index>(f)};
+                exterior_[corners] = {b, static_cast<Index>(f)};
             }
+    }
+
+    void add_pressure(std::size_t s, const DeckPressure& p) {
+        if (exterior_.empty()) find_exterior();
         std::map<std::size_t, std::vector<Index>> facets;
         std::size_t inside = 0;
         for (const mesh::RawFace& face : p.faces) {
@@ -330,8 +334,8 @@ private:
                     corners[static_cast<std::size_t>(c)] =
                         face.nodes[static_cast<std::size_t>(face.count == 6 ? quarters[part][c] : c)];
                 std::sort(corners.begin(), corners.end());
-                const auto at = exterior.find(corners);
-                if (at == exterior.end())
+                const auto at = exterior_.find(corners);
+                if (at == exterior_.end())
                     ++inside;
                 else
                     facets[at->second.first].push_back(at->second.second);
@@ -340,14 +344,24 @@ private:
         if (inside > 0)
             leave(p.place, fmt::format("pressure on {} faces within '{}'", inside, p.name),
                   "they are not on the outside");
+        auto& pressures = model_.steps[s].nlgeom ? stages_[s].follower_pressure : stages_[s].pressure;
+        const std::string value = course(units_.stress * p.value, p.amplitude);
         for (const auto& [b, list] : facets) {
-            const std::string set = sets_.of_facets(b, list, "pressed_" + p.name);
-            if (set.empty())
-                leave(p.place, "pressure on '" + p.name + "'",
+            if (const std::string set = sets_.of_facets(b, list, "pressed_" + p.name); !set.empty()) {
+                pressures[set] = value;
+                continue;
+            }
+            std::size_t without = 0; // a set each
+            for (const Index facet : list) {
+                const std::string set = sets_.of_facets(b, {facet}, "pressed_" + p.name);
+                if (set.empty())
+                    ++without;
+                else
+                    pressures[set] = value;
+            }
+            if (without > 0)
+                leave(p.place, fmt::format("pressure on {} faces of '{}'", without, p.name),
                       "no set of the mesh has just these faces; give them a *SURFACE");
-            else
-                (model_.steps[s].nlgeom ? stages_[s].follower_pressure : stages_[s].pressure)[set] =
-                    course(units_.stress * p.value, p.amplitude);
         }
     }
 
@@ -412,6 +426,7 @@ private:
     std::vector<DeckBody> bodies_;
     DeckSets sets_;
     std::vector<StageLoads> stages_;
+    std::map<std::array<Index, 4>, std::pair<std::size_t, Index>> exterior_; ///< body and facet
     bool nlgeom_ = false;
 };
 

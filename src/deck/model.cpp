@@ -200,6 +200,8 @@ private:
     }
 
     void friction(const DeckCard& card) {
+        if (step_ != nullptr)
+            return leave(card, "friction belongs to all stages: it stays what it is before the steps");
         if (card.first == card.last || !model_.friction.contains(interaction_))
             return leave(card, "no coefficient, or no *SURFACE INTERACTION before it");
         const std::vector<double> v = numbers(*deck_.begin(card), 1);
@@ -328,6 +330,7 @@ private:
 
     void pressures(const DeckCard& card) {
         if (is_new(card)) step_->forget_pressures = true;
+        const std::size_t before = step_->pressures.size();
         std::string amplitude;
         if (!amplitude_of(card, amplitude)) return;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
@@ -356,10 +359,14 @@ private:
                         face.count > 0)
                         p.faces.push_back(face);
             }
-            if (p.faces.empty())
+            if (p.faces.empty()) {
                 leave(place, shown, "only pressures on faces and gravity have a counterpart");
-            else
+            } else if (step_->pressures.size() > before && step_->pressures.back().value == p.value) {
+                DeckPressure& one = step_->pressures.back(); // element by element
+                one.faces.insert(one.faces.end(), p.faces.begin(), p.faces.end());
+            } else {
                 step_->pressures.push_back(std::move(p));
+            }
         }
     }
 

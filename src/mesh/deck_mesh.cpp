@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t listed = 20; // faults
 constexpr long long largest_id = 2'000'000'000;
-constexpr std::size_t most_generated = 200'000'000; // members of all GENERATE lines together
+constexpr std::size_t most_generated = 50'000'000; // members that ranges, sets of sets and surfaces add up to
 
 struct ElementType {
     std::string_view name;
@@ -332,7 +332,7 @@ private:
                 cells = found->second;
                 sort_unique(cells);
             }
-            if ((total_ += cells.size()) > most_generated)
+            if ((total_ += 4 * cells.size()) > most_generated)
                 return fault(deck_.place(*line), "surfaces with too many faces");
             if (cells.empty()) {
                 if (refused_) continue;

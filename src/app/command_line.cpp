@@ -1,6 +1,11 @@
 #include "osculate/app/command_line.hpp"
 
+<<<<<<< HEAD
 #include "app/mesh_command.hpp"
+=======
+#include "app/check.hpp"
+#include "app/init_command.hpp"
+>>>>>>> main
 #include "app/study_command.hpp"
 #include "app/surface_command.hpp"
 #include "osculate/app/diary.hpp"
@@ -15,6 +20,7 @@
 #include "osculate/mesh/mesh_error.hpp"
 #include "osculate/mesh/repair.hpp"
 #include "osculate/scene/keys.hpp"
+#include "osculate/scene/schema.hpp"
 #include "osculate/scene/study.hpp"
 
 #include <CLI/CLI.hpp>
@@ -30,17 +36,25 @@ namespace {
 enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
 
 struct Arguments {
-    std::string scene, output, key_path, run_folder;
+    std::string scene, output, key_path, run_folder, checkpoint_every, from, schema = "scene";
     std::vector<std::string> changes;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
     SurfaceOptions surface;
     StudyOptions study;
+<<<<<<< HEAD
     bool formulas = false;
     MeshCommand mesh;
     std::string deck;
     deck::DeckUnits units = deck::DeckUnits::si;
+=======
+    bool formulas = false, list = false, json = false;
+>>>>>>> main
 
+    [[nodiscard]] RunOptions run_options() const {
+        return {output, threads, quiet,
+                checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every)};
+    }
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> list;
         for (const std::string& change : changes) {
@@ -104,11 +118,18 @@ void print(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
-void run_scene(const Arguments& arguments) {
-    const output::Summary summary =
-        run(arguments.scene, arguments.overrides(), {arguments.output, arguments.threads, arguments.quiet});
+void add_run_options(CLI::App* run, Arguments& arguments) {
+    run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    run->add_option("--checkpoint-every", arguments.checkpoint_every,
+                    "Write a checkpoint after so many accepted steps, '20', or so much time, '5 min'")
+        ->type_name("STEPS|TIME");
+    run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
+}
+
+void show_run(const output::Summary& summary, const Arguments& arguments, const std::string& folder) {
     if (arguments.quiet) return;
-    const std::string folder = arguments.output.empty() ? "out/" + summary.scene : arguments.output;
     const bool frames = std::ranges::count(summary.plan, "frames") > 0;
     print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}{}/history.csv\n", summary.scene,
                       summary.steps.accepted, summary.iterations, summary.total_seconds,
@@ -155,6 +176,11 @@ ExitCode show_keys(const std::string& path) {
     return done;
 }
 
+std::string schema(const std::string& kind) {
+    if (kind == "study") return scene::study_schema(study::method_names());
+    return kind == "template" ? scene::template_schema() : scene::scene_schema();
+}
+
 ExitCode run_command(int argc, char** argv) {
     Arguments arguments;
     CLI::App program("Deformable bodies in frictional contact on smooth surfaces.", "osculate");
@@ -162,12 +188,13 @@ ExitCode run_command(int argc, char** argv) {
     program.require_subcommand(1);
     CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
     run->add_option("-o,--output", arguments.output, "Folder of the run's files [out/<scene name>]")->type_name("DIR");
-    run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1024));
-    run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
-    CLI::App* check = add_scene_command(program, "check",
-                                        "Validate a scene; show sizes, pairs, initial gaps and overlaps", arguments);
+    add_run_options(run, arguments);
+    CLI::App* resume = program.add_subcommand("resume", "Go on with a run from its last checkpoint");
+    resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    resume->add_option("--from", arguments.from, "Another checkpoint than DIR/checkpoint/state")->type_name("FILE");
+    add_run_options(resume, arguments);
+    CLI::App* check = add_scene_command(
+        program, "check", "Validate a scene; show sizes, cost, pairs, initial gaps, and what looks wrong", arguments);
     add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
     CLI::App* surface = add_scene_command(
         program, "surface", "Write the master surfaces as the solver sees them, before any run", arguments);
@@ -179,6 +206,15 @@ ExitCode run_command(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
     CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
     keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
+    CLI::App* schemas =
+        program.add_subcommand("schema", "Print the JSON Schema of scenes, studies or output templates, for editors");
+    schemas->add_option("KIND", arguments.schema, "scene, study or template [scene]")
+        ->check(CLI::IsMember({"scene", "study", "template"}));
+    CLI::App* init = program.add_subcommand("init", "Write a commented scene to start from");
+    init->add_option("TUTORIAL", arguments.scene, "One of those that --list shows");
+    init->add_flag("--list", arguments.list, "List the tutorials");
+    init->add_option("-o,--output", arguments.output, "The new scene file [TUTORIAL.yaml]")->type_name("FILE");
+    check->add_flag("--json", arguments.json, "As JSON, for programs");
     CLI::App* study = add_study_command(program, arguments);
     CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
     steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
@@ -210,7 +246,11 @@ ExitCode run_command(int argc, char** argv) {
     }
 
     if (*run) {
-        run_scene(arguments);
+        const output::Summary summary = app::run(arguments.scene, arguments.overrides(), arguments.run_options());
+        show_run(summary, arguments, arguments.output.empty() ? "out/" + summary.scene : arguments.output);
+    } else if (*resume) {
+        show_run(app::resume(arguments.run_folder, arguments.from, arguments.run_options()), arguments,
+                 arguments.run_folder);
     } else if (*surface) {
         arguments.surface.directory = arguments.output;
         arguments.surface.threads = arguments.threads;
@@ -219,16 +259,26 @@ ExitCode run_command(int argc, char** argv) {
         run_study(arguments);
     } else if (*keys) {
         return show_keys(arguments.key_path);
+<<<<<<< HEAD
     } else if (*import) {
         import_scene(arguments.deck, arguments.units);
     } else if (*mesh) {
         print(describe_mesh(arguments.mesh));
+=======
+    } else if (*schemas) {
+        print(schema(arguments.schema));
+    } else if (*init) {
+        print(arguments.list ? tutorial_list() : init_scene(arguments.scene, arguments.output));
+>>>>>>> main
     } else if (*steps) {
         print(diary(arguments.run_folder));
     } else {
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
-        print(*check ? report(loaded.plan, arguments.threads) : app::explain(loaded.plan));
+        if (*check)
+            print(check_scene(loaded, arguments.threads, arguments.json));
+        else
+            print(app::explain(loaded.plan));
     }
     return done;
 }
@@ -241,6 +291,9 @@ int command_line(int argc, char** argv) {
     } catch (const SceneError& error) {
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
         return bad_scene;
+    } catch (const Interrupted& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 128 + error.signal(); // as shells report it
     } catch (const GaveUp& error) {
         fmt::print(stderr, "the run gave up: {}\n{}", error.what(), error.post_mortem());
         return gave_up;

@@ -6,6 +6,12 @@
 
 namespace osculate::app {
 
+std::string gnuplot_text(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+    return result + "'";
+}
+
 Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script) {
     constexpr int not_found = 127, not_there = 126; // as shells have it
     const pid_t child = fork();

@@ -1,8 +1,5 @@
 #include "osculate/app/report.hpp"
 
-#include "app/gaps.hpp"
-#include "app/pairing_advice.hpp"
-
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
@@ -16,6 +13,7 @@ Index degrees_of_freedom(const Plan& plan) {
     return most;
 }
 
+<<<<<<< HEAD
 std::string report(const Plan& plan, int threads) {
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
@@ -48,6 +46,8 @@ std::string report(const Plan& plan, int threads) {
     return fmt::to_string(text);
 }
 
+=======
+>>>>>>> main
 namespace {
 
 /// 12.3 k elements an iteration; bytes take the prefix themselves: 12.3 kB.

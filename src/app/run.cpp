@@ -1,9 +1,16 @@
 #include "osculate/app/run.hpp"
 
+#include "app/interruption.hpp"
 #include "app/run_recorder.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
+#include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/scene/units.hpp"
+#include "osculate/scene/writer.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
 
 namespace osculate::app {
 
@@ -11,32 +18,35 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The resolved scene must not take the place of the one a user wrote.
-void check_folder(const fs::path& folder, const std::string& scene_path) {
-    std::error_code none;
-    if (!fs::equivalent(folder / "scene.yaml", scene_path, none)) return;
+[[noreturn]] void refuse(const fs::path& file, const std::string& expected, const std::string& found) {
     Fault fault;
-    fault.file = scene_path;
-    fault.expected = "another output folder";
-    fault.found = "'" + folder.string() + "', where the resolved scene would replace this file";
+    fault.file = file.string();
+    fault.expected = expected;
+    fault.found = found;
     throw SceneError({fault});
 }
 
-} // namespace
+/// The resolved scene must not take the place of the one a user wrote.
+void check_folder(const fs::path& folder, const std::string& scene_path) {
+    std::error_code none;
+    if (fs::equivalent(folder / "scene.yaml", scene_path, none))
+        refuse(scene_path, "another output folder",
+               "'" + folder.string() + "', where the resolved scene would replace this file");
+}
 
-output::Summary run(const std::string& scene_path, const std::vector<scene::Override>& overrides,
-                    const RunOptions& options) {
-    const auto begin = std::chrono::steady_clock::now();
-    Timings timings;
-    LoadedScene loaded = load(scene_path, overrides, options.threads, timings);
-    const fs::path folder = options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory;
-    check_folder(folder, scene_path);
-
+output::Summary run(LoadedScene& loaded, const RunRecorder::Settings& settings, Timings& timings) {
+    const Interruption interruption;
     time::Stepper stepper(loaded.plan.model, loaded.plan.stages, loaded.plan.stepper, timings);
-    RunRecorder recorder(loaded.scene, loaded.plan, stepper, timings, {folder, options.threads, options.quiet, begin});
+    RunRecorder::Settings heeding = settings;
+    heeding.interruption = &interruption;
+    if (settings.from != nullptr) stepper.resume(settings.from->run);
+    RunRecorder recorder(loaded.scene, loaded.plan, stepper, timings, heeding);
     try {
         stepper.run(recorder);
         recorder.wait_for_frames();
+    } catch (const Interrupted& ended) {
+        recorder.finish("interrupted", ended.what());
+        throw;
     } catch (const RunFailure& failure) {
         try {
             recorder.wait_for_frames();
@@ -48,6 +58,66 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     }
     recorder.finish("done");
     return recorder.summary();
+}
+
+} // namespace
+
+CheckpointEvery parse_checkpoint_every(const std::string& text) {
+    const scene::Quantity quantity = scene::parse_quantity(text);
+    const bool time = quantity.has_unit && quantity.dimension == scene::dimension::time;
+    const bool steps = !quantity.has_unit && quantity.value == std::floor(quantity.value) && quantity.value < 1e9;
+    if (!quantity.problem.empty() || !(quantity.value > 0) || !std::isfinite(quantity.value) || (!time && !steps))
+        refuse("--checkpoint-every", "a number of steps or a time such as '5 min'", "'" + text + "'");
+    CheckpointEvery every;
+    if (time)
+        every.seconds = quantity.value;
+    else
+        every.steps = static_cast<long>(quantity.value);
+    return every;
+}
+
+Interrupted::Interrupted(int signal, double time, fs::path directory)
+    : std::runtime_error(fmt::format("interrupted at {} s; `osculate resume {}` goes on", scene::number_text(time),
+                                     directory.string())),
+      signal_(signal) {}
+
+output::Summary run(const std::string& scene_path, const std::vector<scene::Override>& overrides,
+                    const RunOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    Timings timings;
+    LoadedScene loaded = load(scene_path, overrides, options.threads, timings);
+    const fs::path folder = options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory;
+    check_folder(folder, scene_path);
+    return run(loaded, {folder, options.threads, options.quiet, begin, options.checkpoint_every}, timings);
+}
+
+output::Summary resume(const fs::path& directory, const fs::path& from, const RunOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    const fs::path scene_path = directory / "scene.yaml", state = from.empty() ? directory / checkpoint_path : from;
+    std::error_code none;
+    if (!fs::is_regular_file(scene_path, none))
+        refuse(directory, "the folder of a run", fs::exists(directory, none) ? "no scene.yaml in it" : "nothing there");
+    if (!fs::is_regular_file(state, none))
+        refuse(state, "a checkpoint", "nothing there; `osculate run --checkpoint-every 20` writes one every 20 steps");
+    output::CheckpointFile file;
+    try {
+        file = output::read_checkpoint(state);
+    } catch (const std::runtime_error& error) {
+        fs::path previous = state;
+        previous += ".previous";
+        refuse(state, "a checkpoint",
+               std::string(error.what()) +
+                   (fs::exists(previous, none) ? "; the one before it: --from " + previous.string() : ""));
+    }
+    if (file.version != version)
+        refuse(state, std::string("a checkpoint of osculate ") + version, "one of " + file.version);
+    Timings timings;
+    LoadedScene loaded = load(scene_path.string(), {}, options.threads, timings);
+    if (scene::write_scene(loaded.scene) != file.scene)
+        refuse(scene_path, "the scene the checkpoint was written for", "another one");
+    if (output::fingerprint(loaded.plan.model) != file.meshes)
+        refuse(scene_path, "the meshes the checkpoint was written for", "others");
+    return run(loaded, {directory, options.threads, options.quiet, begin, options.checkpoint_every, &file}, timings);
 }
 
 } // namespace osculate::app

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <stdexcept>
 
 namespace osculate::app {
 
@@ -61,6 +62,20 @@ void RunChecks::add_energies(const time::Ledger& ledger) {
     energy_ = std::max({energy_, energy, energy - rise - ledger.external, std::abs(ledger.external)});
     balance_ = std::max(balance_, std::abs(ledger.balance));
     growth_ = std::max(growth_, rise);
+}
+
+std::vector<double> RunChecks::memory() const {
+    return {left_over_,           acting_, penetration_, penetration_m_, excess_, excessive_, bound_,
+            dynamic_ ? 1.0 : 0.0, energy_, balance_,     growth_};
+}
+
+void RunChecks::recall(const std::vector<double>& memory) {
+    double dynamic = 0;
+    double* const members[] = {&left_over_, &acting_, &penetration_, &penetration_m_, &excess_, &excessive_,
+                               &bound_,     &dynamic, &energy_,      &balance_,       &growth_};
+    if (memory.size() != std::size(members)) throw std::runtime_error("the checkpoint holds no checks of the run");
+    for (std::size_t i = 0; i < memory.size(); ++i) *members[i] = memory[i];
+    dynamic_ = dynamic != 0;
 }
 
 output::Summary::Checks RunChecks::checks() const {

@@ -1,9 +1,11 @@
 #include "app/run_recorder.hpp"
 
 #include "app/gaps.hpp"
+#include "app/plots.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/output/paraview_script.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/writer.hpp"
 
@@ -56,34 +58,54 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
     history_reactions_ = reactions;
     frame_reactions_ = std::ranges::count(out.body_fields, "reaction") > 0;
+    probe_reactions_ =
+        std::ranges::any_of(plan.probes, [](const PlannedProbe& probe) { return probe.probe->reads("reaction"); });
     describe_plan();
     on_disk(timings_, [&] {
-        fs::create_directories(folder);
-        write_text(folder / "scene.yaml", scene::write_scene(scene));
+        if (!resumed()) {
+            fs::create_directories(folder);
+            write_text(folder / "scene.yaml", scene::write_scene(scene));
+            fs::remove_all(folder / checkpoint_folder);
+        }
         fs::remove(folder / output::post_mortem_file);
         output::Frames::remove(folder / failed_folder);
         if (out.frame_every > 0)
             frames_ = std::make_unique<output::Frames>(
                 folder, output::FrameFields{out.body_fields, out.slave_fields, out.master_fields}, plan.model,
-                settings_.threads > 1);
+                settings_.threads > 1, resumed() ? settings_.from->frames : std::vector<output::SeriesEntry>{});
         else
             output::Frames::remove(folder);
+        fs::remove(folder / output::paraview_script_file);
+        if (out.frame_every > 0 && out.paraview)
+            output::write_paraview_script(folder, plan.model, {out.body_fields, out.slave_fields, out.master_fields});
+        if (!resumed()) output::ProbeFile::remove(folder);
+        remove_plots(folder);
+        for (const PlannedProbe& probe : plan.probes)
+            probes_.emplace_back(folder, probe.name, *probe.probe,
+                                 kept(output::ProbeFile::path({}, probe.name).generic_string()));
         history_ = std::make_unique<output::History>(
             folder / "history.csv", plan.model, out.history_pairs,
             reactions ? plan.constrained_sets : std::vector<Index>{},
             std::any_of(plan.stages.begin(), plan.stages.end(),
-                        [](const time::Stage& stage) { return stage.dynamics.has_value(); }));
-        steps_ = std::make_unique<output::CsvTable>(
-            folder / "steps.csv", std::vector<std::string>{"attempt", "time", "dt", "verdict", "reason", "body", "node",
-                                                           "value", "lambda", "iterations"});
-        fs::remove(folder / "iterations.csv");
+                        [](const time::Stage& stage) { return stage.dynamics.has_value(); }),
+            kept("history.csv"));
+        steps_ = std::make_unique<output::CsvTable>(folder / "steps.csv",
+                                                    std::vector<std::string>{"attempt", "time", "dt", "verdict",
+                                                                             "reason", "body", "node", "value",
+                                                                             "lambda", "iterations"},
+                                                    kept("steps.csv"));
+        if (!out.iterations) fs::remove(folder / "iterations.csv");
         if (out.iterations)
             iterations_ = std::make_unique<output::CsvTable>(
                 folder / "iterations.csv",
                 std::vector<std::string>{"attempt", "iteration", "residual", "status_changes", "open", "stick", "slip",
-                                         "facet_changes"});
+                                         "facet_changes"},
+                kept("iterations.csv"));
+        if (resumed()) recall(*settings_.from);
     });
-    write_initial_frame();
+    checkpoint_step_ = summary_.steps.accepted;
+    checkpoint_time_ = std::chrono::steady_clock::now();
+    if (!resumed()) write_initial_frame();
     write_summary();
 }
 
@@ -140,11 +162,12 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
         const bool last = step.state.time >= stepper_.end_time() * (1 - 1e-12);
         const bool frame = frames_ && (summary_.steps.accepted % every == 0 || last);
         std::vector<Vec3> reactions;
-        if (history_reactions_ || (frame && frame_reactions_))
+        if (history_reactions_ || probe_reactions_ || (frame && frame_reactions_))
             reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
-        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions));
+        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions), {}, step.dt);
         history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
         if (frame) frames_->write(snapshot, summary_.steps.accepted);
+        write_probes(snapshot, last);
     });
     write_summary();
     if (settings_.quiet) return;
@@ -152,6 +175,76 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
     for (const model::ContactHistory& history : step.state.contact)
         contacts += std::ranges::count_if(history.status, contact::is_closed);
     progress_.update({summary_.steps.accepted, step.state.time, step.dt, step.iterations, contacts});
+}
+
+void RunRecorder::write_probes(const output::Snapshot& snapshot, bool last) {
+    for (std::size_t p = 0; p < probes_.size(); ++p)
+        if (last || summary_.steps.accepted % plan_.probes[p].every == 0) probes_[p].write(snapshot);
+}
+
+void RunRecorder::between_steps(const std::function<time::Checkpoint()>& checkpoint) {
+    const int signal = settings_.interruption != nullptr ? settings_.interruption->signal() : 0;
+    const CheckpointEvery& every = settings_.checkpoint_every;
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - checkpoint_time_;
+    if (signal == 0 && (every.steps == 0 || summary_.steps.accepted - checkpoint_step_ < every.steps) &&
+        (every.seconds == 0 || passed.count() < every.seconds))
+        return;
+    on_disk(timings_, [&] { write_checkpoint(checkpoint()); });
+    checkpoint_step_ = summary_.steps.accepted;
+    checkpoint_time_ = std::chrono::steady_clock::now();
+    if (signal != 0) throw Interrupted(signal, stepper_.state().time, settings_.directory);
+}
+
+void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
+    output::CheckpointFile file;
+    file.version = version;
+    file.scene = scene::write_scene(scene_);
+    file.meshes = output::fingerprint(plan_.model);
+    file.run = checkpoint;
+    if (frames_) file.frames = frames_->written();
+    std::vector<const output::CsvTable*> tables{&history_->table(), steps_.get()};
+    if (iterations_) tables.push_back(iterations_.get());
+    for (const output::ProbeFile& probe : probes_) tables.push_back(&probe.table());
+    for (const output::CsvTable* table : tables) {
+        table->sync();
+        const fs::path path = table->path().lexically_relative(settings_.directory);
+        file.tables.emplace_back(path.generic_string(), table->size());
+    }
+    file.steps = summary_.steps;
+    file.iterations = summary_.iterations;
+    const Spent spent = spent_so_far();
+    file.total_seconds = spent.total;
+    file.cpu_seconds = spent.cpu;
+    for (std::size_t part = 0; part < static_cast<std::size_t>(Part::count); ++part)
+        file.seconds.push_back(timings_[static_cast<Part>(part)]);
+    file.checks = checks_.memory();
+    output::write_checkpoint(settings_.directory / checkpoint_path, file);
+}
+
+std::optional<std::uintmax_t> RunRecorder::kept(const std::string& table) const {
+    if (!resumed()) return std::nullopt;
+    for (const auto& [path, bytes] : settings_.from->tables)
+        if (path == table) return bytes;
+    throw std::runtime_error("the checkpoint knows no " + table);
+}
+
+void RunRecorder::recall(const output::CheckpointFile& from) {
+    summary_.steps.accepted = from.steps.accepted;
+    summary_.steps.rejected = from.steps.rejected;
+    summary_.iterations = from.iterations;
+    seconds_before_ = from.total_seconds;
+    cpu_seconds_before_ = from.cpu_seconds;
+    for (std::size_t part = 0; part < std::min(from.seconds.size(), static_cast<std::size_t>(Part::count)); ++part)
+        timings_.add(static_cast<Part>(part), from.seconds[part]);
+    checks_.recall(from.checks);
+}
+
+RunRecorder::Spent RunRecorder::spent_so_far() const {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - settings_.begin;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return {seconds_before_ + elapsed.count(), cpu_seconds_before_ + seconds(usage.ru_utime) + seconds(usage.ru_stime),
+            usage.ru_maxrss * 1024}; // Linux counts in kB
 }
 
 void RunRecorder::gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) {
@@ -191,8 +284,9 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
     progress_.finish();
     summary_.status = status;
     summary_.failure = failure;
-    summary_.expectation = checks_.judge(failure);
+    if (status != "interrupted") summary_.expectation = checks_.judge(failure); // it may still come to what is expected
     write_summary();
+    if (status != "interrupted") write_pictures();
     if (!summary_.expectation) return;
     const std::vector<std::string>& misses = summary_.expectation->misses;
     if (!misses.empty())
@@ -201,13 +295,19 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
         fmt::print(stderr, "as expected\n");
 }
 
+void RunRecorder::write_pictures() {
+    if (const std::string note = write_plots(scene_, settings_.directory); !note.empty())
+        fmt::print(stderr, "{}\n", note);
+    if (scene_.output.report) {
+        // the report is written here, from the folder's files
+    }
+}
+
 void RunRecorder::write_summary() {
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - settings_.begin;
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    summary_.total_seconds = elapsed.count();
-    summary_.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-    summary_.peak_memory_bytes = usage.ru_maxrss * 1024; // Linux counts in kB
+    const Spent spent = spent_so_far();
+    summary_.total_seconds = spent.total;
+    summary_.cpu_seconds = spent.cpu;
+    summary_.peak_memory_bytes = spent.peak_bytes;
     summary_.factorisations = stepper_.factorisations();
     summary_.gmres_iterations = stepper_.gmres_iterations();
     summary_.steps.stabilised = stepper_.stabilised_steps();

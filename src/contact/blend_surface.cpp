@@ -67,6 +67,15 @@ public:
         return static_cast<Index>(fresh.size());
     }
 
+    [[nodiscard]] std::vector<RefittedPatch> refitted() const override { return vertex_patches_.refitted(); }
+    [[nodiscard]] bool refit(const std::vector<RefittedPatch>& patches) override {
+        if (patches.empty()) return true;
+        placed_.clear();
+        const bool done = vertex_patches_.refit(patches);
+        find_reach();
+        return done;
+    }
+
     void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
                   ContactVariation* variation) const override {
         point.found = point.behind = false;

@@ -236,37 +236,67 @@ VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::ve
     }
 }
 
+std::vector<Index> VertexPatches::looked_at(Index patch) const {
+    // make_patch() looks one ring further than the highest level it tries, which starts from the sector
+    std::vector<Index> facets = patches[patch].sector;
+    for (int ring = 0; ring < highest_level; ++ring) facets = grown(topology(), facets);
+    return corners(topology(), facets);
+}
+
+bool VertexPatches::fit(Index p, const std::vector<Vec3>& x) {
+    VertexPatch& patch = patches[p];
+    const auto own = [&](Index v) { // vertices of the merged surface are ascending in those of the original
+        if (!merged_) return v;
+        return static_cast<Index>(std::ranges::lower_bound(merged_->vertex, v) - merged_->vertex.begin());
+    };
+    auto fresh = make_patch(topology(), own(patch.vertex), patch.sector, x, options_);
+    if (!fresh) return false;
+    if (merged_) {
+        fresh->vertex = patch.vertex;
+        for (Index& v : fresh->vertices) v = merged_->vertex[v];
+    }
+    patch = std::move(*fresh);
+    auto& at = fitted_at_[p];
+    at.clear();
+    for (const Index v : looked_at(p)) at.push_back(x[v]);
+    return true;
+}
+
 std::vector<Index> VertexPatches::refresh(const std::vector<Vec3>& x) {
     constexpr double most_turning = 60 * std::numbers::pi / 180;
-    const mesh::HalfEdgeSurface& surface = merged_ ? merged_->topology : *surface_;
     std::vector<Vec3> kept;
-    std::vector<Index> own; // vertex of the original surface -> vertex here
-    if (merged_) {
-        own.assign(x.size(), -1);
-        for (std::size_t v = 0; v < merged_->vertex.size(); ++v) {
-            kept.push_back(x[merged_->vertex[v]]);
-            own[merged_->vertex[v]] = static_cast<Index>(v);
-        }
-    }
+    if (merged_)
+        for (const Index v : merged_->vertex) kept.push_back(x[v]);
     const std::vector<Vec3>& at = merged_ ? kept : x;
     std::vector<Index> result;
     for (std::size_t p = 0; p < patches.size(); ++p) {
-        VertexPatch& patch = patches[p];
-        const Index vertex = merged_ ? own[patch.vertex] : patch.vertex;
-        const std::vector<double> now = turns(surface, vertex, patch.sector, patch.facets, at);
+        const VertexPatch& patch = patches[p];
+        const auto own = merged_ ? std::ranges::lower_bound(merged_->vertex, patch.vertex) - merged_->vertex.begin()
+                                 : std::ptrdiff_t{patch.vertex};
+        const std::vector<double> now = turns(topology(), static_cast<Index>(own), patch.sector, patch.facets, at);
         bool turned = false;
         for (std::size_t f = 0; f < now.size(); ++f) turned = turned || std::abs(now[f] - patch.turn[f]) > most_turning;
-        if (!turned) continue;
-        auto fresh = make_patch(surface, vertex, patch.sector, at, options_);
-        if (!fresh) continue;
-        if (merged_) {
-            fresh->vertex = patch.vertex;
-            for (Index& v : fresh->vertices) v = merged_->vertex[v];
-        }
-        patch = std::move(*fresh);
-        result.push_back(static_cast<Index>(p));
+        if (turned && fit(static_cast<Index>(p), at)) result.push_back(static_cast<Index>(p));
     }
     return result;
+}
+
+std::vector<RefittedPatch> VertexPatches::refitted() const {
+    std::vector<RefittedPatch> list;
+    for (const auto& [patch, at] : fitted_at_) list.push_back({patch, at});
+    return list;
+}
+
+bool VertexPatches::refit(const std::vector<RefittedPatch>& list) {
+    std::vector<Vec3> x(static_cast<std::size_t>(topology().vertex_count()), Vec3::Zero());
+    for (const auto& [patch, at] : list) {
+        if (patch < 0 || patch >= static_cast<Index>(patches.size())) return false;
+        const std::vector<Index> vertices = looked_at(patch);
+        if (vertices.size() != at.size()) return false;
+        for (std::size_t k = 0; k < at.size(); ++k) x[vertices[k]] = at[k];
+        if (!fit(patch, x)) return false;
+    }
+    return true;
 }
 
 std::vector<VertexPatchInfo> vertex_patches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X,

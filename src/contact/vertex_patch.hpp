@@ -5,6 +5,7 @@
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/contact/rpim_patch.hpp"
 
+#include <map>
 #include <vector>
 
 namespace osculate::contact {
@@ -38,11 +39,22 @@ struct VertexPatches {
     /// fit: their natural coordinates no longer tell how far nodes are apart. Keeps a patch that x folds over.
     /// @returns the patches fitted anew, ascending
     std::vector<Index> refresh(const std::vector<Vec3>& x);
+    /// See MasterSurface. Positions are those of the vertices that a fit looks at, see looked_at().
+    [[nodiscard]] std::vector<RefittedPatch> refitted() const;
+    [[nodiscard]] bool refit(const std::vector<RefittedPatch>& list);
 
 private:
+    /// What patches are made on.
+    [[nodiscard]] const mesh::HalfEdgeSurface& topology() const { return merged_ ? merged_->topology : *surface_; }
+    /// Vertices of the topology that a fit of a patch may look at, ascending.
+    [[nodiscard]] std::vector<Index> looked_at(Index patch) const;
+    /// Fits a patch anew at positions of the topology's vertices. False where none fits: it stays as it was.
+    bool fit(Index patch, const std::vector<Vec3>& x);
+
     const mesh::HalfEdgeSurface* surface_;
     std::unique_ptr<MergedSurface> merged_; ///< what patches are made on, where near-duplicate vertices are merged
     BlendOptions options_;
+    std::map<Index, std::vector<Vec3>> fitted_at_; ///< (looked_at) of the patches fitted anew, at their last fit
 };
 
 } // namespace osculate::contact

@@ -105,6 +105,13 @@ double largest_stiffness(const Model& model) {
     return largest;
 }
 
+BlockMatrix undeformed_stiffness(const Model& model, int threads) {
+    BlockMatrix K = model.K;
+    const std::vector<Vec3> none(model.X.size(), Vec3::Zero());
+    if (model.finite_strain) model.finite_strain->add_tangent(model.X, none, K, threads);
+    return K;
+}
+
 double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads) {
     std::vector<Vec3> f(u.size(), Vec3::Zero());
     model.K.multiply_add(u, f, threads);

@@ -1,6 +1,6 @@
 #include "osculate/model/nodal_unknowns.hpp"
 
-#include <algorithm>
+#include "osculate/model/rigid_motion.hpp"
 
 namespace osculate::model {
 
@@ -11,18 +11,14 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const Constraints& const
     result.near_kernel.setZero(3 * moving, 6);
     for (const Body& body : model.bodies) {
         const Index last = body.first_node + body.nodes();
-        Vec3 centre = Vec3::Zero();
-        for (Index node = body.first_node; node < last; ++node)
-            centre += model.X[node] / static_cast<double>(body.nodes());
-        double size = 0;
-        for (Index node = body.first_node; node < last; ++node) size = std::max(size, (model.X[node] - centre).norm());
+        const auto [centre, radius] = extent(body, model.X);
         for (Index node = body.first_node; node < last; ++node)
             for (int k = 0; k < 3 && constraints.free_components(node) > 0; ++k) {
                 const Index e = constraints.equation(node, k), row = static_cast<Index>(result.equation.size());
                 result.equation.push_back(e == Constraints::held ? -1 : e);
                 if (e == Constraints::held) continue;
                 const Vec3 d = constraints.frame(node).col(k);
-                result.near_kernel.row(row) << d.transpose(), (model.X[node] - centre).cross(d).transpose() / size;
+                result.near_kernel.row(row) << d.transpose(), (model.X[node] - centre).cross(d).transpose() / radius;
             }
     }
     return result;

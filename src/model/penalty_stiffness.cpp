@@ -86,10 +86,11 @@ void PenaltyStiffness::add(Index row, Index column, const Mat3& global, std::vec
     }
 }
 
-void PenaltyStiffness::fill_base() {
-    base_.assign(matrix_.column.size(), 0.0);
+std::vector<double> PenaltyStiffness::values_of(const BlockMatrix& K) const {
+    std::vector<double> values(matrix_.column.size(), 0.0);
     for (Index node = 0; node < constraints_.nodes(); ++node)
-        for (Index k = K_->row_begin(node); k < K_->row_end(node); ++k) add(node, K_->column(k), K_->block(k), base_);
+        for (Index k = K.row_begin(node); k < K.row_end(node); ++k) add(node, K.column(k), K.block(k), values);
+    return values;
 }
 
 void PenaltyStiffness::stiffness_changed() {

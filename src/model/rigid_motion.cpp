@@ -9,15 +9,18 @@ namespace {
 constexpr double rank_tolerance = 1e-12; // of a Gram matrix: 1e-6 of a lever arm
 }
 
-RigidHold::RigidHold(const Body& body, const std::vector<Vec3>& x) {
+Extent extent(const Body& body, const std::vector<Vec3>& x) {
+    Extent result;
+    auto& [centre, radius] = result;
     const auto last = body.first_node + body.nodes();
-    for (Index node = body.first_node; node < last; ++node) centre_ += x[node] / static_cast<double>(body.nodes());
-    for (Index node = body.first_node; node < last; ++node) size_ = std::max(size_, (x[node] - centre_).norm());
+    for (Index node = body.first_node; node < last; ++node) centre += x[node] / static_cast<double>(body.nodes());
+    for (Index node = body.first_node; node < last; ++node) radius = std::max(radius, (x[node] - centre).norm());
+    return result;
 }
 
 void RigidHold::hold(const Vec3& point, const Vec3& direction) {
     Motion row;
-    row << direction, ((point - centre_) / size_).cross(direction);
+    row << direction, ((point - extent_.centre) / extent_.radius).cross(direction);
     gram_ += row * row.transpose();
 }
 

@@ -19,8 +19,9 @@ void check(PetscErrorCode code) {
 
 void begin_petsc() {
     static const bool begun = [] {
-        setenv("OMPI_MCA_ess_singleton_isolated", "1", 0); // one process: no daemon beside it
-        PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
+        setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);                 // one process: no daemon beside it
+        for (const char* option : {"-no_signal_handler", "-skip_petscrc"}) // no file of the user's changes a result
+            check(PetscOptionsSetValue(nullptr, option, nullptr));
         check(PetscInitializeNoArguments());
         check(PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr)); // codes are checked, and tell enough
         return true;
@@ -37,11 +38,12 @@ public:
     Gamg(const Gamg&) = delete;
     Gamg& operator=(const Gamg&) = delete;
 
-    FactorStatus factorise(const SparseMatrix& A, const std::vector<double>& apart) override {
+    FactorStatus factorise(const SparseMatrix& A, const std::function<std::vector<double>()>& apart) override {
         if (A.pattern != pattern_) {
             clear();
+            pattern_ = 0;
             lay_out(A);
-            fill(A, apart);
+            fill(A, apart());
             create();
             coarsen();
             pattern_ = A.pattern;
@@ -189,7 +191,7 @@ private:
             check(PCMGGetSmoother(cycle_, level, &smoother));
             PC pc = nullptr;
             check(KSPGetPC(smoother, &pc));
-            if (level == 0 && levels > 1) {
+            if (level == 0) {
                 check(KSPSetType(smoother, KSPPREONLY));
                 check(PCSetType(pc, PCLU));
                 check(PCFactorSetShiftType(pc, MAT_SHIFT_INBLOCKS));

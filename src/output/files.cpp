@@ -1,8 +1,11 @@
 #include "output/files.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <fcntl.h>
 #include <stdexcept>
+#include <unistd.h>
 
 namespace osculate::output {
 
@@ -16,7 +19,29 @@ void make_folder_of(const std::filesystem::path& path) {
     if (error) throw_unwritable(path, error);
 }
 
-void write_atomic(const std::filesystem::path& path, std::string_view content) {
+void remove_files(const std::filesystem::path& folder, const std::vector<std::string>& extensions) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) return;
+    std::vector<std::filesystem::path> old;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+        if (std::ranges::count(extensions, entry.path().extension().string()) > 0) old.push_back(entry.path());
+    for (const std::filesystem::path& path : old) {
+        std::filesystem::remove(path, error);
+        if (error) throw_unwritable(path, error);
+    }
+    if (std::filesystem::is_empty(folder, error)) std::filesystem::remove(folder, error);
+}
+
+void sync(const std::filesystem::path& path) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    int reason = 0;
+    // some file systems cannot, and say so
+    if (file < 0 || (fsync(file) != 0 && errno != EINVAL && errno != EROFS)) reason = errno;
+    if (file >= 0) close(file);
+    if (reason != 0) throw_unwritable(path, {reason, std::generic_category()});
+}
+
+void write_atomic(const std::filesystem::path& path, std::string_view content, bool durable) {
     make_folder_of(path);
     std::filesystem::path part = path;
     part += ".part";
@@ -24,6 +49,7 @@ void write_atomic(const std::filesystem::path& path, std::string_view content) {
     if (file == nullptr) throw_unwritable(path, {errno, std::generic_category()});
     int reason = 0;
     if (std::fwrite(content.data(), 1, content.size(), file) != content.size()) reason = errno;
+    if (durable && reason == 0 && (std::fflush(file) != 0 || fsync(fileno(file)) != 0)) reason = errno;
     if (std::fclose(file) != 0 && reason == 0) reason = errno; // a full disk may show only here
     std::error_code error(reason, std::generic_category());
     if (!error) std::filesystem::rename(part, path, error);
@@ -32,6 +58,7 @@ void write_atomic(const std::filesystem::path& path, std::string_view content) {
         std::filesystem::remove(part, ignored);
         throw_unwritable(path, error);
     }
+    if (durable) sync(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
 }
 
 } // namespace osculate::output

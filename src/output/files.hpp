@@ -2,8 +2,10 @@
 /// Writing files of a run: one wording of errors, and whole files at once.
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace osculate::output {
 
@@ -14,9 +16,18 @@ namespace osculate::output {
 /// @throws std::runtime_error with path and reason
 void make_folder_of(const std::filesystem::path& path);
 
+/// Removes the files of a folder that end so, and the folder where nothing else is in it; no folder: nothing to do.
+/// @throws std::runtime_error with path and reason
+void remove_files(const std::filesystem::path& folder, const std::vector<std::string>& extensions);
+
 /// Writes `content` to a file beside `path` and renames it: a reader sees the file of before or the whole new one.
 /// Makes the folder when it is missing.
 /// @throws std::runtime_error with path and reason; the file of before is then untouched and nothing else is left
-void write_atomic(const std::filesystem::path& path, std::string_view content);
+/// @param durable  content and name have reached the disk when it returns
+void write_atomic(const std::filesystem::path& path, std::string_view content, bool durable = false);
+
+/// What has been written to a file, or listed in a folder, has reached the disk when it returns.
+/// @throws std::runtime_error with path and reason
+void sync(const std::filesystem::path& path);
 
 } // namespace osculate::output

@@ -19,12 +19,15 @@ std::vector<const Field*> chosen(FieldPlace where, const std::vector<std::string
     return fields;
 }
 
-void remove_frames(const fs::path& folder) {
+/// @param kept  paths that stay, ascending
+void remove_frames(const fs::path& folder, const std::vector<fs::path>& kept = {}) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) return;
     std::vector<fs::path> old;
     for (const auto& entry : fs::directory_iterator(folder, error))
-        if (entry.path().extension() == ".vtu" || entry.path().extension() == ".vtp") old.push_back(entry.path());
+        if (const fs::path kind = entry.path().extension();
+            (kind == ".vtu" || kind == ".vtp" || kind == ".part") && !std::ranges::binary_search(kept, entry.path()))
+            old.push_back(entry.path());
     for (const fs::path& path : old) {
         fs::remove(path, error);
         if (error) throw_unwritable(path, error);
@@ -32,17 +35,21 @@ void remove_frames(const fs::path& folder) {
 }
 
 Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& u) {
-    Array array{"displacement", 3, {}};
+    Array array{"displacement", 3, {}, false, "m"};
     for (const Index node : nodes) array.values.insert(array.values.end(), u[node].data(), u[node].data() + 3);
     return array;
 }
 
 } // namespace
 
-Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model& model, bool beside)
-    : directory_(std::move(directory)), body_fields_(chosen(FieldPlace::body, fields.body)), series_(directory_),
-      beside_(beside) {
-    remove_frames(directory_ / "frames"); // after series.pvd has forgotten them
+Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model& model, bool beside,
+               std::vector<SeriesEntry> kept)
+    : directory_(std::move(directory)), body_fields_(chosen(FieldPlace::body, fields.body)),
+      series_(directory_, std::move(kept)), beside_(beside) {
+    std::vector<fs::path> stay;
+    for (const SeriesEntry& entry : series_.entries()) stay.push_back(directory_ / entry.file);
+    std::ranges::sort(stay);
+    remove_frames(directory_ / "frames", stay); // after series.pvd has forgotten them
     const auto slave = chosen(FieldPlace::slave, fields.slave), master = chosen(FieldPlace::master, fields.master);
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model.pairs[p];

@@ -21,28 +21,6 @@ constexpr EnergyColumn energies[] = {
     {"contact", &time::Ledger::contact},   {"balance", &time::Ledger::balance},
 };
 
-std::vector<std::string> columns(const model::Model& model, bool pairs, const std::vector<Index>& sets, bool ledger) {
-    std::vector<std::string> names{"time", "dt", "iterations"};
-    const auto vector = [&](const std::string& name) {
-        for (const char* axis : axes) names.push_back(name + axis);
-    };
-    if (pairs)
-        for (const auto& pair : model.pairs) {
-            const std::string prefix = "pair." + pair->name() + ".";
-            vector(prefix + "force");
-            for (const char* name : {"normal", "friction"}) names.push_back(prefix + name);
-            vector(prefix + "moment");
-            for (const char* name : {"area", "open", "stick", "slip", "penetration"}) names.push_back(prefix + name);
-        }
-    for (const Index set : sets) vector("set." + model.sets[set].name + ".reaction");
-    if (ledger) {
-        for (const EnergyColumn& energy : energies) names.push_back(std::string("energy.") + energy.name);
-        vector("momentum.linear");
-        vector("momentum.angular");
-    }
-    return names;
-}
-
 void append(std::vector<Cell>& cells, const Vec3& v) {
     for (int k = 0; k < 3; ++k) cells.emplace_back(v(k));
 }
@@ -68,10 +46,33 @@ std::vector<Vec3> nodal_reactions(const model::Constraints& constraints, const s
     return reactions;
 }
 
+std::vector<std::string> History::columns(const model::Model& model, bool pairs, const std::vector<Index>& sets,
+                                          bool ledger) {
+    std::vector<std::string> names{"time", "dt", "iterations"};
+    const auto vector = [&](const std::string& name) {
+        for (const char* axis : axes) names.push_back(name + axis);
+    };
+    if (pairs)
+        for (const auto& pair : model.pairs) {
+            const std::string prefix = "pair." + pair->name() + ".";
+            vector(prefix + "force");
+            for (const char* name : {"normal", "friction"}) names.push_back(prefix + name);
+            vector(prefix + "moment");
+            for (const char* name : {"area", "open", "stick", "slip", "penetration"}) names.push_back(prefix + name);
+        }
+    for (const Index set : sets) vector("set." + model.sets[set].name + ".reaction");
+    if (ledger) {
+        for (const EnergyColumn& energy : energies) names.push_back(std::string("energy.") + energy.name);
+        vector("momentum.linear");
+        vector("momentum.angular");
+    }
+    return names;
+}
+
 History::History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets,
-                 bool ledger)
+                 bool ledger, std::optional<std::uintmax_t> keep)
     : pairs_(pairs ? model.pairs.size() : 0), sets_(std::move(sets)), ledger_(ledger),
-      table_(path, columns(model, pairs, sets_, ledger)) {}
+      table_(path, columns(model, pairs, sets_, ledger), keep) {}
 
 void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
                   const time::Ledger* ledger) {

@@ -26,24 +26,26 @@ std::string escaped(std::string_view text) {
 }
 } // namespace
 
-Series::Series(std::filesystem::path directory) : path_(std::move(directory) / "series.pvd") {
+Series::Series(std::filesystem::path directory, std::vector<SeriesEntry> earlier)
+    : path_(std::move(directory) / "series.pvd"), entries_(std::move(earlier)) {
     flush();
 }
 
 void Series::add(double time, const std::string& part_name, const std::string& relative_file) {
-    const auto place = std::find(parts_.begin(), parts_.end(), part_name);
-    const auto part = static_cast<std::size_t>(place - parts_.begin());
-    if (place == parts_.end()) parts_.push_back(part_name);
-    entries_.push_back({time, part, relative_file});
+    entries_.push_back({time, part_name, relative_file});
 }
 
 void Series::flush() {
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n");
-    for (const Entry& entry : entries_)
+    std::vector<std::string_view> parts;
+    for (const SeriesEntry& entry : entries_) {
+        const auto place = std::ranges::find(parts, entry.part);
         fmt::format_to(out, "    <DataSet timestep=\"{}\" group=\"\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n",
-                       entry.time, entry.part, escaped(parts_[entry.part]), escaped(entry.file));
+                       entry.time, place - parts.begin(), escaped(entry.part), escaped(entry.file));
+        if (place == parts.end()) parts.push_back(entry.part);
+    }
     fmt::format_to(out, "  </Collection>\n</VTKFile>\n");
     write_atomic(path_, {text.data(), text.size()});
 }

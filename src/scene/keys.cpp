@@ -44,6 +44,7 @@ public:
         list(key,
              key.names == Names::body  ? "name of a body"
              : key.names == Names::set ? "name of a set"
+             : key.names == Names::pair ? "name of a pair"
                                        : "text",
              value.empty() ? "none" : value);
     }

@@ -216,7 +216,7 @@ struct KinsolSolver::Impl {
             const Gmres::Result result =
                 krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
             gmres_iterations += result.iterations;
-            const double digits = std::log10(std::sqrt(N_VDotProd(b, b)) / allowed);
+            const double digits = std::max(1.0, std::log10(std::sqrt(N_VDotProd(b, b)) / allowed));
             if (fresh) fresh_effort = result.iterations / digits;
             preconditioner_good = result.converged && (result.iterations <= worth_keeping ||
                                                        result.iterations <= still_good * digits * fresh_effort);

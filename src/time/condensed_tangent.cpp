@@ -148,9 +148,9 @@ void CondensedTangent::comply(const double* f, double* u) const {
     });
 }
 
-std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws() const {
+std::shared_ptr<CondensedTangent::Laws> CondensedTangent::present_laws() const {
     auto laws = std::make_shared<Laws>();
-    auto& [couplings, terms, B, D, lu, dt, usable] = *laws;
+    auto& [dt, couplings, terms, B, D] = static_cast<ContactLaws&>(*laws);
     dt = dt_;
     for (const BearingContact& c : *contacts_) {
         couplings.push_back(c.law.coupling);
@@ -166,6 +166,11 @@ std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws()
         B.emplace_back(-spring_ * Mat3::Identity());
         D.emplace_back(Mat3::Identity());
     }
+    return laws;
+}
+
+void CondensedTangent::factorise(Laws& laws) const {
+    const auto& [dt, couplings, terms, B, D] = static_cast<const ContactLaws&>(laws);
     // columns of F = C W C^T
     const auto count = static_cast<Index>(terms.size()), reduced = first_.back();
     Matrix T(3 * count, 3 * count);
@@ -186,13 +191,13 @@ std::shared_ptr<const CondensedTangent::Laws> CondensedTangent::factorise_laws()
                         r >= 0 && local(c) != 0)
                         u.segment(first_[b], first_[b + 1] - first_[b]) += local(c) * bodies_[b].W().col(r - first_[b]);
             }
-            relative(*laws, u.data(), w);
+            relative(laws, u.data(), w);
             for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, column) = B[i] * w.segment<3>(3 * i);
         }
     });
     for (Index j = 0; j < count; ++j) T.block<3, 3>(3 * j, 3 * j) += D[j];
-    usable = lu.factorise(std::move(T));
-    return laws;
+    laws.usable = laws.T.factorise(std::move(T));
+    laws.factorised = true;
 }
 
 Vector CondensedTangent::bear(const Vector& u, const double* r) const {
@@ -245,9 +250,10 @@ bool CondensedTangent::solve(const model::SystemMatrix& rows, std::span<const Ma
         if (!factorised_) factorise_bodies();
         if (!usable_) return false;
         if (!laws_) {
-            laws_ = factorise_laws();
+            laws_ = present_laws();
             ++factorisations_;
         }
+        if (!laws_->factorised) factorise(*laws_);
         if (!laws_->usable) {
             laws_ = nullptr;
             return false;

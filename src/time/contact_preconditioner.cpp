@@ -17,11 +17,12 @@ Mat3 positive_part(const Mat3& M) {
 }
 } // namespace
 
-ContactPreconditioner::ContactPreconditioner(const model::Constraints& constraints, const model::BlockMatrix& K,
-                                             std::unique_ptr<solve::Multigrid> multigrid)
-    : constraints_(constraints), stiffness_(constraints, K), solver_(multigrid ? nullptr : solve::make_cholesky()),
-      multigrid_(std::move(multigrid)), softness_(multigrid_ ? softness_multigrid : softness_factorised),
-      load_(constraints.equations()) {}
+ContactPreconditioner::ContactPreconditioner(const model::Model& model, const model::Constraints& constraints,
+                                             const model::BlockMatrix& K, std::unique_ptr<solve::Multigrid> multigrid,
+                                             int threads)
+    : model_(model), constraints_(constraints), threads_(threads), stiffness_(constraints, K),
+      solver_(multigrid ? nullptr : solve::make_cholesky()), multigrid_(std::move(multigrid)),
+      softness_(multigrid_ ? softness_multigrid : softness_factorised), load_(constraints.equations()) {}
 
 solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> contacts) {
     contacts_ = std::move(contacts);
@@ -36,8 +37,12 @@ solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> co
         spring.stiffness = positive_part(N * SB * N + T * SB * T);
     }
     stiffness_.set_springs(springs);
-    return multigrid_ ? multigrid_->factorise(stiffness_.matrix(), stiffness_.without_springs())
-                      : solver_->factorise(stiffness_.matrix());
+    if (!multigrid_) return solver_->factorise(stiffness_.matrix());
+    // grids of the undeformed bodies: those of the moment would depend on when the pattern was last renewed
+    return multigrid_->factorise(stiffness_.matrix(), [&] {
+        if (!model_.finite_strain) return stiffness_.values_of(model_.K);
+        return stiffness_.values_of(model::undeformed_stiffness(model_, threads_));
+    });
 }
 
 void ContactPreconditioner::apply(const model::SystemMatrix& rows, const double* r, double* z) const {

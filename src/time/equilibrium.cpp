@@ -41,9 +41,11 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     size_ = matrix_->size();
     if (goes_by_multigrid(model, linear))
         preconditioner_ = std::make_unique<ContactPreconditioner>(
-            constraints_, bodies_.tangent(), solve::make_multigrid(model::nodal_unknowns(model, constraints_)));
+            model, constraints_, bodies_.tangent(), solve::make_multigrid(model::nodal_unknowns(model, constraints_)),
+            threads);
     else if ((!model.pairs.empty() || !bodies_.symmetric()) && linear != LinearSolver::direct)
-        preconditioner_ = std::make_unique<ContactPreconditioner>(constraints_, bodies_.tangent(), nullptr);
+        preconditioner_ =
+            std::make_unique<ContactPreconditioner>(model, constraints_, bodies_.tangent(), nullptr, threads);
     products_ = goes_by_products(model, linear);
     if (condenses(model, linear, follower_pressure)) {
         std::vector<Index> slaves;
@@ -99,6 +101,25 @@ void Equilibrium::rollback() {
     }
     if (preconditioner_) preconditioner_->restore_pattern();
     if (condensed_) condensed_->restore();
+}
+
+EquilibriumMemory Equilibrium::memory() const {
+    EquilibriumMemory memory;
+    if (kept_patterns_ > 0) memory.couplings = kept_couplings_;
+    if (preconditioner_) memory.springs = preconditioner_->kept_pattern();
+    if (condensed_ && condensed_->kept() != nullptr) memory.laws = *condensed_->kept();
+    return memory;
+}
+
+void Equilibrium::recall(const EquilibriumMemory& memory) {
+    if (!memory.couplings.empty()) {
+        kept_couplings_ = memory.couplings;
+        matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), kept_couplings_,
+                                                        model::SystemMatrix::Build::when_asked);
+        kept_patterns_ = ++patterns_built_;
+    }
+    if (preconditioner_ && memory.springs) preconditioner_->restore_pattern(*memory.springs);
+    if (condensed_ && memory.laws) condensed_->restore(*memory.laws);
 }
 
 void Equilibrium::set_statuses(std::vector<std::vector<Status>> statuses, StatusRule rule, bool force_first) {

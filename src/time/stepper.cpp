@@ -86,15 +86,37 @@ double Stepper::end_time() const {
 }
 
 void Stepper::run(StepObserver& observer) {
-    for (const Stage& stage : stages_) {
-        const double t_start = state_.time;
+    const std::unique_ptr<const Checkpoint> from = std::move(resumed_);
+    for (std::size_t s = from ? from->stage : 0; s < stages_.size(); ++s) {
+        const Stage& stage = stages_[s];
+        const Checkpoint* within = from && s == from->stage ? from.get() : nullptr;
+        const double t_start = within != nullptr ? within->stage_start : state_.time;
         try {
-            run_stage(stage, observer);
+            run_stage(stage, observer, within);
         } catch (const LoadNotFinite& failure) {
             observer.gave_up(examine(failure, model_, stage, t_start, state_.time), nullptr);
             throw;
         }
     }
+}
+
+void Stepper::resume(Checkpoint checkpoint) {
+    if (const std::string what = misfit(checkpoint, model_, stages_.size()); !what.empty())
+        throw RunFailure("the checkpoint does not fit the scene: " + what);
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
+        if (!model_.pairs[p]->refit(checkpoint.patches[p]))
+            throw RunFailure("the checkpoint does not fit the scene: patches of pair '" + model_.pairs[p]->name() +
+                             "'");
+    state_ = checkpoint.state;
+    ledger_ = checkpoint.ledger;
+    moved_ = checkpoint.moved;
+    attempts_ = checkpoint.attempts;
+    stabilised_steps_ = checkpoint.stabilised_steps;
+    factorisations_ = checkpoint.factorisations;
+    gmres_iterations_ = checkpoint.gmres_iterations;
+    refreshed_patches_ = checkpoint.refreshed_patches;
+    paths_followed_ = checkpoint.paths_followed;
+    resumed_ = std::make_unique<Checkpoint>(std::move(checkpoint));
 }
 
 double Stepper::local_error(const Dynamics& dynamics, const Constraints& constraints, const std::vector<Vec3>& a,
@@ -158,27 +180,54 @@ Attempt Stepper::diary(const Decision& decision, const LadderResult& result, con
     return attempt;
 }
 
-void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
+void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkpoint* from) {
     const Constraints constraints(model_.nodes(), stage.constraints);
     const Dynamics* dynamics = stage.dynamics ? &*stage.dynamics : nullptr;
     Equilibrium equilibrium(model_, constraints, dynamics, timings_, options_.threads,
                             !stage.follower_pressures.empty(), options_.linear_solver);
     solve::KinsolSolver solver(equilibrium.size(), timings_);
     std::vector<Vec3> prescribed_start(model_.X.size());
-    for (Index node = 0; node < model_.nodes(); ++node)
+    for (Index node = 0; node < model_.nodes() && from == nullptr; ++node)
         prescribed_start[node] = constraints.to_local(node, state_.u[node]);
+    if (from != nullptr) prescribed_start = from->displacement_start;
 
     if (dynamics != nullptr && state_.v.empty())
         start_motion(stage, constraints, load_at(stage, constraints, prescribed_start, 0));
 
-    const double t_start = state_.time, step = stage.duration / stage.steps;
+    const double t_start = from != nullptr ? from->stage_start : state_.time, step = stage.duration / stage.steps;
     const bool controlled = std::isfinite(stage.limits.allowed_interpenetration) && !model_.pairs.empty();
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
     std::vector<Attempt> attempts; // of one step
     CollisionCheck collisions(model_, stage.limits, stage.follow_paths, timings_, options_.threads);
-    const std::vector<double> targets = times_to_hit(stage, state_.time);
-    for (std::size_t reached = 0; reached < targets.size();) {
+    const std::vector<double> targets = times_to_hit(stage, t_start);
+    std::size_t reached = 0;
+    if (from != nullptr) {
+        reached = from->reached;
+        dt = from->dt;
+        equilibrium.recall(from->memory);
+    }
+    const auto checkpoint = [&] {
+        Checkpoint now{static_cast<std::size_t>(&stage - stages_.data()),
+                       t_start,
+                       prescribed_start,
+                       reached,
+                       dt,
+                       state_,
+                       ledger_,
+                       moved_,
+                       attempts_,
+                       stabilised_steps_,
+                       factorisations_,
+                       gmres_iterations_,
+                       refreshed_patches_,
+                       paths_followed_,
+                       equilibrium.memory(),
+                       {}};
+        for (const auto& pair : model_.pairs) now.patches.push_back(pair->refitted());
+        return now;
+    };
+    while (reached < targets.size()) {
         const FittedStep fit = fit_to(state_.time, dt, std::span(targets).subspan(reached));
         const double proposed = dt, time = fit.time;
         dt = fit.dt;
@@ -297,6 +346,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer) {
             repeats = 0;
             reached += fit.on_target ? 1 : 0;
             dt = std::max(decision.dt, proposed); // a step that was short of a target alone keeps its size for the next
+            observer.between_steps(checkpoint);
             continue;
         }
         observer.attempted(attempt, equilibrium.records());

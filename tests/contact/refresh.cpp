@@ -44,6 +44,34 @@ TEST_F(Refresh, FitsPatchesAnewThatAreBentMoreThanSixtyDegrees) {
     EXPECT_GT(master->refresh(flat.x), 0) << "and back";
 }
 
+/// A surface made anew and told what was refitted is, to the last bit, the one that went through it.
+TEST_F(Refresh, CanBeDoneAgainFromWhatItWasDoneWith) {
+    const std::vector<Vec3> first = at(degrees(44)), x = at(degrees(-3));
+    EXPECT_GT(master->refresh(first), 0);
+    EXPECT_GT(master->refresh(x), 0);
+    const std::vector<RefittedPatch> done = master->refitted();
+    const auto again = make_blend_surface(flat.topology, flat.x, {});
+    ASSERT_TRUE(again->refit(done));
+    FacetSearch search(flat.topology, x, Vec3(0, 0, 100));
+    search.build(x);
+    const auto untouched = make_blend_surface(flat.topology, flat.x, {});
+    int different = 0;
+    for (int k = 0; k < 50; ++k) {
+        const Vec3 s = bent(0.13 + 0.015 * k, 0.21 + 0.011 * k, degrees(-3)) + Vec3(0, 0, 0.05);
+        const FacetHit hit = search.global(s, x);
+        ContactPoint a, b, c;
+        master->evaluate(s, hit, x, a);
+        again->evaluate(s, hit, x, b);
+        untouched->evaluate(s, hit, x, c);
+        ASSERT_EQ(a.gap, b.gap);
+        ASSERT_EQ(a.normal, b.normal);
+        different += a.gap != c.gap;
+    }
+    EXPECT_GT(different, 0) << "refitting changes nothing here";
+    EXPECT_FALSE(again->refit({{1 << 20, {}}}));
+    EXPECT_FALSE(again->refit({{0, {Vec3::Zero()}}}));
+}
+
 TEST_F(Refresh, KeepsTheSurfaceThroughItsNodes) {
     const std::vector<Vec3> x = at(degrees(44));
     master->refresh(x);

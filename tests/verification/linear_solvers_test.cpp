@@ -91,19 +91,6 @@ TEST(LinearSolvers, GiveTheSameAtFiniteStrain) {
     EXPECT_LT(difference(direct, multigrid), same);
 }
 
-TEST(LinearSolvers, GiveTheSameBitsForAnyNumberOfThreads) {
-    for (const char* solver : {"condensed", "iterative", "multigrid"}) {
-        auto overrides = coarse;
-        overrides.push_back({"solver.linear_solver", solver});
-        const support::FloatingPointTraps suspended(false);
-        SceneRun one, three;
-        support::run_scene(one, support::shipped("paper/half_tube.yaml"), overrides, 1);
-        support::run_scene(three, support::shipped("paper/half_tube.yaml"), overrides, 3);
-        ASSERT_EQ(one.steps.size(), three.steps.size()) << solver;
-        EXPECT_EQ(difference(one, three), 0) << solver;
-    }
-}
-
 TEST(LinearSolvers, CondenseWhereThatCostsLess) {
     using time::CondensationCost;
     EXPECT_TRUE((CondensationCost{6, 1, 1e9}.pays()));

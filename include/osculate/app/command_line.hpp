@@ -4,7 +4,7 @@
 namespace osculate::app {
 
 /// Runs one command and never throws. Results go to stdout, faults and progress to stderr.
-/// @returns  exit code: 0 done, 2 bad scene or command, 3 the run gave up, 4 a bug
+/// @returns  exit code: 0 done, 2 bad scene or command, 3 the run gave up, 4 a bug, 130 or 143 ended by SIGINT or SIGTERM
 [[nodiscard]] int command_line(int argc, char** argv);
 
 } // namespace osculate::app

@@ -6,16 +6,41 @@
 #include "osculate/scene/reader.hpp"
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace osculate::app {
 
+/// In a run's folder.
+inline constexpr const char* checkpoint_folder = "checkpoint";
+inline constexpr const char* checkpoint_path = "checkpoint/state";
+
+/// How often a run writes a checkpoint: after so many accepted steps, or so many seconds, whichever is set; 0 never.
+struct CheckpointEvery {
+    long steps = 0;
+    double seconds = 0;
+};
+/// From "20", steps, or "5 min", a time.
+/// @throws SceneError
+[[nodiscard]] CheckpointEvery parse_checkpoint_every(const std::string& text);
+
 struct RunOptions {
     std::filesystem::path directory; ///< of the files; out/<scene name>/ when empty
     int threads = 1;
     bool quiet = false;
+    CheckpointEvery checkpoint_every{};
+};
+
+/// A run that was asked to end by a signal, and did between two steps, with a checkpoint written.
+class Interrupted : public std::runtime_error {
+public:
+    Interrupted(int signal, double time, std::filesystem::path directory);
+    [[nodiscard]] int signal() const noexcept { return signal_; }
+
+private:
+    int signal_;
 };
 
 /// A run that gave up after an examination of its last attempt.
@@ -30,11 +55,19 @@ private:
     std::string post_mortem_;
 };
 
-/// Runs a scene. Every file can be read at any moment; those of an earlier run in the same folder are replaced.
+/// Runs a scene. On SIGINT or SIGTERM it finishes the step and writes a checkpoint. Every file can be read at any moment; those of an earlier run in the same folder are replaced.
 /// @returns  what summary.json says at the end
-/// @throws SceneError before anything is written; GaveUp when a step cannot be solved, RunFailure when a file cannot be
+/// @throws SceneError before anything is written; Interrupted; GaveUp when a step cannot be solved, RunFailure when a file cannot be
 ///         written, with everything accepted before on disk
 output::Summary run(const std::string& scene_path, const std::vector<scene::Override>& overrides,
                     const RunOptions& options);
+
+/// Goes on with a run from the checkpoint in its folder, to the same bits as without a break. What the run had written after the
+/// checkpoint is written anew.
+/// @param directory  of the run's files
+/// @param from       a checkpoint; empty: checkpoint/state in that folder
+/// @throws as run() does; SceneError where the folder, its scene or the checkpoint are not what they have to be
+output::Summary resume(const std::filesystem::path& directory, const std::filesystem::path& from,
+                       const RunOptions& options);
 
 } // namespace osculate::app

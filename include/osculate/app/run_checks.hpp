@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace osculate::app {
 
@@ -25,6 +26,10 @@ public:
         : model_(model), expect_(std::move(expect)) {}
 
     void accepted(const time::AcceptedStep& step);
+    /// What has been found so far, as plain numbers; and going on from there.
+    /// @throws std::runtime_error where there are not as many as there have to be
+    [[nodiscard]] std::vector<double> memory() const;
+    void recall(const std::vector<double>& memory);
 
     [[nodiscard]] output::Summary::Checks checks() const;
     /// What a run that has ended did not come to; nothing where nothing is expected.

@@ -24,6 +24,12 @@ struct RpimOptions {
     PatchCoordinates coordinates = PatchCoordinates::equal_length;
 };
 
+/// A patch that was fitted anew, by what it was fitted to.
+struct RefittedPatch {
+    Index patch = -1;
+    std::vector<Vec3> at; ///< vertices around it, in an order of the surface's own, m
+};
+
 class MasterSurface {
 public:
     virtual ~MasterSurface() = default;
@@ -61,6 +67,10 @@ public:
         (void)x;
         return 0;
     }
+    /// What refresh() has done so far; and the same done to a surface as it was made, as doing it again would.
+    /// @returns  false where it is no patch of this surface, or fits none; the surface is then not to be used
+    [[nodiscard]] virtual std::vector<RefittedPatch> refitted() const { return {}; }
+    [[nodiscard]] virtual bool refit(const std::vector<RefittedPatch>& patches) { return patches.empty(); }
     /// Facets that had to fall back to a smaller or simpler patch.
     [[nodiscard]] virtual Index fallbacks() const { return 0; }
 };

@@ -92,6 +92,10 @@ public:
     /// Adapts the master to the positions x of an accepted step; returns how many patches were fitted anew.
     Index refresh(const std::vector<Vec3>& x) { return master_->refresh(vertices(x)); }
 
+    /// See contact::MasterSurface.
+    [[nodiscard]] std::vector<contact::RefittedPatch> refitted() const { return master_->refitted(); }
+    [[nodiscard]] bool refit(const std::vector<contact::RefittedPatch>& patches) { return master_->refit(patches); }
+
     [[nodiscard]] const contact::ContactPoint& point(Index j) const { return points_[j]; }
     /// Of all slave nodes with a contact partner at the last evaluation, m; infinite where none has one.
     [[nodiscard]] double least_gap() const;

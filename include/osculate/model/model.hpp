@@ -53,6 +53,8 @@ struct Model {
 [[nodiscard]] double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads);
 /// Largest diagonal entry of the stiffness of all undeformed bodies, N/m.
 [[nodiscard]] double largest_stiffness(const Model& model);
+/// Stiffness of all undeformed bodies, in the pattern of K.
+[[nodiscard]] BlockMatrix undeformed_stiffness(const Model& model, int threads);
 /// Stiffness of the bodies that are linear, in the pattern of all.
 [[nodiscard]] BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
 /// Mass of all bodies, multiples of the unit matrix in the pattern of the stiffness; lumped: diagonal.

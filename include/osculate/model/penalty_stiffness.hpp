@@ -5,6 +5,7 @@
 #include "osculate/model/constraints.hpp"
 #include "osculate/solve/sparse_matrix.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace osculate::model {
@@ -34,14 +35,24 @@ public:
     /// of a solution, follows from the pattern.
     void keep_pattern() { kept_ = pattern_springs_; }
     void restore_pattern();
+    /// Springs, places only, that the kept pattern was made for; none before the first. And the pattern for such springs, kept.
+    [[nodiscard]] std::optional<std::vector<Spring>> kept_pattern() const {
+        if (block_row_start_.empty()) return std::nullopt;
+        return kept_;
+    }
+    void restore_pattern(const std::vector<Spring>& springs) {
+        build_pattern(springs);
+        fill_base();
+        keep_pattern();
+    }
     /// Over the free components, by equation number.
     [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
-    /// (nonzeros of matrix()) its values without springs.
-    [[nodiscard]] const std::vector<double>& without_springs() const { return base_; }
+    /// (nonzeros of matrix()) values of another matrix of the pattern of K, without springs.
+    [[nodiscard]] std::vector<double> values_of(const BlockMatrix& K) const;
 
 private:
     void build_pattern(const std::vector<Spring>& springs);
-    void fill_base();
+    void fill_base() { base_ = values_of(*K_); }
     [[nodiscard]] bool covers(const std::vector<Spring>& springs) const;
     /// Position of block (row, column) among the blocks of its row, -1 where there is none.
     [[nodiscard]] Index slot(Index row, Index column) const;

@@ -1,9 +1,11 @@
 #pragma once
 /// Tables a run writes row by row.
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,11 +19,18 @@ using Cell = std::variant<double, long, std::string>;
 class CsvTable {
 public:
     /// Starts the file anew; its folder is made when missing.
+    /// @param keep  not given; or the first bytes of the file that stay, whole rows below the same line of names
     /// @throws std::runtime_error with path and reason, as row() does
-    CsvTable(std::filesystem::path path, const std::vector<std::string>& columns);
+    CsvTable(std::filesystem::path path, const std::vector<std::string>& columns,
+             std::optional<std::uintmax_t> keep = std::nullopt);
 
     /// @throws InternalError when there is not one cell per column
     void row(const std::vector<Cell>& cells);
+    /// Every row has reached the disk when it returns.
+    void sync() const;
+    /// Bytes written so far, those kept among them.
+    [[nodiscard]] std::uintmax_t size() const { return size_; }
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
 private:
     struct Close {
@@ -31,6 +40,7 @@ private:
 
     std::filesystem::path path_;
     std::size_t columns_;
+    std::uintmax_t size_ = 0;
     std::unique_ptr<std::FILE, Close> file_;
 };
 

@@ -22,8 +22,10 @@ class Frames {
 public:
     /// Removes the frames of an earlier run in `directory`, and no other file.
     /// @param beside  files are written on a thread of their own, the next step goes on meanwhile
+    /// @param kept    frames that stay, see written()
     /// @throws std::runtime_error with path and reason, as write() and finish() do
-    Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model, bool beside = false);
+    Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model, bool beside = false,
+           std::vector<SeriesEntry> kept = {});
 
     /// Removes the frames in `directory` and their series, and the folders where nothing else is in them.
     /// @throws std::runtime_error with path and reason
@@ -33,6 +35,11 @@ public:
     void write(const Snapshot& snapshot, long number);
     /// Waits until every frame is written.
     void finish();
+    /// Every frame so far, written when it returns.
+    [[nodiscard]] const std::vector<SeriesEntry>& written() {
+        finish();
+        return series_.entries();
+    }
 
 private:
     struct Surface {

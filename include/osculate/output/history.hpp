@@ -20,15 +20,21 @@ public:
     /// @param pairs  whether the pairs have columns
     /// @param ledger whether energies and momenta have columns, for runs with a dynamic stage
     /// @param sets   of model.sets, those that have reaction columns
+    /// @param keep   see CsvTable
     /// @throws std::runtime_error with path and reason, as row() does
     History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets,
-            bool ledger);
+            bool ledger, std::optional<std::uintmax_t> keep = std::nullopt);
+
+    /// Names of the columns that such a history has, in their order.
+    [[nodiscard]] static std::vector<std::string> columns(const model::Model& model, bool pairs,
+                                                          const std::vector<Index>& sets, bool ledger);
 
     /// A direction that several sets hold at one node counts for the set that Constraints names, so that the sets'
     /// reactions add up to the whole.
     /// @param ledger  null in a static step: its cells stay empty
     void row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
              const time::Ledger* ledger);
+    [[nodiscard]] const CsvTable& table() const { return table_; }
 
 private:
     std::size_t pairs_;

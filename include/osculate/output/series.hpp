@@ -7,31 +7,33 @@
 
 namespace osculate::output {
 
+/// A file of a frame.
+struct SeriesEntry {
+    double time = 0;        ///< s
+    std::string part, file; ///< body or surface; file relative to the series' folder
+};
+
 /// series.pvd: which file holds which part at which time. The file is whole and valid at any moment of the run.
 class Series {
 public:
-    /// Makes the folder when missing and writes a series without frames, so that none of an earlier run stays.
+    /// Makes the folder when missing and writes a series of these frames alone, so that none other stays.
     /// @throws std::runtime_error with path and reason, as flush() does
-    explicit Series(std::filesystem::path directory);
+    explicit Series(std::filesystem::path directory, std::vector<SeriesEntry> earlier = {});
 
     /// Notes a file; it is listed from the next flush() on.
     /// @param time           s
     /// @param part_name      body or surface; parts are numbered in the order of their first appearance
     /// @param relative_file  relative to the series' folder
     void add(double time, const std::string& part_name, const std::string& relative_file);
+    /// Every file added so far.
+    [[nodiscard]] const std::vector<SeriesEntry>& entries() const { return entries_; }
 
     /// Replaces series.pvd by one with every file added so far. O(files)
     void flush();
 
 private:
-    struct Entry {
-        double time;
-        std::size_t part; ///< index into parts_
-        std::string file;
-    };
     std::filesystem::path path_;
-    std::vector<std::string> parts_;
-    std::vector<Entry> entries_;
+    std::vector<SeriesEntry> entries_;
 };
 
 } // namespace osculate::output

@@ -7,6 +7,8 @@
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/mesh/portion.hpp"
 #include "osculate/scene/course.hpp"
+#include "osculate/scene/named.hpp"
+#include "osculate/scene/output.hpp"
 
 #include <array>
 #include <map>
@@ -17,9 +19,6 @@
 #include <vector>
 
 namespace osculate::scene {
-
-/// Insertion-ordered name -> value map: the order of a scene file is kept.
-template <class T> using Named = std::vector<std::pair<std::string, T>>;
 
 // ---- meshes --------------------------------------------------------------------------------------------------------
 
@@ -315,21 +314,6 @@ struct Solver {
     LinearSolver linear_solver = LinearSolver::automatic;
     bool stabilisation = true; ///< springs under bodies that nothing holds yet, gone before a step is accepted
     bool operator==(const Solver&) const = default;
-};
-
-// ---- output --------------------------------------------------------------------------------------------------------------
-
-struct Output {
-    std::string template_name = "contact";  ///< or the absolute path of a template that is not a shipped one
-    std::vector<std::string> body_fields;   ///< displacement stress von_mises reaction
-    std::vector<std::string> slave_fields;  ///< gap contact_force normal_stress slip status normal area
-    std::vector<std::string> master_fields; ///< contact_force
-    bool history_pairs = true;
-    bool history_reactions = true;
-    bool iterations = false;    ///< write iterations.csv
-    int frame_every = 1;        ///< accepted steps between frames; 0 writes none
-    bool failed_iterate = true; ///< write the last iterate of a run that gives up
-    bool operator==(const Output&) const = default;
 };
 
 // ---- expectation ---------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include "osculate/solve/direct_solver.hpp"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,8 +21,10 @@ class Multigrid {
 public:
     virtual ~Multigrid() = default;
     /// @param A      symmetric positive definite; must stay alive and unchanged until the last cycle()
-    /// @param apart  (nonzeros of A) its values without what couples the bodies; used when the pattern is new
-    [[nodiscard]] virtual FactorStatus factorise(const SparseMatrix& A, const std::vector<double>& apart) = 0;
+    /// @param apart  asked when the pattern of A is new, for values (nonzeros of A) to build grids from: without what couples
+    ///               the bodies, and the same whenever it is asked, so that a solution does not depend on when that was
+    [[nodiscard]] virtual FactorStatus factorise(const SparseMatrix& A,
+                                                 const std::function<std::vector<double>()>& apart) = 0;
     /// x, near A^-1 b: linear and symmetric in b; b and x (rows) must not overlap.
     virtual void cycle(const double* b, double* x) = 0;
 };

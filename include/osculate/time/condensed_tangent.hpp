@@ -8,6 +8,7 @@
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/dense_lu.hpp"
 #include "osculate/solve/gmres.hpp"
+#include "osculate/time/contact_laws.hpp"
 #include "osculate/time/contact_tangent.hpp"
 
 #include <functional>
@@ -39,6 +40,9 @@ public:
     /// T stays as it is, or goes back to what it was at the last keep(): an attempt that is rejected leaves no trace.
     void keep() { kept_ = laws_; }
     void restore() { laws_ = kept_; }
+    /// What T was last kept for, null where it is to be made; and T for such laws, as it was then.
+    [[nodiscard]] const ContactLaws* kept() const { return kept_.get(); }
+    void restore(const ContactLaws& laws) { laws_ = kept_ = std::make_shared<Laws>(laws); }
     /// Contacts of the next solve(): every coupling that bears, in their order. They must outlive it.
     void set(const std::vector<BearingContact>& contacts);
     /// How many there have been: of all bodies together, and T's.
@@ -50,24 +54,19 @@ public:
 
 private:
     using Nodal = std::vector<Vec3>; ///< by contact node, global components
-    /// One node of the relative motion C, or of the springs'.
-    struct Term {
-        Index node; ///< contact node
-        Mat3 by;    ///< global components
-    };
+    using Term = ContactLaws::Term;
     /// C, B and D of contacts, then springs, and T of them.
-    struct Laws {
-        std::vector<Index> couplings;
-        std::vector<std::vector<Term>> terms;
-        std::vector<Mat3> B, D;
+    struct Laws : ContactLaws {
+        Laws() = default;
+        explicit Laws(const ContactLaws& laws) : ContactLaws(laws) {}
         solve::DenseLu T;
-        double dt = 0;
-        bool usable = false;
+        bool factorised = false, usable = false;
     };
     void factorise_bodies();
     /// Bodies side by side.
     void each_body(const std::function<void(std::size_t)>& work) const;
-    [[nodiscard]] std::shared_ptr<const Laws> factorise_laws() const;
+    [[nodiscard]] std::shared_ptr<Laws> present_laws() const;
+    void factorise(Laws& laws) const;
     void spread(const double* reduced, Nodal& nodal) const;
     void collect(const Nodal& nodal, double* reduced) const;
     /// reduced += C^T lambda, C u; over contacts, then springs
@@ -99,8 +98,8 @@ private:
     bool factorised_ = false, usable_ = true;
     int factorisations_ = 0;
     const std::vector<BearingContact>* contacts_ = nullptr;
-    mutable std::vector<Vector> on_;          ///< scratch of laws()
-    std::shared_ptr<const Laws> laws_, kept_; ///< null: to be made
+    mutable std::vector<Vector> on_;    ///< scratch of laws()
+    std::shared_ptr<Laws> laws_, kept_; ///< null: to be made
     std::unique_ptr<solve::Gmres> gmres_;
     Index gmres_size_ = -1;
 };

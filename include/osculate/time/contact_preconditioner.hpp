@@ -1,6 +1,7 @@
 #pragma once
 /// The step's tangent with contact made a little soft, so that one Cholesky factorisation inverts it.
 
+#include "osculate/model/model.hpp"
 #include "osculate/model/penalty_stiffness.hpp"
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/direct_solver.hpp"
@@ -28,15 +29,18 @@ struct SoftContact {
 ///    the only unsymmetric one, is left out. It is kept where contact forces follow from displacements.
 class ContactPreconditioner {
 public:
+    /// @param K          stiffness of the bodies of `model` in a step; it must outlive this object
     /// @param multigrid  in place of the factorisation; null: factorise
-    ContactPreconditioner(const model::Constraints& constraints, const model::BlockMatrix& K,
-                          std::unique_ptr<solve::Multigrid> multigrid);
+    ContactPreconditioner(const model::Model& model, const model::Constraints& constraints, const model::BlockMatrix& K,
+                          std::unique_ptr<solve::Multigrid> multigrid, int threads);
     /// Takes over new values of K.
     void stiffness_changed() { stiffness_.stiffness_changed(); }
     /// Another matrix of the same pattern in place of K; it must outlive this object.
     void use(const model::BlockMatrix& K) { stiffness_.use(K); }
     void keep_pattern() { stiffness_.keep_pattern(); }
     void restore_pattern() { stiffness_.restore_pattern(); }
+    [[nodiscard]] std::optional<std::vector<model::Spring>> kept_pattern() const { return stiffness_.kept_pattern(); }
+    void restore_pattern(const std::vector<model::Spring>& springs) { stiffness_.restore_pattern(springs); }
     /// Factorises for the contacts given, every coupling of the pairs among them.
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
     /// z = P^-1 r; `rows` says where the rows of the residual are.
@@ -44,7 +48,9 @@ public:
     [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
 
 private:
+    const model::Model& model_;
     const model::Constraints& constraints_;
+    int threads_;
     model::PenaltyStiffness stiffness_;
     std::unique_ptr<solve::DirectSolver> solver_; ///< one of these two
     std::unique_ptr<solve::Multigrid> multigrid_;

@@ -8,6 +8,7 @@
 #include "osculate/time/body_forces.hpp"
 #include "osculate/time/condensed_tangent.hpp"
 #include "osculate/time/contact_preconditioner.hpp"
+#include "osculate/time/equilibrium_memory.hpp"
 #include "osculate/time/linear_solver.hpp"
 #include "osculate/time/stage.hpp"
 
@@ -54,6 +55,9 @@ public:
     /// Ends an attempt: patterns that grew in it stay, or go back to what they were. Nothing else outlives an attempt.
     void commit();
     void rollback();
+    /// What the last commit() left for later steps, and the same as if it had left that. Between attempts only.
+    [[nodiscard]] EquilibriumMemory memory() const;
+    void recall(const EquilibriumMemory& memory);
     /// Statuses for the next solve. With `natural` they hold for the first iterate only, where `force_first` asks for it.
     void set_statuses(std::vector<std::vector<contact::Status>> statuses, StatusRule rule, bool force_first);
     /// The next residual is linear in the displacements about u, (nodes) m, where elements bear a driven motion that has

@@ -25,8 +25,8 @@ struct CondensationCost {
 
 /// Whether the preconditioner is multigrid.
 [[nodiscard]] bool goes_by_multigrid(const model::Model& model, LinearSolver solver);
-/// Whether the tangent goes by what it does to a vector, without a matrix: not where LU wants one, nor with so
-/// many slave nodes that their derivatives, held one by one, would take more memory.
+/// Whether the tangent goes by what it does to a vector, without a matrix: not where LU wants one, nor, without
+/// multigrid, with so many slave nodes that their derivatives, held one by one, would take more memory.
 [[nodiscard]] bool goes_by_products(const model::Model& model, LinearSolver solver);
 /// Whether the whole tangent may be factorised where GMRES gets nowhere: it fits into memory, or multigrid is not in use.
 [[nodiscard]] bool may_factorise(const model::Model& model, LinearSolver solver);

@@ -2,11 +2,13 @@
 /// Takes the stages of a run step by step. A step is a transaction: it is accepted whole or leaves no trace.
 
 #include "osculate/time/attempt.hpp"
+#include "osculate/time/checkpoint.hpp"
 #include "osculate/time/equilibrium.hpp"
 #include "osculate/time/ledger.hpp"
 #include "osculate/time/solve_ladder.hpp"
 #include "osculate/time/stage.hpp"
 
+#include <functional>
 #include <memory>
 
 namespace osculate::time {
@@ -45,6 +47,9 @@ public:
     virtual ~StepObserver() = default;
     virtual void attempted(const Attempt& attempt, const std::vector<IterationRecord>& iterations) = 0;
     virtual void accepted(const AcceptedStep& step) = 0;
+    /// After every accepted step, when all that belongs to it is done: what it throws ends the run there.
+    /// @param checkpoint  takes one; not to be called later
+    virtual void between_steps(const std::function<Checkpoint()>& checkpoint) { (void)checkpoint; }
     /// Before the run ends with a RunFailure. @param iterate  null where there was none: a load without a value
     virtual void gave_up(const PostMortem& post_mortem, const FailedIterate* iterate) {
         (void)post_mortem, (void)iterate;
@@ -58,6 +63,9 @@ public:
     /// Runs every stage. Throws RunFailure with the cause in words when a step cannot be solved at its smallest size;
     /// everything accepted before has been observed.
     void run(StepObserver& observer);
+    /// run() is to go on from there. To be called before it, with a checkpoint of the same model, stages and options.
+    /// @throws RunFailure where it cannot be one
+    void resume(Checkpoint checkpoint);
 
     [[nodiscard]] const model::State& state() const { return state_; }
     [[nodiscard]] long factorisations() const { return factorisations_; }
@@ -71,7 +79,8 @@ public:
     [[nodiscard]] double end_time() const;
 
 private:
-    void run_stage(const Stage& stage, StepObserver& observer);
+    /// @param from  where to go on in it; null: at its start
+    void run_stage(const Stage& stage, StepObserver& observer, const Checkpoint* from);
     /// Largest of Integrator::local_error() over the nodes with mass, free directions, m. @param worst  whose it is
     [[nodiscard]] double local_error(const Dynamics& dynamics, const model::Constraints& constraints,
                                      const std::vector<Vec3>& a, double dt, Index& worst) const;
@@ -115,6 +124,7 @@ private:
     bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
     int stabilised_steps_ = 0;
+    std::unique_ptr<Checkpoint> resumed_; ///< until run() has gone on from it
     long factorisations_ = 0, gmres_iterations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;
     double largest_stiffness_ = 0;              ///< model::largest_stiffness

@@ -1,0 +1,415 @@
+#include "osculate/output/checkpoint_file.hpp"
+
+#include "output/files.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <boost/crc.hpp>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace osculate::output {
+
+namespace {
+
+using Json = nlohmann::json;
+static_assert(std::endian::native == std::endian::little, "values are stored as they lie in memory");
+
+constexpr std::string_view format = "osculate checkpoint 1\n";
+constexpr std::size_t checksum_length = 17; // 16 digits and a line's end
+
+std::uint64_t checksum(std::string_view bytes) { // CRC-64/XZ
+    constexpr std::uint64_t all = ~std::uint64_t{0};
+    boost::crc_optimal<64, 0x42F0E1EBA9EA3693ULL, all, all, true, true> crc;
+    crc.process_bytes(bytes.data(), bytes.size());
+    return crc.checksum();
+}
+
+[[noreturn]] void incomplete(const std::string& what) {
+    throw std::runtime_error("it holds no " + what);
+}
+
+// ---- plain values as bytes ------------------------------------------------------------------------------------------------
+
+template <class T> Json packed(const std::vector<T>& values) {
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+    Json::binary_t::container_type bytes(values.size() * sizeof(T));
+    if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+    return Json::binary(std::move(bytes));
+}
+
+template <class T> Json packed_matrices(const std::vector<T>& values) {
+    std::vector<double> flat;
+    for (const T& value : values) flat.insert(flat.end(), value.data(), value.data() + value.size());
+    return packed(flat);
+}
+
+const Json& member(const Json& object, const char* name) {
+    const auto found = object.is_object() ? object.find(name) : object.end();
+    if (!object.is_object() || found == object.end()) incomplete(name);
+    return *found;
+}
+
+template <class T> std::vector<T> unpacked(const Json& object, const char* name) {
+    const Json& value = member(object, name);
+    if (!value.is_binary() || value.get_binary().size() % sizeof(T) != 0) incomplete(name);
+    std::vector<T> values(value.get_binary().size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), value.get_binary().data(), value.get_binary().size());
+    return values;
+}
+
+template <class T> std::vector<T> unpacked_matrices(const Json& object, const char* name) {
+    const std::vector<double> flat = unpacked<double>(object, name);
+    constexpr auto size = static_cast<std::size_t>(T::SizeAtCompileTime);
+    if (flat.size() % size != 0) incomplete(name);
+    std::vector<T> values(flat.size() / size);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = Eigen::Map<const T>(flat.data() + size * i);
+    return values;
+}
+
+template <class T> T number(const Json& object, const char* name) {
+    const Json& value = member(object, name);
+    if (std::is_integral_v<T> ? !value.is_number_integer() : !value.is_number()) incomplete(name);
+    return value.get<T>();
+}
+
+std::string text(const Json& object, const char* name) {
+    const Json& value = member(object, name);
+    if (!value.is_string()) incomplete(name);
+    return value.get<std::string>();
+}
+
+/// Lists of different lengths: the lengths, and all values one after another.
+template <class T> struct Ragged {
+    std::vector<Index> length;
+    std::vector<T> value;
+
+    void add(const std::vector<T>& list) {
+        length.push_back(static_cast<Index>(list.size()));
+        value.insert(value.end(), list.begin(), list.end());
+    }
+    [[nodiscard]] std::vector<std::vector<T>> lists(const char* name) const {
+        std::vector<std::vector<T>> result;
+        std::size_t at = 0;
+        for (const Index n : length) {
+            if (n < 0 || static_cast<std::size_t>(n) > value.size() - at) incomplete(name);
+            const auto begin = value.begin() + static_cast<std::ptrdiff_t>(at);
+            result.emplace_back(begin, begin + n);
+            at += static_cast<std::size_t>(n);
+        }
+        if (at != value.size()) incomplete(name);
+        return result;
+    }
+};
+
+// ---- parts ------------------------------------------------------------------------------------------------------------------
+
+Json to_json(const model::ContactHistory& history) {
+    return {{"lambda", packed_matrices(history.lambda)},
+            {"status", packed(history.status)},
+            {"facet", packed(history.facet)}};
+}
+
+model::ContactHistory contact_history(const Json& json) {
+    return {unpacked_matrices<Vec3>(json, "lambda"), unpacked<contact::Status>(json, "status"),
+            unpacked<Index>(json, "facet")};
+}
+
+/// Nodes, each with other nodes: couplings and springs.
+template <class T> Json links(const std::vector<T>& list) {
+    std::vector<Index> slaves;
+    Ragged<Index> masters;
+    for (const T& link : list) {
+        slaves.push_back(link.slave);
+        masters.add(link.masters);
+    }
+    return {{"slave", packed(slaves)}, {"count", packed(masters.length)}, {"master", packed(masters.value)}};
+}
+
+template <class T> std::vector<T> links(const Json& json, const char* name) {
+    const auto slaves = unpacked<Index>(json, "slave");
+    const auto masters = Ragged<Index>{unpacked<Index>(json, "count"), unpacked<Index>(json, "master")}.lists(name);
+    if (slaves.size() != masters.size()) incomplete(name);
+    std::vector<T> list(slaves.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        list[i].slave = slaves[i];
+        list[i].masters = masters[i];
+    }
+    return list;
+}
+
+Json to_json(const time::ContactLaws& laws) {
+    Ragged<Index> nodes;
+    std::vector<Mat3> by;
+    for (const auto& terms : laws.terms) {
+        nodes.length.push_back(static_cast<Index>(terms.size()));
+        for (const auto& term : terms) {
+            nodes.value.push_back(term.node);
+            by.push_back(term.by);
+        }
+    }
+    return {{"dt", laws.dt},
+            {"couplings", packed(laws.couplings)},
+            {"count", packed(nodes.length)},
+            {"node", packed(nodes.value)},
+            {"by", packed_matrices(by)},
+            {"B", packed_matrices(laws.B)},
+            {"D", packed_matrices(laws.D)}};
+}
+
+time::ContactLaws contact_laws(const Json& json) {
+    time::ContactLaws laws;
+    laws.dt = number<double>(json, "dt");
+    laws.couplings = unpacked<Index>(json, "couplings");
+    const auto nodes = Ragged<Index>{unpacked<Index>(json, "count"), unpacked<Index>(json, "node")}.lists("laws");
+    const auto by = unpacked_matrices<Mat3>(json, "by");
+    std::size_t at = 0;
+    for (const std::vector<Index>& list : nodes) {
+        auto& terms = laws.terms.emplace_back();
+        for (const Index node : list) {
+            if (at == by.size()) incomplete("laws");
+            terms.push_back({node, by[at++]});
+        }
+    }
+    laws.B = unpacked_matrices<Mat3>(json, "B");
+    laws.D = unpacked_matrices<Mat3>(json, "D");
+    return laws;
+}
+
+Json to_json(const time::EquilibriumMemory& memory) {
+    Json json{{"couplings", links(memory.couplings)}};
+    if (memory.springs) json["springs"] = links(*memory.springs);
+    if (memory.laws) json["laws"] = to_json(*memory.laws);
+    return json;
+}
+
+time::EquilibriumMemory equilibrium_memory(const Json& json) {
+    time::EquilibriumMemory memory;
+    memory.couplings = links<model::Coupling>(member(json, "couplings"), "couplings");
+    if (json.contains("springs")) memory.springs = links<model::Spring>(json["springs"], "springs");
+    if (json.contains("laws")) memory.laws = contact_laws(json["laws"]);
+    return memory;
+}
+
+Json to_json(const std::vector<contact::RefittedPatch>& patches) {
+    std::vector<Index> number;
+    Ragged<Vec3> at;
+    for (const contact::RefittedPatch& patch : patches) {
+        number.push_back(patch.patch);
+        at.add(patch.at);
+    }
+    return {{"patch", packed(number)}, {"count", packed(at.length)}, {"at", packed_matrices(at.value)}};
+}
+
+std::vector<contact::RefittedPatch> refitted_patches(const Json& json) {
+    const auto number = unpacked<Index>(json, "patch");
+    const auto at = Ragged<Vec3>{unpacked<Index>(json, "count"), unpacked_matrices<Vec3>(json, "at")}.lists("patches");
+    if (number.size() != at.size()) incomplete("patches");
+    std::vector<contact::RefittedPatch> patches;
+    for (std::size_t i = 0; i < at.size(); ++i) patches.push_back({number[i], at[i]});
+    return patches;
+}
+
+constexpr double time::Ledger::*ledger_numbers[] = {
+    &time::Ledger::kinetic, &time::Ledger::strain,      &time::Ledger::external, &time::Ledger::friction,
+    &time::Ledger::damping, &time::Ledger::algorithmic, &time::Ledger::contact,  &time::Ledger::balance};
+
+Json to_json(const time::Ledger& ledger) {
+    std::vector<double> values;
+    for (const auto value : ledger_numbers) values.push_back(ledger.*value);
+    return {{"values", packed(values)}, {"momenta", packed_matrices(std::vector<Vec3>{ledger.linear, ledger.angular})}};
+}
+
+time::Ledger ledger(const Json& json) {
+    time::Ledger ledger;
+    const auto values = unpacked<double>(json, "values");
+    const auto momenta = unpacked_matrices<Vec3>(json, "momenta");
+    if (values.size() != std::size(ledger_numbers) || momenta.size() != 2) incomplete("ledger");
+    for (std::size_t i = 0; i < values.size(); ++i) ledger.*ledger_numbers[i] = values[i];
+    ledger.linear = momenta[0];
+    ledger.angular = momenta[1];
+    return ledger;
+}
+
+Json to_json(const time::Checkpoint& run) {
+    Json contact = Json::array(), patches = Json::array();
+    for (const auto& history : run.state.contact) contact.push_back(to_json(history));
+    for (const auto& pair : run.patches) patches.push_back(to_json(pair));
+    return {{"stage", run.stage},
+            {"stage_start", run.stage_start},
+            {"displacement_start", packed_matrices(run.displacement_start)},
+            {"reached", run.reached},
+            {"dt", run.dt},
+            {"time", run.state.time},
+            {"u", packed_matrices(run.state.u)},
+            {"v", packed_matrices(run.state.v)},
+            {"a", packed_matrices(run.state.a)},
+            {"contact", contact},
+            {"ledger", to_json(run.ledger)},
+            {"moved", run.moved},
+            {"attempts", run.attempts},
+            {"stabilised_steps", run.stabilised_steps},
+            {"factorisations", run.factorisations},
+            {"gmres_iterations", run.gmres_iterations},
+            {"refreshed_patches", run.refreshed_patches},
+            {"paths_followed", run.paths_followed},
+            {"memory", to_json(run.memory)},
+            {"patches", patches}};
+}
+
+time::Checkpoint checkpoint(const Json& json) {
+    time::Checkpoint run;
+    run.stage = number<std::size_t>(json, "stage");
+    run.stage_start = number<double>(json, "stage_start");
+    run.displacement_start = unpacked_matrices<Vec3>(json, "displacement_start");
+    run.reached = number<std::size_t>(json, "reached");
+    run.dt = number<double>(json, "dt");
+    run.state.time = number<double>(json, "time");
+    run.state.u = unpacked_matrices<Vec3>(json, "u");
+    run.state.v = unpacked_matrices<Vec3>(json, "v");
+    run.state.a = unpacked_matrices<Vec3>(json, "a");
+    for (const Json& history : member(json, "contact")) run.state.contact.push_back(contact_history(history));
+    run.ledger = ledger(member(json, "ledger"));
+    if (!member(json, "moved").is_boolean()) incomplete("moved");
+    run.moved = json["moved"].get<bool>();
+    run.attempts = number<int>(json, "attempts");
+    run.stabilised_steps = number<int>(json, "stabilised_steps");
+    run.factorisations = number<long>(json, "factorisations");
+    run.gmres_iterations = number<long>(json, "gmres_iterations");
+    run.refreshed_patches = number<long>(json, "refreshed_patches");
+    run.paths_followed = number<long>(json, "paths_followed");
+    run.memory = equilibrium_memory(member(json, "memory"));
+    for (const Json& pair : member(json, "patches")) run.patches.push_back(refitted_patches(pair));
+    return run;
+}
+
+/// Ends the reading of CBOR that is nested deeper than any checkpoint: its reader calls itself once a level.
+struct DepthCheck : nlohmann::json_sax<Json> {
+    static constexpr int deepest = 8;
+    int depth = 0;
+    bool deeper() { return ++depth <= deepest; }
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override { return deeper(); }
+    bool key(string_t&) override { return true; }
+    bool end_object() override { return --depth >= 0; }
+    bool start_array(std::size_t) override { return deeper(); }
+    bool end_array() override { return --depth >= 0; }
+    bool parse_error(std::size_t, const std::string&, const Json::exception&) override { return false; }
+};
+
+Json read_cbor(std::string_view bytes) {
+    DepthCheck check;
+    Json json = Json::value_t::discarded;
+    if (Json::sax_parse(bytes.begin(), bytes.end(), &check, Json::input_format_t::cbor))
+        json = Json::from_cbor(bytes.begin(), bytes.end(), true, false);
+    if (!json.is_object()) throw std::runtime_error("it is damaged");
+    return json;
+}
+
+} // namespace
+
+std::uint64_t fingerprint(const model::Model& model) {
+    boost::crc_optimal<64, 0x42F0E1EBA9EA3693ULL, 0, 0, true, true> crc;
+    for (const Vec3& X : model.X) crc.process_bytes(X.data(), 3 * sizeof(double));
+    for (const model::Body& body : model.bodies)
+        for (const mesh::ElementBlock& block : body.mesh.blocks)
+            crc.process_bytes(block.connectivity.data(), block.connectivity.size() * sizeof(Index));
+    return crc.checksum();
+}
+
+std::string encode(const CheckpointFile& file) {
+    Json frames = Json::array(), tables = Json::array();
+    for (const SeriesEntry& entry : file.frames) frames.push_back({entry.time, entry.part, entry.file});
+    for (const auto& [path, bytes] : file.tables) tables.push_back({path, bytes});
+    const Json json{{"version", file.version},
+                    {"scene", file.scene},
+                    {"meshes", file.meshes},
+                    {"run", to_json(file.run)},
+                    {"frames", frames},
+                    {"tables", tables},
+                    {"accepted", file.steps.accepted},
+                    {"rejected", file.steps.rejected},
+                    {"iterations", file.iterations},
+                    {"total_seconds", file.total_seconds},
+                    {"cpu_seconds", file.cpu_seconds},
+                    {"seconds", packed(file.seconds)},
+                    {"checks", packed(file.checks)}};
+    std::string body;
+    Json::to_cbor(json, body);
+    return sealed(body);
+}
+
+std::string sealed(std::string_view cbor) {
+    return fmt::format("{}{:016x}\n", format, checksum(cbor)).append(cbor);
+}
+
+CheckpointFile decode(std::string_view bytes) {
+    const std::string_view name = format.substr(0, format.find_last_of(' ') + 1);
+    if (!bytes.starts_with(name)) throw std::runtime_error("it is no checkpoint of osculate");
+    if (!bytes.starts_with(format)) throw std::runtime_error("it is of another format, by another version of osculate");
+    bytes.remove_prefix(format.size());
+    if (bytes.size() < checksum_length) throw std::runtime_error("it is cut off");
+    const std::string_view sum = bytes.substr(0, checksum_length);
+    bytes.remove_prefix(checksum_length);
+    if (sum != fmt::format("{:016x}\n", checksum(bytes)))
+        throw std::runtime_error("it is damaged: its checksum does not fit");
+    const Json json = read_cbor(bytes);
+    CheckpointFile file;
+    file.version = text(json, "version");
+    file.scene = text(json, "scene");
+    file.meshes = number<std::uint64_t>(json, "meshes");
+    file.run = checkpoint(member(json, "run"));
+    for (const Json& entry : member(json, "frames")) {
+        if (!entry.is_array() || entry.size() != 3 || !entry[0].is_number() || !entry[1].is_string() ||
+            !entry[2].is_string())
+            incomplete("frames");
+        file.frames.push_back({entry[0].get<double>(), entry[1].get<std::string>(), entry[2].get<std::string>()});
+    }
+    for (const Json& entry : member(json, "tables")) {
+        if (!entry.is_array() || entry.size() != 2 || !entry[0].is_string() || !entry[1].is_number_unsigned())
+            incomplete("tables");
+        file.tables.emplace_back(entry[0].get<std::string>(), entry[1].get<std::uintmax_t>());
+    }
+    file.steps.accepted = number<long>(json, "accepted");
+    file.steps.rejected = number<long>(json, "rejected");
+    file.iterations = number<long>(json, "iterations");
+    file.total_seconds = number<double>(json, "total_seconds");
+    file.cpu_seconds = number<double>(json, "cpu_seconds");
+    file.seconds = unpacked<double>(json, "seconds");
+    file.checks = unpacked<double>(json, "checks");
+    return file;
+}
+
+void write_checkpoint(const std::filesystem::path& path, const CheckpointFile& checkpoint) {
+    const std::string content = encode(checkpoint);
+    std::filesystem::path previous = path;
+    previous += ".previous";
+    std::error_code none;
+    // a second name for the one of before, so that there is a whole one at any moment
+    std::filesystem::remove(previous, none);
+    std::filesystem::create_hard_link(path, previous, none);
+    write_atomic(path, content, true);
+}
+
+CheckpointFile read_checkpoint(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error("cannot read " + path.string() + ": " + std::strerror(errno));
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    try {
+        return decode(bytes);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error("cannot go on from " + path.string() + ": " + error.what());
+    }
+}
+
+} // namespace osculate::output

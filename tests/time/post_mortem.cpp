@@ -1,0 +1,49 @@
+#include "osculate/time/post_mortem.hpp"
+
+#include "osculate/app/compile.hpp"
+#include "osculate/output/post_mortem_file.hpp"
+#include "osculate/scene/reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace osculate::time {
+namespace {
+
+using testing::HasSubstr;
+
+/// The failure itself needs a scene of more than 100 000 nodes; here its outcome is given, and the words are looked at.
+TEST(PostMortem, NamesALinearSystemThatWasNotSolvedAndWhatToDo) {
+    const scene::Scene scene = scene::read_scene(std::string(OSCULATE_SOURCE_DIR) + "/tests/scenes/press.yaml",
+                                                 {{"supports.top", "{fix: [y, z]}"}}); // so that no body is loose
+    Timings timings;
+    app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
+    const Stage& stage = plan.stages.front();
+    const model::Constraints constraints(plan.model.nodes(), stage.constraints);
+    Equilibrium equilibrium(plan.model, constraints, nullptr, timings, 1);
+    model::State state;
+    state.u.assign(plan.model.X.size(), Vec3::Zero());
+    for (const auto& pair : plan.model.pairs) state.contact.push_back(pair->initial_history());
+    equilibrium.begin_attempt(state, {state.u, state.u}, 1);
+    const Vector z = equilibrium.unknowns(state.u, state.contact);
+    LadderResult result;
+    result.outcome = solve::KinsolOutcome::unsolved;
+    LadderOptions ladder;
+    ladder.reference_force = 1;
+    equilibrium.set_reference_force(1);
+    Decision decision;
+    decision.verdict = Verdict::give_up;
+    decision.reason = Reason::solver;
+    Attempt attempt;
+    attempt.cause = explain(plan.model, result, equilibrium, attempt);
+    EXPECT_THAT(attempt.cause, HasSubstr("linear system not solved"));
+    EXPECT_THAT(attempt.cause, HasSubstr("too large to be factorised"));
+    const PostMortem found = examine({plan.model, stage, state, z, result, ladder, decision, {attempt}}, equilibrium);
+    EXPECT_EQ(found.cause, Cause::linear_system);
+    const std::string words = output::in_words(found);
+    EXPECT_THAT(words, HasSubstr("linear_system: "));
+    EXPECT_THAT(words, HasSubstr("solver.linear_solver"));
+}
+
+} // namespace
+} // namespace osculate::time

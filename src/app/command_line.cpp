@@ -1,11 +1,8 @@
 #include "osculate/app/command_line.hpp"
 
-<<<<<<< HEAD
-#include "app/mesh_command.hpp"
-=======
 #include "app/check.hpp"
 #include "app/init_command.hpp"
->>>>>>> main
+#include "app/mesh_command.hpp"
 #include "app/study_command.hpp"
 #include "app/surface_command.hpp"
 #include "osculate/app/diary.hpp"
@@ -42,14 +39,10 @@ struct Arguments {
     bool quiet = false;
     SurfaceOptions surface;
     StudyOptions study;
-<<<<<<< HEAD
-    bool formulas = false;
+    bool formulas = false, list = false, json = false;
     MeshCommand mesh;
     std::string deck;
     deck::DeckUnits units = deck::DeckUnits::si;
-=======
-    bool formulas = false, list = false, json = false;
->>>>>>> main
 
     [[nodiscard]] RunOptions run_options() const {
         return {output, threads, quiet,
@@ -259,17 +252,14 @@ ExitCode run_command(int argc, char** argv) {
         run_study(arguments);
     } else if (*keys) {
         return show_keys(arguments.key_path);
-<<<<<<< HEAD
     } else if (*import) {
         import_scene(arguments.deck, arguments.units);
     } else if (*mesh) {
         print(describe_mesh(arguments.mesh));
-=======
     } else if (*schemas) {
         print(schema(arguments.schema));
     } else if (*init) {
         print(arguments.list ? tutorial_list() : init_scene(arguments.scene, arguments.output));
->>>>>>> main
     } else if (*steps) {
         print(diary(arguments.run_folder));
     } else {

@@ -109,6 +109,13 @@ TEST_F(Probes, PlotsAreDrawnFromTheRunsTables) {
     EXPECT_THAT(content(files / "forces.gp"), HasSubstr("set title 'the section''s force'"));
 }
 
+TEST_F(Probes, PlotsOfAQuietRunSayNothing) {
+    const Outcome outcome = osculate(
+        {"run", column, "-o", "run", "--quiet", "--set", "output.plots={level: {curves: {level: {y: time * 0 + 2}}}}"});
+    EXPECT_EQ(outcome.err, "") << "gnuplot has something to say of curves that are level";
+    EXPECT_TRUE(fs::exists(folder / "run" / "plots" / "level.csv"));
+}
+
 TEST_F(Probes, WithoutGnuplotTheScriptIsThereAndTheRunIsDone) {
     const Outcome outcome = osculate({"run", column, "-o", "run", "--quiet"}, [] { setenv("PATH", "/nowhere", 1); });
     EXPECT_EQ(outcome.code, 0);

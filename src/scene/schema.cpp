@@ -39,7 +39,9 @@ std::string scene_schema() {
 std::string template_schema() {
     SchemaVisitor visitor;
     Output defaults;
-    return finished("Output template of Osculate", visitor.document([&] { describe_output(visitor, defaults); }));
+    std::string extends;
+    return finished("Output template of Osculate",
+                    visitor.document([&] { describe_template(visitor, extends, defaults); }));
 }
 
 std::string study_schema(const std::vector<std::string>& methods) {

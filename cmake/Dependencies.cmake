@@ -17,9 +17,12 @@ find_package(SUNDIALS 6.4 REQUIRED COMPONENTS kinsol nvecserial)
 if(OSCULATE_BENCH)
   find_package(benchmark REQUIRED)
 endif()
-set(OSCULATE_VTK_READERS VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
+set(OSCULATE_VTK_READERS VTK::CommonCore VTK::CommonDataModel VTK::IOXML VTK::IOLegacy VTK::IOExodus VTK::exodusII)
 set(OSCULATE_VTK_WRITERS VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML IOLegacy IOExodus exodusII)
+# may be missing: meshes of other formats do without
+find_library(GMSH_LIBRARY gmsh)
+find_path(GMSH_INCLUDE gmsh.h)
 
 # SuiteSparse 5 in Debian ships no CMake package.
 foreach(library cholmod umfpack)

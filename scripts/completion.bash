@@ -14,6 +14,12 @@ _osculate() {
     elif [ "$command" = diary ] || [ "$command" = resume ] || [ "$before" = -o ]; then
         mapfile -t COMPREPLY < <(compgen -d -- "$word")
         return
+    elif [ "$command" = import ]; then
+        mapfile -t COMPREPLY < <(compgen -f -X '!*.inp' -- "$word"; compgen -d -S / -- "$word")
+        return
+    elif [ "$command" = mesh ]; then
+        mapfile -t COMPREPLY < <(compgen -f -- "$word")
+        return
     else
         mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -S / -- "$word")
         return

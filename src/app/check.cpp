@@ -159,6 +159,7 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
     const auto out = std::back_inserter(text);
     for (const model::Body& body : plan.model.bodies)
         fmt::format_to(out, "body {}: {} nodes, {} elements\n", body.name, body.nodes(), body.mesh.element_count());
+    for (const std::string& note : plan.mesh_notes) fmt::format_to(out, "{}\n", note);
     fmt::format_to(out, "degrees of freedom: {}\n", check.dofs);
     fmt::format_to(out, "unknowns: {}, contact forces among them\n", check.dofs + 3 * slave_nodes(plan));
     fmt::format_to(

@@ -2,6 +2,7 @@
 
 #include "app/check.hpp"
 #include "app/init_command.hpp"
+#include "app/mesh_command.hpp"
 #include "app/study_command.hpp"
 #include "app/surface_command.hpp"
 #include "osculate/app/diary.hpp"
@@ -12,6 +13,10 @@
 #include "osculate/app/surface_study.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/deck/import_deck.hpp"
+#include "osculate/mesh/deck.hpp"
+#include "osculate/mesh/mesh_error.hpp"
+#include "osculate/mesh/repair.hpp"
 #include "osculate/scene/keys.hpp"
 #include "osculate/scene/schema.hpp"
 #include "osculate/scene/study.hpp"
@@ -36,6 +41,9 @@ struct Arguments {
     SurfaceOptions surface;
     StudyOptions study;
     bool formulas = false, list = false, json = false;
+    MeshCommand mesh;
+    std::string deck;
+    deck::DeckUnits units = deck::DeckUnits::si;
 
     [[nodiscard]] RunOptions run_options() const {
         return {output, threads, quiet,
@@ -153,6 +161,14 @@ void run_study(Arguments arguments) {
     print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
 }
 
+void import_scene(const std::string& path, deck::DeckUnits units) try {
+    const deck::ImportedScene scene = deck::import_deck(mesh::read_deck(path), path, units);
+    for (const std::string& what : scene.left_out) fmt::print(stderr, "{}\n", what);
+    print(scene.text);
+} catch (const mesh::MeshError& error) {
+    throw mesh_faults(error, "deck");
+}
+
 ExitCode show_keys(const std::string& path) {
     const std::string keys = scene::describe_keys(path);
     if (keys.empty()) {
@@ -208,6 +224,27 @@ ExitCode run_command(int argc, char** argv) {
     CLI::App* report_page =
         program.add_subcommand("report", "Write report.html of a run: one file that shows it, to mail or to keep");
     report_page->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    CLI::App* mesh = program.add_subcommand("mesh", "Show what a mesh file holds: sizes, parts, surfaces, node sets");
+    mesh->add_option("FILE", arguments.mesh.file, "Mesh file")->required();
+    mesh->add_option("--part", arguments.mesh.part, "Only this part")->type_name("NAME");
+    mesh->add_option("--piece", arguments.mesh.piece, "Only this connected piece, counted from 1")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber);
+    CLI::App* import = program.add_subcommand("import", "Write an input deck of Abaqus or CalculiX as a scene");
+    import->add_option("DECK", arguments.deck, "Input deck, .inp; the scene reads its mesh from it")->required();
+    const std::map<std::string, deck::DeckUnits> units{{"si", deck::DeckUnits::si}, {"mm", deck::DeckUnits::mm}};
+    import
+        ->add_option("--units", arguments.units,
+                     "Units of the deck's numbers: si (m, kg, s) or mm (mm, t, s, MPa) [si]")
+        ->type_name("si|mm")
+        ->transform(CLI::Transformer(units))
+        ->check(CLI::IsMember(units));
+    std::vector<std::string> repairs = mesh::repair_words();
+    repairs.emplace_back("all");
+    mesh->add_option("--repair", arguments.mesh.repair, "Faults to mend, as `repair` in a scene")
+        ->type_name("WORDS")
+        ->delimiter(',')
+        ->check(CLI::IsMember(repairs));
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -228,6 +265,10 @@ ExitCode run_command(int argc, char** argv) {
         run_study(arguments);
     } else if (*keys) {
         return show_keys(arguments.key_path);
+    } else if (*import) {
+        import_scene(arguments.deck, arguments.units);
+    } else if (*mesh) {
+        print(describe_mesh(arguments.mesh));
     } else if (*schemas) {
         print(schema(arguments.schema));
     } else if (*init) {

@@ -82,8 +82,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
         if (!resumed()) output::ProbeFile::remove(folder);
         remove_plots(folder);
         for (const PlannedProbe& probe : plan.probes)
-            probes_.emplace_back(folder, probe.name, *probe.probe,
-                                 kept(output::ProbeFile::path({}, probe.name).generic_string()));
+            probes_.emplace_back(folder, probe.name, *probe.probe, kept(output::ProbeFile::relative_path(probe.name)));
         history_ = std::make_unique<output::History>(
             folder / "history.csv", plan.model, out.history_pairs,
             reactions ? plan.constrained_sets : std::vector<Index>{},
@@ -203,13 +202,15 @@ void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
     file.meshes = output::fingerprint(plan_.model);
     file.run = checkpoint;
     if (frames_) file.frames = frames_->written();
-    std::vector<const output::CsvTable*> tables{&history_->table(), steps_.get()};
-    if (iterations_) tables.push_back(iterations_.get());
-    for (const output::ProbeFile& probe : probes_) tables.push_back(&probe.table());
-    for (const output::CsvTable* table : tables) {
-        table->sync();
-        const fs::path path = table->path().lexically_relative(settings_.directory);
-        file.tables.emplace_back(path.generic_string(), table->size());
+    for (const output::CsvTable* table :
+         std::initializer_list<const output::CsvTable*>{&history_->table(), steps_.get(), iterations_.get()})
+        if (table != nullptr) {
+            table->sync();
+            file.tables.emplace_back(table->path().filename().string(), table->size());
+        }
+    for (std::size_t p = 0; p < probes_.size(); ++p) {
+        probes_[p].table().sync();
+        file.tables.emplace_back(output::ProbeFile::relative_path(plan_.probes[p].name), probes_[p].table().size());
     }
     file.steps = summary_.steps;
     file.iterations = summary_.iterations;

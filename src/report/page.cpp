@@ -71,6 +71,7 @@ Status status_of(const RunFiles& files) {
         return {"Completed", "good"};
     }
     if (status == "gave_up") return {"Gave up", "bad"};
+    if (status == "interrupted") return {"Interrupted: osculate resume goes on", "warn"};
     if (status == "running") return {"Not finished: it still runs, or was ended from outside", "warn"};
     return {"Status unknown", "warn"};
 }
@@ -256,7 +257,7 @@ std::string failure_section(const RunFiles& files) {
     if (files.failed_iterate)
         text += element("p class=\"fine\"", "The last iterate is in the folder " + element("code", "failed") +
                                                 " of the run, for ParaView.");
-    return section("post-mortem", "Why the run gave up", text);
+    return section("post-mortem", files.status() == "interrupted" ? "Why the run ended" : "Why the run gave up", text);
 }
 
 /// Start, middle and end; nothing where the bodies cannot be drawn.
@@ -413,7 +414,12 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
     const Status status = status_of(files);
     std::string body;
     body += failure_section(files);
-    const std::string pictures = pictures_section(surfaces, page); // of all frames, before any are thinned out
+    std::string pictures; // of all frames, before any are thinned out
+    try {
+        pictures = pictures_section(surfaces, page);
+    } catch (const std::exception& error) {
+        page.notes.push_back(std::string("There are no pictures: ") + error.what() + ".");
+    }
     if (three) {
         data.add_view(surfaces, options.largest_view, page.notes);
         body += section("view", "In three dimensions",

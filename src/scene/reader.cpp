@@ -35,9 +35,13 @@ std::string name_from(const std::string& path) {
 }
 
 void make_absolute(Scene& scene) {
-    for (auto& [name, body] : scene.bodies)
-        if (auto* file = std::get_if<FileMesh>(&body.mesh.source); file && !file->path.empty())
-            file->path = (fs::path(scene.directory) / file->path).lexically_normal().string();
+    const auto from_folder = [&](std::string& path) {
+        if (!path.empty()) path = (fs::path(scene.directory) / path).lexically_normal().string();
+    };
+    for (auto& [name, body] : scene.bodies) {
+        if (auto* file = std::get_if<FileMesh>(&body.mesh.source)) from_folder(file->path);
+        if (auto* cad = std::get_if<CadMesh>(&body.mesh.source)) from_folder(cad->path);
+    }
 }
 
 /// By place: the scene's own file first, then templates, overrides last.

@@ -42,10 +42,13 @@ struct Plan {
     std::vector<Index> constrained_sets; ///< of model.sets, in the scene's order
     std::vector<PlannedProbe> probes;
     std::vector<PlanItem> items;
+    std::vector<std::string> mesh_notes; ///< of build_meshes
 };
 
 /// Meshes of the scene's bodies, in its order. Throws SceneError for what cannot be generated or read.
-[[nodiscard]] std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene);
+/// @param notes  what was mended in meshes of files, and what is suspicious but allowed
+[[nodiscard]] std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene,
+                                                   std::vector<std::string>* notes = nullptr);
 
 /// Builds what the scene needs. Throws SceneError with every fault found: names without nodes or facets, bodies without
 /// support, initial overlaps, elements turned inside out.

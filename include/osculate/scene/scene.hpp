@@ -82,8 +82,23 @@ struct TubeMesh {
 };
 
 struct FileMesh {
-    std::string path; ///< VTU file; the reader makes it absolute
+    std::string path;                ///< of a format that mesh::read_mesh_file knows; the reader makes it absolute
+    std::string part;                ///< element set, block, physical volume; empty: all of the file
+    int piece = 0;                   ///< connected piece of it, from 1; 0: all
+    std::vector<std::string> repair; ///< mesh::repair_words() or `all`
     bool operator==(const FileMesh&) const = default;
+};
+
+/// Geometry meshed by Gmsh.
+struct CadMesh {
+    std::string path;       ///< STEP, IGES or BREP file; the reader makes it absolute
+    double size = 0;        ///< largest edge length, m; 0: a tenth of the diagonal of the geometry's box
+    double smallest = 0;    ///< smallest edge length, m
+    int per_circle = 0;     ///< elements around a full circle; 0: curvature does not count
+    bool quadratic = false; ///< tet10; false: tet4
+    std::string part;
+    int piece = 0;
+    bool operator==(const CadMesh&) const = default;
 };
 
 /// Rigid placement applied after generation: x = scale * (rotation * X) + translation.
@@ -96,7 +111,7 @@ struct Placement {
 };
 
 struct MeshSpec {
-    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, TubeMesh, FileMesh> source;
+    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, TubeMesh, FileMesh, CadMesh> source;
     Placement placement;
     bool operator==(const MeshSpec&) const = default;
 };

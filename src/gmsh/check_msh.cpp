@@ -1,0 +1,82 @@
+#include "gmsh/check_msh.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+namespace osculate::mesh {
+namespace {
+
+std::string_view next_line(std::string_view& rest) {
+    const std::size_t end = rest.find('\n');
+    std::string_view line = rest.substr(0, end);
+    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+}
+
+/// The counts that a section of nodes or elements begins with.
+std::vector<double> counts_of(std::string_view body, bool binary, bool version4) {
+    std::vector<double> counts;
+    if (binary && version4) {
+        std::uint64_t numbers[2];
+        if (body.size() < sizeof numbers) return {};
+        std::memcpy(numbers, body.data(), sizeof numbers);
+        return {static_cast<double>(numbers[0]), static_cast<double>(numbers[1])};
+    }
+    std::istringstream words{std::string(next_line(body))};
+    for (double number = 0; counts.size() < (version4 ? 2 : 1) && words >> number;) counts.push_back(number);
+    return counts.size() == (version4 ? 2u : 1u) ? counts : std::vector<double>{};
+}
+
+} // namespace
+
+std::string fault_of_msh(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string text(static_cast<std::size_t>(std::filesystem::file_size(path)), '\0');
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!file) return "cannot be read";
+    std::string_view rest = text;
+    if (next_line(rest) != "$MeshFormat") return "no Gmsh mesh: its first line is not $MeshFormat";
+    std::istringstream format{std::string(next_line(rest))};
+    std::string version;
+    int binary = -1, size = 0;
+    format >> version >> binary >> size;
+    const bool version4 = version == "4.1",
+               version2 = version == "2" || version == "2.0" || version == "2.1" || version == "2.2";
+    if ((!version2 && !version4) || (binary != 0 && binary != 1))
+        return "version '" + version + "' of Gmsh's format; 2 to 2.2 and 4.1 are read";
+    if (size != 8 && (binary == 1 || size != 4)) return "numbers of " + std::to_string(size) + " bytes; 8 are read";
+    bool nodes = false, elements = false;
+    // Sections one after the other; in binary ones anything may stand, so their ends are looked for, not parsed.
+    rest = std::string_view(text).substr(0);
+    while (!rest.empty()) {
+        const std::string_view line = next_line(rest);
+        if (line.empty()) continue;
+        if (line.front() != '$') return "text between sections: '" + std::string(line.substr(0, 60)) + "'";
+        const std::string name(line.substr(1));
+        const std::size_t end = rest.find("$End" + name);
+        if (end == std::string_view::npos) return "section $" + name.substr(0, 60) + " has no end";
+        const std::string_view body = rest.substr(0, end);
+        if (name == "Nodes" || name == "Elements") {
+            (name == "Nodes" ? nodes : elements) = true;
+            const std::vector<double> counts = counts_of(body, binary == 1, version4);
+            if (counts.empty()) return "section $" + name + " does not begin with its counts";
+            // A block of version 4 has a line at least, a node or an element four bytes at least.
+            for (const double count : counts)
+                if (!(count >= 0 && 4 * count <= static_cast<double>(body.size()) + 4))
+                    return "section $" + name + " announces more than it holds";
+        }
+        rest.remove_prefix(end);
+        next_line(rest);
+    }
+    if (!nodes || !elements) return std::string("no section $") + (nodes ? "Elements" : "Nodes");
+    return "";
+}
+
+} // namespace osculate::mesh

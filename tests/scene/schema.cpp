@@ -58,6 +58,17 @@ TEST(Schema, HasTheKeysOfTheKeyListAndTheShortForm) {
     EXPECT_EQ(pair["surface"]["anyOf"], pair["master"]["properties"]["surface"]["anyOf"]);
 }
 
+TEST(Schema, TakesTheNameOfAFileForItsMap) {
+    const Json mesh =
+        Json::parse(scene_schema())["properties"]["bodies"]["additionalProperties"]["properties"]["mesh"]["properties"];
+    for (const char* tag : {"file", "cad"}) {
+        EXPECT_EQ(mesh[tag]["anyOf"][0]["type"], "string") << tag;
+        EXPECT_TRUE(mesh[tag]["anyOf"][1]["properties"].contains("path")) << tag;
+        EXPECT_FALSE(mesh[tag]["description"].get<std::string>().empty()) << tag;
+    }
+    EXPECT_EQ(mesh["file"]["anyOf"][1]["properties"]["repair"]["anyOf"][0]["type"], "boolean");
+}
+
 /// The text patterns of numbers against the parser itself.
 TEST(Schema, TakesQuantitiesAsTheReaderDoes) {
     const Json scene = Json::parse(scene_schema());

@@ -5,7 +5,7 @@ measures how long reading takes; writes docs/data/foreign_meshes.md. Files are k
 """
 import csv
 import gzip
-import json
+import math
 import os
 import re
 import shutil
@@ -145,9 +145,9 @@ def write_block(n):
         f.write(f"$Elements\n{len(cells)}\n" + "".join(f"{e + 1} 5 2 1 1 " + " ".join(str(c + 1) for c in cell) + "\n" for e, cell in enumerate(cells)) + "$EndElements\n")
     with open(OUT / "block_binary.msh", "wb") as f:
         f.write(b"$MeshFormat\n4.1 1 8\n" + struct.pack("i", 1) + b"\n$EndMeshFormat\n$Nodes\n")
-        f.write(struct.pack("4Q3iQ", 1, len(points), 1, len(points), 3, 1, 0, len(points)) + struct.pack(f"{len(points)}Q", *range(1, len(points) + 1)))
+        f.write(struct.pack("=4Q3iQ", 1, len(points), 1, len(points), 3, 1, 0, len(points)) + struct.pack(f"{len(points)}Q", *range(1, len(points) + 1)))
         f.write(b"".join(struct.pack("3d", *p) for p in points) + b"\n$EndNodes\n$Elements\n")
-        f.write(struct.pack("4Q3iQ", 1, len(cells), 1, len(cells), 3, 1, 5, len(cells)))
+        f.write(struct.pack("=4Q3iQ", 1, len(cells), 1, len(cells), 3, 1, 5, len(cells)))
         f.write(b"".join(struct.pack("9Q", e + 1, *(c + 1 for c in cell)) for e, cell in enumerate(cells)) + b"\n$EndElements\n")
     grid = vtk.vtkUnstructuredGrid()
     vertices = vtk.vtkPoints()
@@ -176,7 +176,6 @@ def speed(program):
             if status:
                 raise Failure(f"{name} with {n}^3 elements cannot be read")
             seconds[name, n] = used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3, (OUT / name).stat().st_size / 1e6
-    import math
     for name in write_block(1):
         (small, _, _), (large, memory, size) = seconds[name, 50], seconds[name, 100]
         lines.append(f"| {name} | {size:.0f} | {small:.2f} | {large:.2f} | {memory:.0f} | {math.log(large / small) / math.log(8):.2f} |")

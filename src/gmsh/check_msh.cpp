@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,48 @@ std::vector<double> counts_of(std::string_view body, bool binary, bool version4)
     std::istringstream words{std::string(next_line(body))};
     for (double number = 0; counts.size() < (version4 ? 2 : 1) && words >> number;) counts.push_back(number);
     return counts.size() == (version4 ? 2u : 1u) ? counts : std::vector<double>{};
+}
+
+/// Nodes of an element of Gmsh's type, 0 for the rare ones.
+std::uint64_t nodes_of_type(int type) {
+    constexpr std::uint64_t nodes[] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13};
+    return type >= 0 && type < static_cast<int>(std::size(nodes)) ? nodes[type] : 0;
+}
+
+/// Whether the blocks of a section of version 4 stay within it, each announced by three integers and its count.
+bool blocks_fit(std::string_view body, bool binary, bool elements, double blocks) {
+    const auto skip = [&](std::uint64_t each, std::uint64_t count) {
+        if (each != 0 && count > body.size() / each) return false;
+        body.remove_prefix(each * count);
+        return true;
+    };
+    if (binary)
+        body.remove_prefix(std::min<std::size_t>(body.size(), 4 * sizeof(std::uint64_t)));
+    else
+        next_line(body);
+    for (double b = 0; b < blocks; ++b) {
+        int head[3] = {0, 0, 0};
+        std::uint64_t count = 0;
+        if (binary) {
+            if (body.size() < sizeof head + sizeof count) return false;
+            std::memcpy(head, body.data(), sizeof head);
+            std::memcpy(&count, body.data() + sizeof head, sizeof count);
+            body.remove_prefix(sizeof head + sizeof count);
+            const std::uint64_t nodes = nodes_of_type(head[2]);
+            if (elements && nodes == 0) return true; // Gmsh knows how long they are
+            const std::uint64_t parametric = head[2] != 0 ? static_cast<std::uint64_t>(std::clamp(head[0], 0, 3)) : 0;
+            if (!skip(sizeof(std::uint64_t) * (elements ? 1 + nodes : 4 + parametric), count)) return false;
+            continue;
+        }
+        std::istringstream words{std::string(next_line(body))};
+        if (!(words >> head[0] >> head[1] >> head[2] >> count)) return false;
+        if (count > body.size()) return false; // a line each
+        for (std::uint64_t line = 0; line < (elements ? count : 2 * count); ++line) {
+            if (body.empty()) return false;
+            next_line(body);
+        }
+    }
+    return true;
 }
 
 } // namespace
@@ -71,6 +114,8 @@ std::string fault_of_msh(const std::string& path) {
             for (const double count : counts)
                 if (!(count >= 0 && 4 * count <= static_cast<double>(body.size()) + 4))
                     return "section $" + name + " announces more than it holds";
+            if (version4 && !blocks_fit(body, binary == 1, name == "Elements", counts[0]))
+                return "section $" + name + " has a block that announces more than it holds";
         }
         rest.remove_prefix(end);
         next_line(rest);

@@ -164,4 +164,9 @@ void describe_output(Visitor& v, Output& output) {
            output.failed_iterate);
 }
 
+void describe_template(Visitor& v, std::string& extends, Output& output) {
+    v.text({.name = "extends", .meaning = "Template whose keys hold where this one has none."}, extends);
+    describe_output(v, output);
+}
+
 } // namespace osculate::scene

@@ -37,21 +37,16 @@ public:
             return {};
         }
         const Tree document = read_yaml(file->path.string(), faults_);
-        const Tree* base = document.find(extends.name);
+        const Tree* base = document.find("extends");
         if (base != nullptr && base->kind == Tree::Kind::scalar && !base->scalar.empty())
             (void)read(base->scalar, base->place, "extends", file->path.parent_path());
         std::string written;
         TreeReader reader(names_, faults_);
-        reader.read(document, [&] {
-            reader.text(extends, written);
-            describe_output(reader, output_);
-        });
+        reader.read(document, [&] { describe_template(reader, written, output_); });
         return file;
     }
 
 private:
-    inline static const Key extends{.name = "extends", .meaning = "Template whose keys hold where this one has none."};
-
     const KnownNames& names_;
     Output& output_;
     std::vector<Fault>& faults_;

@@ -100,6 +100,12 @@ TEST_F(GmshFiles, WhatGmshWouldTakeForAScriptOrForTooMuchIsRefusedBefore) {
     std::string many = msh2;
     many.replace(many.find("$Nodes\n10"), 9, "$Nodes\n1000000000");
     EXPECT_THAT(error_of(write("many.msh", many)), HasSubstr("$Nodes announces more than it holds"));
+    std::string block = msh4;
+    block.replace(block.find("3 1 0 8\n"), 8, "3 1 0 800000000\n");
+    EXPECT_THAT(error_of(write("block.msh", block)), HasSubstr("$Nodes has a block that announces more"));
+    std::string binary = binary4();
+    binary[binary.find("$Elements") + 10 + 32 + 12 + 5] = 1; // 2^40 elements
+    EXPECT_THAT(error_of(write("binary.msh", binary)), HasSubstr("$Elements has a block that announces more"));
     std::string missing = msh2;
     missing.replace(missing.find("6 7 20"), 6, "6 7 99");
     EXPECT_NE(error_of(write("missing.msh", missing)), "");

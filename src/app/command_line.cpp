@@ -1,15 +1,24 @@
 #include "osculate/app/command_line.hpp"
 
+#include "app/check.hpp"
+#include "app/init_command.hpp"
+#include "app/mesh_command.hpp"
 #include "app/study_command.hpp"
 #include "app/surface_command.hpp"
 #include "osculate/app/diary.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
+#include "osculate/app/run_report.hpp"
 #include "osculate/app/surface_study.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/deck/import_deck.hpp"
+#include "osculate/mesh/deck.hpp"
+#include "osculate/mesh/mesh_error.hpp"
+#include "osculate/mesh/repair.hpp"
 #include "osculate/scene/keys.hpp"
+#include "osculate/scene/schema.hpp"
 #include "osculate/scene/study.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,25 +34,28 @@ namespace {
 enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
 
 struct Arguments {
-    std::string scene, output, key_path, run_folder, checkpoint_every, from;
+    std::string scene, output, key_path, run_folder, checkpoint_every, from, schema = "scene";
     std::vector<std::string> changes;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
     SurfaceOptions surface;
     StudyOptions study;
-    bool formulas = false;
+    bool formulas = false, list = false, json = false;
+    MeshCommand mesh;
+    std::string deck;
+    deck::DeckUnits units = deck::DeckUnits::si;
 
     [[nodiscard]] RunOptions run_options() const {
         return {output, threads, quiet,
                 checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every)};
     }
     [[nodiscard]] std::vector<scene::Override> overrides() const {
-        std::vector<scene::Override> list;
+        std::vector<scene::Override> result;
         for (const std::string& change : changes) {
             const std::size_t equals = change.find('=');
-            list.push_back({change.substr(0, equals), change.substr(equals + 1)});
+            result.push_back({change.substr(0, equals), change.substr(equals + 1)});
         }
-        return list;
+        return result;
     }
 };
 
@@ -124,6 +136,15 @@ void show_run(const output::Summary& summary, const Arguments& arguments, const 
                       frames ? folder + "/series.pvd and " : "", folder));
 }
 
+void report_run(const std::string& folder) {
+    const WrittenReport report = write_report(folder);
+    constexpr double mega = 1e6;
+    print(fmt::format("{} ({:.1f} MB); pictures and plots in {}\n", report.page.string(),
+                      static_cast<double>(std::filesystem::file_size(report.page)) / mega,
+                      (report.page.parent_path() / "report").string()));
+    for (const std::string& note : report.notes) print("  " + note + "\n");
+}
+
 void run_study(Arguments arguments) {
     if (arguments.formulas) return print(formula_table());
     if (arguments.scene.empty()) {
@@ -153,6 +174,14 @@ void run_study(Arguments arguments) {
     print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
 }
 
+void import_scene(const std::string& path, deck::DeckUnits units) try {
+    const deck::ImportedScene scene = deck::import_deck(mesh::read_deck(path), path, units);
+    for (const std::string& what : scene.left_out) fmt::print(stderr, "{}\n", what);
+    print(scene.text);
+} catch (const mesh::MeshError& error) {
+    throw mesh_faults(error, "deck");
+}
+
 ExitCode show_keys(const std::string& path) {
     const std::string keys = scene::describe_keys(path);
     if (keys.empty()) {
@@ -161,6 +190,11 @@ ExitCode show_keys(const std::string& path) {
     }
     print(keys);
     return done;
+}
+
+std::string schema(const std::string& kind) {
+    if (kind == "study") return scene::study_schema(study::method_names());
+    return kind == "template" ? scene::template_schema() : scene::scene_schema();
 }
 
 ExitCode run_command(int argc, char** argv) {
@@ -175,8 +209,8 @@ ExitCode run_command(int argc, char** argv) {
     resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     resume->add_option("--from", arguments.from, "Another checkpoint than DIR/checkpoint/state")->type_name("FILE");
     add_run_options(resume, arguments);
-    CLI::App* check = add_scene_command(program, "check",
-                                        "Validate a scene; show sizes, pairs, initial gaps and overlaps", arguments);
+    CLI::App* check = add_scene_command(
+        program, "check", "Validate a scene; show sizes, cost, pairs, initial gaps, and what looks wrong", arguments);
     add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
     CLI::App* surface = add_scene_command(
         program, "surface", "Write the master surfaces as the solver sees them, before any run", arguments);
@@ -188,9 +222,42 @@ ExitCode run_command(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
     CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
     keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
+    CLI::App* schemas =
+        program.add_subcommand("schema", "Print the JSON Schema of scenes, studies or output templates, for editors");
+    schemas->add_option("KIND", arguments.schema, "scene, study or template [scene]")
+        ->check(CLI::IsMember({"scene", "study", "template"}));
+    CLI::App* init = program.add_subcommand("init", "Write a commented scene to start from");
+    init->add_option("TUTORIAL", arguments.scene, "One of those that --list shows");
+    init->add_flag("--list", arguments.list, "List the tutorials");
+    init->add_option("-o,--output", arguments.output, "The new scene file [TUTORIAL.yaml]")->type_name("FILE");
+    check->add_flag("--json", arguments.json, "As JSON, for programs");
     CLI::App* study = add_study_command(program, arguments);
     CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
     steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    CLI::App* report_page =
+        program.add_subcommand("report", "Write report.html of a run: one file that shows it, to mail or to keep");
+    report_page->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    CLI::App* mesh = program.add_subcommand("mesh", "Show what a mesh file holds: sizes, parts, surfaces, node sets");
+    mesh->add_option("FILE", arguments.mesh.file, "Mesh file")->required();
+    mesh->add_option("--part", arguments.mesh.part, "Only this part")->type_name("NAME");
+    mesh->add_option("--piece", arguments.mesh.piece, "Only this connected piece, counted from 1")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber);
+    CLI::App* import = program.add_subcommand("import", "Write an input deck of Abaqus or CalculiX as a scene");
+    import->add_option("DECK", arguments.deck, "Input deck, .inp; the scene reads its mesh from it")->required();
+    const std::map<std::string, deck::DeckUnits> units{{"si", deck::DeckUnits::si}, {"mm", deck::DeckUnits::mm}};
+    import
+        ->add_option("--units", arguments.units,
+                     "Units of the deck's numbers: si (m, kg, s) or mm (mm, t, s, MPa) [si]")
+        ->type_name("si|mm")
+        ->transform(CLI::Transformer(units))
+        ->check(CLI::IsMember(units));
+    std::vector<std::string> repairs = mesh::repair_words();
+    repairs.emplace_back("all");
+    mesh->add_option("--repair", arguments.mesh.repair, "Faults to mend, as `repair` in a scene")
+        ->type_name("WORDS")
+        ->delimiter(',')
+        ->check(CLI::IsMember(repairs));
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -211,12 +278,25 @@ ExitCode run_command(int argc, char** argv) {
         run_study(arguments);
     } else if (*keys) {
         return show_keys(arguments.key_path);
+    } else if (*import) {
+        import_scene(arguments.deck, arguments.units);
+    } else if (*mesh) {
+        print(describe_mesh(arguments.mesh));
+    } else if (*schemas) {
+        print(schema(arguments.schema));
+    } else if (*init) {
+        print(arguments.list ? tutorial_list() : init_scene(arguments.scene, arguments.output));
     } else if (*steps) {
         print(diary(arguments.run_folder));
+    } else if (*report_page) {
+        report_run(arguments.run_folder);
     } else {
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
-        print(*check ? report(loaded.plan, arguments.threads) : app::explain(loaded.plan));
+        if (*check)
+            print(check_scene(loaded, arguments.threads, arguments.json));
+        else
+            print(app::explain(loaded.plan));
     }
     return done;
 }
@@ -228,6 +308,9 @@ int command_line(int argc, char** argv) {
         return run_command(argc, argv);
     } catch (const SceneError& error) {
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
+        return bad_scene;
+    } catch (const ReportFailure& error) {
+        fmt::print(stderr, "the report cannot be written: {}\n", error.what());
         return bad_scene;
     } catch (const Interrupted& error) {
         fmt::print(stderr, "{}\n", error.what());

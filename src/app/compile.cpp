@@ -6,6 +6,8 @@
 #include "app/gaps.hpp"
 #include "app/overloaded.hpp"
 #include "app/plan_items.hpp"
+#include "app/planned_probe.hpp"
+#include "app/plots.hpp"
 #include "app/supports.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
@@ -53,6 +55,9 @@ public:
         throw_faults();
         check_supports();
         check_gaps();
+        plan_.probes = make_probes(scene_, plan_.model, faults_);
+        throw_faults();
+        check_plots(scene_, plan_, faults_);
         throw_faults();
         {
             const ScopedTimer timer(timings_, Part::assembly);

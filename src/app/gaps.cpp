@@ -1,5 +1,6 @@
 #include "app/gaps.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace osculate::app {
@@ -7,6 +8,7 @@ namespace osculate::app {
 PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timings& timings, int threads) {
     pair.begin_step(X, pair.initial_history(), timings, threads);
     pair.evaluate(X, timings, threads);
+    constexpr double round_off = 1e-9; // of the facet size
     PairGaps gaps;
     gaps.least = std::numeric_limits<double>::max();
     gaps.largest = -gaps.least;
@@ -19,8 +21,12 @@ PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timi
             gaps.least = point.gap;
             gaps.worst_node = pair.slaves().node[j];
         }
-        gaps.largest_overlap = std::max(gaps.largest_overlap, -point.gap / pair.surface().facet_size(point.facet));
+        const double of_facet = -point.gap / pair.surface().facet_size(point.facet);
+        gaps.largest_overlap = std::max(gaps.largest_overlap, of_facet);
+        if (of_facet > round_off)
+            gaps.overlaps.push_back({pair.slaves().node[j], point.facet, -point.gap, point.foot, of_facet});
     }
+    std::ranges::stable_sort(gaps.overlaps, std::ranges::greater{}, &Overlap::depth);
     if (gaps.above == 0) gaps.least = gaps.largest = 0;
     return gaps;
 }

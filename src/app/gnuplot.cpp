@@ -1,17 +1,25 @@
 #include "app/gnuplot.hpp"
 
 #include <cerrno>
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace osculate::app {
 
-Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script) {
+std::string gnuplot_text(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+    return result + "'";
+}
+
+Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script, bool quiet) {
     constexpr int not_found = 127, not_there = 126; // as shells have it
     const pid_t child = fork();
     if (child < 0) return Gnuplot::failed;
     if (child == 0) {
         if (chdir(folder.c_str()) != 0) _exit(not_there);
+        if (const int nowhere = quiet ? open("/dev/null", O_WRONLY) : -1; nowhere >= 0) dup2(nowhere, STDERR_FILENO);
         execlp("gnuplot", "gnuplot", script.c_str(), static_cast<char*>(nullptr));
         _exit(errno == ENOENT ? not_found : not_there);
     }

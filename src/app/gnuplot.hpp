@@ -1,14 +1,22 @@
 #pragma once
 /// Pictures by an external program that need not be there.
 
+#include <array>
 #include <filesystem>
 #include <string>
 
 namespace osculate::app {
 
+/// Colours of curves, told apart by most eyes.
+inline constexpr std::array gnuplot_colours{"#d55e00", "#0072b2", "#111111", "#009e73", "#cc79a7", "#e69f00",
+                                            "#56b4e9", "#882255", "#44aa99", "#999933", "#332288", "#808080"};
+
+/// Text within single quotes of gnuplot.
+[[nodiscard]] std::string gnuplot_text(const std::string& text);
+
 enum class Gnuplot { drawn, missing, failed };
 
-/// Runs gnuplot on a script in its folder and waits for it.
-[[nodiscard]] Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script);
+/// Runs gnuplot on a script in its folder and waits for it. @param quiet  its warnings are of no concern
+[[nodiscard]] Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script, bool quiet = false);
 
 } // namespace osculate::app

@@ -74,22 +74,32 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
              beside   ? "files are written beside the next step"
              : frames ? "the run has one thread"
                       : "no frame is written");
-    const bool stresses = frames && (names(out.body_fields, "stress") || names(out.body_fields, "von_mises"));
+    constexpr const char* of_stress[] = {"stress", "von_mises", "stress_max", "stress_mid", "stress_min"};
+    const bool in_probes = std::ranges::any_of(plan.probes, [&](const PlannedProbe& probe) {
+        return std::ranges::any_of(of_stress, [&](const char* field) { return probe.probe->reads(field); });
+    });
+    const bool stresses =
+        in_probes ||
+        (frames && std::ranges::any_of(of_stress, [&](const char* f) { return names(out.body_fields, f); }));
     double elements = 0;
     for (const model::Body& body : model.bodies) elements += static_cast<double>(body.mesh.element_count());
     list.say("nodal stresses", stresses,
-             stresses  ? "a field of frames needs them"
-             : !frames ? "no frame is written"
-                       : not_asked,
-             {0, elements, "elements a frame"});
+             in_probes  ? "a probe needs them"
+             : stresses ? "a field of frames needs them"
+             : !frames  ? "no frame is written"
+                        : not_asked,
+             {0, elements, in_probes ? "elements a row" : "elements a frame"});
 
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
     const bool in_frames = frames && names(out.body_fields, "reaction");
-    list.say("nodal reactions", reactions || in_frames,
+    const bool read =
+        std::ranges::any_of(plan.probes, [](const PlannedProbe& p) { return p.probe->reads("reaction"); });
+    list.say("nodal reactions", reactions || in_frames || read,
              reactions   ? "history.csv sums them"
+             : read      ? "a probe needs them"
              : in_frames ? "a field of frames needs them"
                          : "neither history.csv nor a frame needs them",
-             {0, static_cast<double>(model.nodes()), reactions ? "nodes a step" : "nodes a frame"});
+             {0, static_cast<double>(model.nodes()), reactions || read ? "nodes a step" : "nodes a frame"});
     list.say("history.csv", true, "a row per accepted step", {0, 1, "row a step"});
     double slaves = 0;
     for (const auto& pair : model.pairs) slaves += pair->size();
@@ -110,6 +120,18 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
              {0, 1, "row an iteration"});
     list.say("checks", true, "balance of forces, penetration and, in dynamics, energies, into summary.json",
              {0, static_cast<double>(model.nodes()), "nodes a step"});
+    double places = 0;
+    for (const PlannedProbe& probe : plan.probes) places += probe.probe->places();
+    list.say("probes", !plan.probes.empty(),
+             plan.probes.empty() ? "none is asked for" : fmt::format("{} table(s) in probes/", plan.probes.size()),
+             {0, places, "places a row"});
+    list.say("plots", !out.plots.empty(), out.plots.empty() ? "none is asked for" : "drawn at the end of the run",
+             {0, static_cast<double>(out.plots.size()), "pictures"});
+    list.say("show_in_paraview.py", frames && out.paraview,
+             !frames        ? "no frame is written"
+             : out.paraview ? "asked for"
+                            : not_asked);
+    list.say("report", out.report, out.report ? "asked for" : not_asked);
     list.say("expectation", scene.expect.has_value(),
              scene.expect ? "the scene says how it ends" : "the scene has no expect");
     list.say("post-mortem", false, "only where the run gives up");

@@ -1,8 +1,5 @@
 #include "osculate/app/report.hpp"
 
-#include "app/gaps.hpp"
-#include "app/pairing_advice.hpp"
-
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
@@ -14,37 +11,6 @@ Index degrees_of_freedom(const Plan& plan) {
     for (const time::Stage& stage : plan.stages)
         most = std::max(most, model::Constraints(plan.model.nodes(), stage.constraints).equations());
     return most;
-}
-
-std::string report(const Plan& plan, int threads) {
-    fmt::memory_buffer text;
-    const auto out = std::back_inserter(text);
-    for (const model::Body& body : plan.model.bodies)
-        fmt::format_to(out, "body {}: {} nodes, {} elements\n", body.name, body.nodes(), body.mesh.element_count());
-    fmt::format_to(out, "degrees of freedom: {}\n", degrees_of_freedom(plan));
-    Timings unused;
-    for (const auto& pair : plan.model.pairs) {
-        fmt::format_to(out, "pair {}: {} slave nodes, {} master facets\n", pair->name(), pair->size(),
-                       pair->surface().facet_count());
-        const PairGaps gaps = initial_gaps(*pair, plan.model.X, unused, threads);
-        if (gaps.above > 0)
-            fmt::format_to(out, "  {} slave nodes above the master, initial gap {:.4g} m to {:.4g} m\n", gaps.above,
-                           gaps.least, gaps.largest);
-        else
-            fmt::format_to(out, "  no slave node above the master\n");
-        if (gaps.least < 0)
-            fmt::format_to(out, "  worst overlap {:.4g} m at {}, {:.3g} of the facet size\n", -gaps.least,
-                           node_name(plan.model, gaps.worst_node), gaps.largest_overlap);
-        else
-            fmt::format_to(out, "  no overlap\n");
-        for (const std::string& sentence : advice(pairing(*pair, plan.model.X)))
-            fmt::format_to(out, "  advice: {}\n", sentence);
-        if (const Index fallbacks = pair->master().fallbacks(); fallbacks > 0)
-            fmt::format_to(out, "  {} patches had to be smaller or simpler than asked for\n", fallbacks);
-    }
-    for (const time::Stage& stage : plan.stages)
-        fmt::format_to(out, "stage {}: {} step(s) in {:.6g} s\n", stage.name, stage.steps, stage.duration);
-    return fmt::to_string(text);
 }
 
 namespace {

@@ -1,9 +1,12 @@
 #include "app/run_recorder.hpp"
 
 #include "app/gaps.hpp"
+#include "app/plots.hpp"
 #include "osculate/app/report.hpp"
+#include "osculate/app/run_report.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/output/paraview_script.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/writer.hpp"
 
@@ -56,6 +59,8 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
     history_reactions_ = reactions;
     frame_reactions_ = std::ranges::count(out.body_fields, "reaction") > 0;
+    probe_reactions_ =
+        std::ranges::any_of(plan.probes, [](const PlannedProbe& probe) { return probe.probe->reads("reaction"); });
     describe_plan();
     on_disk(timings_, [&] {
         if (!resumed()) {
@@ -71,6 +76,13 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
                 settings_.threads > 1, resumed() ? settings_.from->frames : std::vector<output::SeriesEntry>{});
         else
             output::Frames::remove(folder);
+        fs::remove(folder / output::paraview_script_file);
+        if (out.frame_every > 0 && out.paraview)
+            output::write_paraview_script(folder, plan.model, {out.body_fields, out.slave_fields, out.master_fields});
+        if (!resumed()) output::ProbeFile::remove(folder);
+        remove_plots(folder);
+        for (const PlannedProbe& probe : plan.probes)
+            probes_.emplace_back(folder, probe.name, *probe.probe, kept(output::ProbeFile::relative_path(probe.name)));
         history_ = std::make_unique<output::History>(
             folder / "history.csv", plan.model, out.history_pairs,
             reactions ? plan.constrained_sets : std::vector<Index>{},
@@ -150,11 +162,12 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
         const bool last = step.state.time >= stepper_.end_time() * (1 - 1e-12);
         const bool frame = frames_ && (summary_.steps.accepted % every == 0 || last);
         std::vector<Vec3> reactions;
-        if (history_reactions_ || (frame && frame_reactions_))
+        if (history_reactions_ || probe_reactions_ || (frame && frame_reactions_))
             reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
-        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions));
+        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions), {}, step.dt);
         history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
         if (frame) frames_->write(snapshot, summary_.steps.accepted);
+        write_probes(snapshot, last);
     });
     write_summary();
     if (settings_.quiet) return;
@@ -162,6 +175,11 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
     for (const model::ContactHistory& history : step.state.contact)
         contacts += std::ranges::count_if(history.status, contact::is_closed);
     progress_.update({summary_.steps.accepted, step.state.time, step.dt, step.iterations, contacts});
+}
+
+void RunRecorder::write_probes(const output::Snapshot& snapshot, bool last) {
+    for (std::size_t p = 0; p < probes_.size(); ++p)
+        if (last || summary_.steps.accepted % plan_.probes[p].every == 0) probes_[p].write(snapshot);
 }
 
 void RunRecorder::between_steps(const std::function<time::Checkpoint()>& checkpoint) {
@@ -190,6 +208,10 @@ void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
             table->sync();
             file.tables.emplace_back(table->path().filename().string(), table->size());
         }
+    for (std::size_t p = 0; p < probes_.size(); ++p) {
+        probes_[p].table().sync();
+        file.tables.emplace_back(output::ProbeFile::relative_path(plan_.probes[p].name), probes_[p].table().size());
+    }
     file.steps = summary_.steps;
     file.iterations = summary_.iterations;
     const Spent spent = spent_so_far();
@@ -266,12 +288,25 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
     summary_.failure = failure;
     if (status != "interrupted") summary_.expectation = checks_.judge(failure); // it may still come to what is expected
     write_summary();
+    if (status != "interrupted") write_pictures();
     if (!summary_.expectation) return;
     const std::vector<std::string>& misses = summary_.expectation->misses;
     if (!misses.empty())
         fmt::print(stderr, "not as expected: {}\n", fmt::join(misses, "; "));
     else if (!settings_.quiet)
         fmt::print(stderr, "as expected\n");
+}
+
+void RunRecorder::write_pictures() {
+    if (const std::string note = write_plots(scene_, settings_.directory); !note.empty())
+        fmt::print(stderr, "{}\n", note);
+    if (!scene_.output.report) return;
+    try {
+        for (const std::string& note : write_report(settings_.directory).notes)
+            fmt::print(stderr, "report: {}\n", note);
+    } catch (const std::exception& error) { // a run is no worse for a report that cannot be written
+        fmt::print(stderr, "report: {}\n", error.what());
+    }
 }
 
 void RunRecorder::write_summary() {

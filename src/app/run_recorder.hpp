@@ -9,6 +9,7 @@
 #include "osculate/output/csv_table.hpp"
 #include "osculate/output/frames.hpp"
 #include "osculate/output/history.hpp"
+#include "osculate/output/probe_file.hpp"
 #include "osculate/output/progress.hpp"
 #include "osculate/output/summary.hpp"
 
@@ -21,8 +22,8 @@
 
 namespace osculate::app {
 
-/// history.csv, steps.csv, iterations.csv and frames of a run, its summary.json, the post-mortem and the line of progress. What the scene
-/// does not name is neither written nor computed. Every member throws RunFailure when a file cannot be written.
+/// history.csv, steps.csv, iterations.csv, frames and probes of a run, its summary.json, plots, the post-mortem and the
+/// line of progress. What the scene does not name is neither written nor computed. Every member throws RunFailure when a file cannot be written.
 class RunRecorder final : public time::StepObserver {
 public:
     struct Settings {
@@ -71,19 +72,23 @@ private:
     [[nodiscard]] Spent spent_so_far() const;
     void write_initial_frame();
     void write_failed(const time::FailedIterate& iterate);
+    void write_probes(const output::Snapshot& snapshot, bool last);
     void write_summary();
+    /// Plots and what else is made of the run's files once they are complete; says what could not be, and goes on.
+    void write_pictures();
 
     const scene::Scene& scene_;
     const Plan& plan_;
     const time::Stepper& stepper_;
     Timings& timings_;
     Settings settings_;
-    bool history_reactions_ = false, frame_reactions_ = false;
+    bool history_reactions_ = false, frame_reactions_ = false, probe_reactions_ = false;
     output::Summary summary_;
     std::string post_mortem_;
     std::unique_ptr<output::CsvTable> steps_, iterations_;
     std::unique_ptr<output::History> history_;
     std::unique_ptr<output::Frames> frames_;
+    std::vector<output::ProbeFile> probes_; ///< as those of the plan
     output::Progress progress_;
     RunChecks checks_;
     long checkpoint_step_ = 0; ///< accepted steps at the last checkpoint

@@ -44,8 +44,10 @@ std::string hash_of(const std::string& text) {
 
 std::string hash_of(const scene::Scene& scene) {
     std::string text = std::string(version) + "\n" + scene::write_scene(scene);
-    for (const auto& [name, body] : scene.bodies)
+    for (const auto& [name, body] : scene.bodies) {
         if (const auto* file = std::get_if<scene::FileMesh>(&body.mesh.source)) text += content(file->path);
+        if (const auto* cad = std::get_if<scene::CadMesh>(&body.mesh.source)) text += content(cad->path);
+    }
     return hash_of(text);
 }
 

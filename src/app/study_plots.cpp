@@ -17,16 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array colours{"#d55e00", "#0072b2", "#111111", "#009e73", "#cc79a7", "#e69f00",
-                             "#56b4e9", "#882255", "#44aa99", "#999933", "#332288", "#808080"};
 constexpr std::array points{7, 5, 9, 11, 13, 6, 4, 8, 10, 12};
-
-/// Text within single quotes of gnuplot.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
-}
 
 std::string identifier(std::string name) {
     for (char& c : name)
@@ -48,11 +39,11 @@ public:
         if (rows.empty()) return;
         ++titles_;
         const auto law = study::fit_power_law(data);
-        const char* colour = colours[static_cast<std::size_t>(series.colour) % colours.size()];
+        const char* colour = gnuplot_colours[static_cast<std::size_t>(series.colour) % gnuplot_colours.size()];
         const int point = points[static_cast<std::size_t>(series.style) % points.size()];
         const std::string title = law ? fmt::format("{} ({:.2f})", series.name, law->slope) : series.name;
         add_line(block(rows), fmt::format("with linespoints dt {} lw 1.5 lc rgb '{}' pt {} ps 0.8 title {}",
-                                          series.style % 5 + 1, colour, point, quoted(title)));
+                                          series.style % 5 + 1, colour, point, gnuplot_text(title)));
         if (!law) return;
         rows = fmt::format("{:.6g} {:.6g}\n{:.6g} {:.6g}\n", law->least, (*law)(law->least), law->largest,
                            (*law)(law->largest));
@@ -75,7 +66,8 @@ public:
         std::string text =
             data_ + fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange {}\nset yrange {}\n"
                                 "set xtics {}\nset ytics {}\n",
-                                quoted(title), quoted(x), quoted(y), x_.range(), y_.range(), x_.tics(), y_.tics());
+                                gnuplot_text(title), gnuplot_text(x), gnuplot_text(y), x_.range(), y_.range(),
+                                x_.tics(), y_.tics());
         for (const auto& [terminal, font, ending] :
              {std::tuple{"svg", "sans,14", "svg"}, std::tuple{"pngcairo", "sans,12", "png"}})
             text += fmt::format("set terminal {} size 1000,{} font '{}' background 'white'\nset output '{}.{}'\n"

@@ -67,7 +67,8 @@ int bad_tet10_node(std::span<const Index> nodes, const std::vector<Vec3>& positi
     return -1;
 }
 
-/// First corner with a Jacobian that is not positive (NaN included), or -1.
+} // namespace
+
 int bad_corner(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions) {
     if (type == CellType::tet10) return bad_tet10_node(nodes, positions);
     const auto corners = corner_neighbours(type);
@@ -77,8 +78,6 @@ int bad_corner(CellType type, std::span<const Index> nodes, const std::vector<Ve
     }
     return -1;
 }
-
-} // namespace
 
 double cell_volume(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions) {
     // Divergence theorem about the first node. A bilinear face encloses the mean of its two splits into triangles.

@@ -346,7 +346,11 @@ std::string encode(const CheckpointFile& file) {
                     {"checks", packed(file.checks)}};
     std::string body;
     Json::to_cbor(json, body);
-    return fmt::format("{}{:016x}\n", format, checksum(body)) + body;
+    return sealed(body);
+}
+
+std::string sealed(std::string_view cbor) {
+    return fmt::format("{}{:016x}\n", format, checksum(cbor)).append(cbor);
 }
 
 CheckpointFile decode(std::string_view bytes) {

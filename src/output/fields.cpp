@@ -1,7 +1,11 @@
 #include "osculate/output/fields.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
+#include "output/nodal_strain.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -34,14 +38,26 @@ Values displacement(const Snapshot& snapshot, Index body) {
     return of_body(snapshot, body, snapshot.state().u);
 }
 
+/// Nodal vectors that a state may lack: zero.
+Values of_body_if_any(const Snapshot& snapshot, Index body, const std::vector<Vec3>& nodal) {
+    if (nodal.empty()) return Values(3 * static_cast<std::size_t>(snapshot.model().bodies[body].nodes()), 0.0);
+    return of_body(snapshot, body, nodal);
+}
+
+Values velocity(const Snapshot& snapshot, Index body) {
+    return of_body_if_any(snapshot, body, snapshot.state().v);
+}
+
+Values acceleration(const Snapshot& snapshot, Index body) {
+    return of_body_if_any(snapshot, body, snapshot.state().a);
+}
+
 Values reaction(const Snapshot& snapshot, Index body) {
     return of_body(snapshot, body, snapshot.reactions());
 }
 
 Values out_of_balance(const Snapshot& snapshot, Index body) {
-    if (snapshot.out_of_balance().empty())
-        return Values(3 * static_cast<std::size_t>(snapshot.model().bodies[body].nodes()), 0.0);
-    return of_body(snapshot, body, snapshot.out_of_balance());
+    return of_body_if_any(snapshot, body, snapshot.out_of_balance());
 }
 
 Values stress(const Snapshot& snapshot, Index body) {
@@ -62,6 +78,27 @@ Values von_mises(const Snapshot& snapshot, Index body) {
         values.push_back(std::sqrt(difference.squaredNorm() / 2 + 3 * s.tail<3>().squaredNorm()));
     }
     return values;
+}
+
+/// Eigenvalue `k` of the stress, 0 the least.
+template <int k> Values principal(const Snapshot& snapshot, Index body) {
+    const Snapshot::Stress& sigma = snapshot.stress(body);
+    Values values;
+    for (Index i = 0; i < sigma.rows(); ++i) {
+        const Vec6 s = sigma.row(i);
+        Mat3 tensor;
+        tensor << s(0), s(3), s(5), s(3), s(1), s(4), s(5), s(4), s(2);
+        values.push_back(Eigen::SelfAdjointEigenSolver<Mat3>(tensor, Eigen::EigenvaluesOnly).eigenvalues()(k));
+    }
+    return values;
+}
+
+Values strain(const Snapshot& snapshot, Index body) {
+    return nodal_strain(snapshot.model().bodies[body], snapshot.state().u);
+}
+
+Values energy_density(const Snapshot& snapshot, Index body) {
+    return nodal_energy_density(snapshot.model().bodies[body], snapshot.state().u);
 }
 
 Values gap(const Snapshot& snapshot, Index pair) {
@@ -87,6 +124,27 @@ Values normal_stress(const Snapshot& snapshot, Index pair) {
     return values;
 }
 
+Values tangential_traction(const Snapshot& snapshot, Index pair) {
+    const std::vector<double>& area = snapshot.model().pairs[pair]->slaves().area;
+    Values values;
+    for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool closed) {
+        const Vec3& n = contact.normal;
+        append(values, closed ? Vec3((contact.lambda - n * n.dot(contact.lambda)) / area[j]) : Vec3::Zero());
+    });
+    return values;
+}
+
+Values friction_use(const Snapshot& snapshot, Index pair) {
+    const double mu = snapshot.model().pairs[pair]->options().friction;
+    Values values;
+    for_each_slave(snapshot, pair, [&](Index, const contact::ContactState& contact, bool closed) {
+        const double p_N = contact.lambda.dot(contact.normal);
+        const double limit = mu * p_N;
+        values.push_back(closed && limit > 0 ? (contact.lambda - p_N * contact.normal).norm() / limit : 0);
+    });
+    return values;
+}
+
 Values slip(const Snapshot& snapshot, Index pair) {
     Values values;
     for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool closed) {
@@ -94,6 +152,30 @@ Values slip(const Snapshot& snapshot, Index pair) {
         const Vec3& n = contact.normal;
         append(values, d - n * n.dot(d));
     });
+    return values;
+}
+
+Values slip_rate(const Snapshot& snapshot, Index pair) {
+    Values values = slip(snapshot, pair);
+    for (double& value : values) value = snapshot.dt() > 0 ? value / snapshot.dt() : 0;
+    return values;
+}
+
+/// Whether a facet of the master is one of the model's, no mirror image.
+bool is_own(const Snapshot& snapshot, const mesh::Facet& facet) {
+    return std::all_of(facet.begin(), facet.end(), [&](Index node) { return node < snapshot.model().nodes(); });
+}
+
+Values master_facet(const Snapshot& snapshot, Index pair) {
+    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    std::vector<double> number; // among the model's own
+    double next = 0;
+    for (const mesh::Facet& facet : term.surface().facets()) number.push_back(is_own(snapshot, facet) ? next++ : -1);
+    Values values;
+    for (Index j = 0; j < term.size(); ++j) {
+        const Index facet = snapshot.has_partner(pair, j) ? term.hit(j).facet : -1;
+        values.push_back(facet < 0 ? -1 : number[static_cast<std::size_t>(facet)]);
+    }
     return values;
 }
 
@@ -113,7 +195,7 @@ Values normal(const Snapshot& snapshot, Index pair) {
     return values;
 }
 
-Values master_contact_force(const Snapshot& snapshot, Index pair) {
+std::vector<Vec3> forces_on_master(const Snapshot& snapshot, Index pair) {
     const model::ContactTerm& term = *snapshot.model().pairs[pair];
     std::vector<Vec3> force(term.master_nodes().size(), Vec3::Zero());
     for (Index j = 0; j < term.size(); ++j) {
@@ -122,8 +204,38 @@ Values master_contact_force(const Snapshot& snapshot, Index pair) {
         for (Index i = 0; i < term.carriers(j); ++i)
             force[term.own_vertex(point.nodes[i])] += term.master_force(j, i, snapshot.state().contact[pair].lambda[j]);
     }
+    return force;
+}
+
+Values master_contact_force(const Snapshot& snapshot, Index pair) {
     Values values;
-    for (const Vec3& f : force) append(values, f);
+    for (const Vec3& f : forces_on_master(snapshot, pair)) append(values, f);
+    return values;
+}
+
+/// Force against the outward normal over the area that belongs to a vertex, by the master's own facets.
+Values master_normal_stress(const Snapshot& snapshot, Index pair) {
+    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    const std::vector<Vec3> force = forces_on_master(snapshot, pair);
+    std::vector<Vec3> normal(snapshot.model().X.size(), Vec3::Zero()); // area vectors, at current positions
+    std::vector<double> area(snapshot.model().X.size(), 0);
+    for (const mesh::Facet& facet : term.surface().facets()) {
+        if (!is_own(snapshot, facet)) continue;
+        const auto shares = fe::tributary_areas(facet, snapshot.model().X);
+        const Vec3 n = mesh::facet_area_vector(facet, snapshot.x());
+        for (int c = 0; c < facet.count; ++c) {
+            const auto k = static_cast<std::size_t>(c);
+            area[static_cast<std::size_t>(facet.nodes[k])] += shares[k];
+            normal[static_cast<std::size_t>(facet.nodes[k])] += n;
+        }
+    }
+    Values values;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+        const Index node = term.master_nodes()[i];
+        const auto k = static_cast<std::size_t>(node);
+        const bool known = node < snapshot.model().nodes() && area[k] > 0 && normal[k].norm() > 0;
+        values.push_back(known ? -force[i].dot(normal[k].normalized()) / area[k] : 0);
+    }
     return values;
 }
 
@@ -133,18 +245,30 @@ Values area(const Snapshot& snapshot, Index pair) {
 
 constexpr Field table[] = {
     {"displacement", FieldPlace::body, 3, "m", false, displacement},
+    {"velocity", FieldPlace::body, 3, "m/s", false, velocity},           // 0 before the first dynamic stage
+    {"acceleration", FieldPlace::body, 3, "m/s^2", false, acceleration}, // the same
     {"stress", FieldPlace::body, 6, "Pa", false, stress},
     {"von_mises", FieldPlace::body, 1, "Pa", false, von_mises},
+    {"stress_max", FieldPlace::body, 1, "Pa", false, principal<2>},
+    {"stress_mid", FieldPlace::body, 1, "Pa", false, principal<1>},
+    {"stress_min", FieldPlace::body, 1, "Pa", false, principal<0>},
+    {"strain", FieldPlace::body, 6, "", false, strain}, // tensor components: shears are halves of the angles
+    {"energy_density", FieldPlace::body, 1, "J/m^3", false, energy_density},
     {"reaction", FieldPlace::body, 3, "N", false, reaction},
     {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance}, // of a failed iterate; 0 otherwise
     {"gap", FieldPlace::slave, 1, "m", false, gap},                      // NaN without a partner
     {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
-    {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress}, // > 0 in compression
-    {"slip", FieldPlace::slave, 3, "m", false, slip},                    // of the step; 0 where open
-    {"status", FieldPlace::slave, 1, "", true, status},                  // 0 open, 1 stick, 2 slip
-    {"normal", FieldPlace::slave, 3, "", false, normal},                 // out of the master; 0 without a partner
+    {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress},             // > 0 in compression
+    {"tangential_traction", FieldPlace::slave, 3, "Pa", false, tangential_traction}, // on the slave
+    {"friction_use", FieldPlace::slave, 1, "", false, friction_use}, // |traction| over its limit; 0 without friction
+    {"slip_rate", FieldPlace::slave, 3, "m/s", false, slip_rate},    // slip over the step's dt
+    {"master_facet", FieldPlace::slave, 1, "", true, master_facet},  // below; -1 without a partner, or a mirror image
+    {"slip", FieldPlace::slave, 3, "m", false, slip},                // of the step; 0 where open
+    {"status", FieldPlace::slave, 1, "", true, status},              // 0 open, 1 stick, 2 slip
+    {"normal", FieldPlace::slave, 3, "", false, normal},             // out of the master; 0 without a partner
     {"area", FieldPlace::slave, 1, "m^2", false, area}, // tributary to the node, in the reference configuration
     {"contact_force", FieldPlace::master, 3, "N", false, master_contact_force},
+    {"normal_stress", FieldPlace::master, 1, "Pa", false, master_normal_stress}, // > 0 in compression
 };
 
 } // namespace
@@ -160,7 +284,7 @@ const Field& field(FieldPlace where, const std::string& name) {
 }
 
 Array evaluate(const Field& field, const Snapshot& snapshot, Index body_or_pair) {
-    return {field.name, field.components, field.values(snapshot, body_or_pair), field.integer};
+    return {field.name, field.components, field.values(snapshot, body_or_pair), field.integer, field.unit};
 }
 
 } // namespace osculate::output

@@ -35,7 +35,7 @@ void remove_frames(const fs::path& folder, const std::vector<fs::path>& kept = {
 }
 
 Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& u) {
-    Array array{"displacement", 3, {}};
+    Array array{"displacement", 3, {}, false, "m"};
     for (const Index node : nodes) array.values.insert(array.values.end(), u[node].data(), u[node].data() + 3);
     return array;
 }

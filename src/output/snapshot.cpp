@@ -5,8 +5,9 @@
 namespace osculate::output {
 
 Snapshot::Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
-                   std::vector<Vec3> out_of_balance)
-    : model_(model), state_(state), reactions_(std::move(reactions)), out_of_balance_(std::move(out_of_balance)) {}
+                   std::vector<Vec3> out_of_balance, double dt)
+    : model_(model), state_(state), reactions_(std::move(reactions)), out_of_balance_(std::move(out_of_balance)),
+      dt_(dt) {}
 
 const std::vector<Vec3>& Snapshot::x() const {
     if (x_.empty()) {

@@ -10,6 +10,8 @@
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -55,6 +57,7 @@ template <class VtkArray> vtkSmartPointer<VtkArray> vtk_array(const Array& array
         static constexpr std::array names{"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
         for (int c = 0; c < 6; ++c) result->SetComponentName(c, names[static_cast<std::size_t>(c)]);
     }
+    if (!array.unit.empty()) result->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), array.unit.c_str());
     return result;
 }
 
@@ -69,7 +72,7 @@ void add_data(vtkDataSet& data, const std::vector<Array>& point_data, double tim
         else
             data.GetPointData()->AddArray(vtk_array<vtkDoubleArray>(array));
     }
-    data.GetFieldData()->AddArray(vtk_array<vtkDoubleArray>({"TimeValue", 1, {time}}));
+    data.GetFieldData()->AddArray(vtk_array<vtkDoubleArray>({"TimeValue", 1, {time}, false, "s"}));
 }
 
 template <class Writer> void write(const std::filesystem::path& path, vtkDataObject& data) {

@@ -97,7 +97,7 @@ const output::Snapshot* Session::snapshot(bool reactions) {
             values = output::nodal_reactions(equilibrium_->constraints(), equilibrium_->unbalanced());
         }
         has_reactions_ = reactions;
-        snapshot_.emplace(model(), state(), std::move(values));
+        snapshot_.emplace(model(), state(), std::move(values), std::vector<Vec3>{}, step_.dt);
     }
     return &*snapshot_;
 }
@@ -151,7 +151,7 @@ void Session::accepted(const time::AcceptedStep& step) {
     std::vector<Vec3> reactions;
     if (reactions_) reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
     has_reactions_ = reactions_;
-    snapshot_.emplace(model(), step.state, std::move(reactions));
+    snapshot_.emplace(model(), step.state, std::move(reactions), std::vector<Vec3>{}, step.dt);
     history_.push_back(output::History::cells(*snapshot_, constraints, step.dt, step.iterations,
                                               loaded_.scene.output.history_pairs, sets_, ledger_, step.ledger));
     step_ = {step_.number + 1, step.state.time, step.dt, step.iterations, step.stage.name};

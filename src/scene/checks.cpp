@@ -50,10 +50,17 @@ public:
             fault({"bodies", body, "mesh", "tube", "divisions"}, "3 or more elements around",
                   std::to_string(m.divisions[0]));
     }
-    void check_mesh(const std::string& body, const FileMesh& m) {
+    void check_mesh(const std::string& body, const FileMesh& m) { check_path(body, "file", m.path); }
+    void check_mesh(const std::string& body, const CadMesh& m) {
+        check_path(body, "cad", m.path);
+        if (m.size > 0 && m.smallest > m.size)
+            fault({"bodies", body, "mesh", "cad", "smallest"}, "at most size, " + number_text(m.size) + " m",
+                  number_text(m.smallest) + " m");
+    }
+    void check_path(const std::string& body, const char* tag, const std::string& path) {
         std::error_code ignored;
-        if (!m.path.empty() && !std::filesystem::is_regular_file(m.path, ignored))
-            fault({"bodies", body, "mesh", "file", "path"}, "a file that exists", "'" + m.path + "'");
+        if (!path.empty() && !std::filesystem::is_regular_file(path, ignored))
+            fault({"bodies", body, "mesh", tag, "path"}, "a file that exists", "'" + path + "'");
     }
 
     void check_set(const std::string& name, const SetSpec& set) {

@@ -291,40 +291,6 @@ void describe(Visitor& v, Solver& solver) {
         solver.stabilisation);
 }
 
-void describe_output(Visitor& v, Output& output) {
-    static const Words body_fields{"displacement", "stress", "von_mises", "reaction"};
-    static const Words slave_fields{"gap", "contact_force", "normal_stress", "slip", "status", "normal", "area"};
-    static const Words master_fields{"contact_force"};
-    constexpr const char* from_template = "the template's";
-    v.words({.name = "body_fields", .meaning = "Fields of the bodies' frames.", .default_text = from_template},
-            body_fields, output.body_fields);
-    v.words({.name = "slave_fields", .meaning = "Fields of the slave surfaces' frames.", .default_text = from_template},
-            slave_fields, output.slave_fields);
-    v.words(
-        {.name = "master_fields", .meaning = "Fields of the master surfaces' frames.", .default_text = from_template},
-        master_fields, output.master_fields);
-    static const Words histories{"pairs", "reactions"};
-    std::vector<std::string> history;
-    if (output.history_pairs) history.push_back(histories[0]);
-    if (output.history_reactions) history.push_back(histories[1]);
-    v.words({.name = "history", .meaning = "Column groups of history.csv.", .default_text = from_template}, histories,
-            history);
-    output.history_pairs = std::ranges::count(history, histories[0]) > 0;
-    output.history_reactions = std::ranges::count(history, histories[1]) > 0;
-    v.flag({.name = "iterations", .meaning = "Write iterations.csv.", .default_text = from_template},
-           output.iterations);
-    v.integer({.name = "frame_every",
-               .meaning = "Accepted steps between frames; 0 writes none.",
-               .range = {.low = 0, .high = 1e6},
-               .default_text = from_template},
-              output.frame_every);
-    v.flag({.name = "failed_iterate",
-            .meaning =
-                "Where the run gives up, write the last iterate, its statuses and the forces out of balance as a "
-                "frame, into the folder failed."},
-           output.failed_iterate);
-}
-
 void describe(Visitor& v, Scene& scene) {
     v.text({.name = "name",
             .meaning = "Name of the scene and of its output folder.",

@@ -1,3 +1,4 @@
+#include "osculate/mesh/repair.hpp"
 #include "scene/describe_parts.hpp"
 
 #include <algorithm>
@@ -184,9 +185,61 @@ void describe(Visitor& v, TubeMesh& m) {
     describe_portion(v, m.portion);
 }
 
+/// What is taken of a file, whoever reads it.
+template <class FileSpec> void describe_share(Visitor& v, FileSpec& m) {
+    v.text({.name = "part",
+            .meaning = "Element set, block or group of volumes that is the body.",
+            .default_text = "all of the file"},
+           m.part);
+    v.integer({.name = "piece",
+               .meaning = "Which connected piece of that is the body, counted in the file's order; 0: all of them.",
+               .range = {.low = 0, .high = 1e9}},
+              m.piece);
+}
+
 void describe(Visitor& v, FileMesh& m) {
-    v.text({.name = "path", .meaning = "VTU file; a relative path starts at the scene's folder.", .required = true},
+    v.text({.name = "path",
+            .meaning = "Mesh file: .vtu, .vtk, .msh (Gmsh), .inp (Abaqus, CalculiX), .e .ex2 .exo .exii .g (Exodus); a "
+                       "relative path starts at the scene's folder.",
+            .required = true},
            m.path);
+    describe_share(v, m);
+    static const Words repairs = [] {
+        Words words = mesh::repair_words();
+        words.emplace_back("all");
+        return words;
+    }();
+    v.words({.name = "repair",
+             .meaning = "Faults of the mesh that are mended, others are refused; all, or true for the list: all but "
+                        "coincident_nodes.",
+             .default_text = "[]"},
+            repairs, m.repair);
+}
+
+void describe(Visitor& v, CadMesh& m) {
+    v.text({.name = "path",
+            .meaning = "Geometry: .step .stp .iges .igs, whose own units count, or .brep, in metres; a relative path "
+                       "starts at the scene's folder.",
+            .required = true},
+           m.path);
+    v.number({.name = "size",
+              .meaning = "Largest edge length of the elements.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9},
+              .default_text = "0, a tenth of the geometry's diagonal"},
+             m.size);
+    v.number({.name = "smallest",
+              .meaning = "Smallest edge length of the elements.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9}},
+             m.smallest);
+    v.integer({.name = "per_circle",
+               .meaning = "Elements that a full circle of a curved face has at least; 0: curvature does not count.",
+               .range = {.low = 0, .high = 1000}},
+              m.per_circle);
+    v.flag({.name = "quadratic", .meaning = "Tetrahedra of ten nodes, with their middle nodes on the geometry."},
+           m.quadratic);
+    describe_share(v, m);
 }
 
 void describe(Visitor& v, ElasticConstants& m) {
@@ -209,13 +262,14 @@ void describe(Visitor& v, ElasticConstants& m) {
 }
 
 void describe(Visitor& v, MeshSpec& mesh) {
-    static const Words tags{"block", "half_tube", "contactor", "ball", "cylinder", "tube", "file"};
+    static const Words tags{"block", "half_tube", "contactor", "ball", "cylinder", "tube", "file", "cad"};
     one_of(v, tags,
            {"Axis-parallel block; surfaces x_min x_max y_min y_max z_min z_max.",
             "Lower half of a tube along y, open towards +z; surfaces inner outer y_min y_max rim_left rim_right.",
             "Block with a cylindrical underside along y; surfaces bottom top rear front left right.",
             "Solid ball about the origin; surface outer.", "Solid cylinder along z; surfaces z_min z_max outer.",
-            "Tube along z; surfaces inner outer z_min z_max.", "Mesh from a VTU file."},
+            "Tube along z; surfaces inner outer z_min z_max.", "Mesh from a file of another program.",
+            "Tetrahedra in a geometry, by Gmsh; surfaces face_<number>."},
            true, mesh.source, [&v](auto& alternative) { describe(v, alternative); });
     Placement& p = mesh.placement;
     v.number({.name = "scale",

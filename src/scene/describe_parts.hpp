@@ -24,6 +24,7 @@ template <class T, class Item> void named(Visitor& v, const Key& key, Named<T>& 
                   .name = [&](std::size_t i) { return values[i].first; },
                   .add =
                       [&](const std::string& name) {
+                          std::erase_if(values, [&](const auto& known) { return known.first == name; }); // a template's
                           if constexpr (std::is_same_v<T, Vec3>)
                               values.emplace_back(name, Vec3::Zero());
                           else

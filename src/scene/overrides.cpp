@@ -30,7 +30,37 @@ std::vector<std::string> split_path(const std::string& path) {
     return parts;
 }
 
+namespace {
+
+/// `file: part.vtu` for `file: {path: part.vtu}`, `repair: true` for `repair: [all]`.
+void expand_mesh(Tree& mesh) {
+    for (const char* tag : {"file", "cad"}) {
+        Tree* source = mesh.find(tag);
+        if (!source) continue;
+        if (source->kind == Tree::Kind::scalar) {
+            Tree path = *source;
+            path.key = "path";
+            source->kind = Tree::Kind::map;
+            source->children = {std::move(path)};
+        }
+        Tree* repair = source->kind == Tree::Kind::map && source->key == "file" ? source->find("repair") : nullptr;
+        if (!repair || repair->kind != Tree::Kind::scalar) continue;
+        if (repair->scalar != "true" && repair->scalar != "false") continue;
+        Tree all = *repair;
+        all.key.clear();
+        all.scalar = "all";
+        repair->kind = Tree::Kind::list;
+        repair->children.clear();
+        if (repair->scalar == "true") repair->children.push_back(std::move(all));
+    }
+}
+
+} // namespace
+
 void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
+    if (Tree* bodies = scene.find("bodies"); bodies && bodies->kind == Tree::Kind::map)
+        for (Tree& body : bodies->children)
+            if (Tree* mesh = body.find("mesh"); mesh && mesh->kind == Tree::Kind::map) expand_mesh(*mesh);
     Tree* pairs = scene.find("contact");
     if (!pairs || pairs->kind != Tree::Kind::map) return;
     for (Tree& pair : pairs->children) {

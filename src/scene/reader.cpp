@@ -1,10 +1,9 @@
 #include "osculate/scene/reader.hpp"
 
-#include "osculate/scene/nearest.hpp"
 #include "scene/checks.hpp"
 #include "scene/describe.hpp"
 #include "scene/overrides.hpp"
-#include "scene/templates.hpp"
+#include "scene/template_reader.hpp"
 #include "scene/tree_reader.hpp"
 
 #include <algorithm>
@@ -35,32 +34,14 @@ std::string name_from(const std::string& path) {
     return name;
 }
 
-/// Fills the output from its template; returns what the scene calls it when that can be found again from anywhere.
-std::string read_template(const Tree& tree, const fs::path& directory, Output& output, std::vector<Fault>& faults) {
-    const Tree* section = tree.find("output");
-    const Tree* given = section ? section->find("template") : nullptr;
-    if (given && given->kind != Tree::Kind::scalar) return output.template_name; // reported by the reader
-    const std::string name = given ? given->scalar : output.template_name;
-    const auto file = find_template(name, directory);
-    if (!file) {
-        const Words known = known_templates(directory);
-        faults.push_back(
-            fault_at(given ? given->place : tree.place, "output.template",
-                     name.ends_with(".yaml") ? "a template file that exists" : "an output template: " + join(known),
-                     "'" + name + "'", nearest(name, known)));
-        return name;
-    }
-    const Tree document = read_yaml(file->path.string(), faults);
-    const KnownNames none;
-    TreeReader reader(none, faults);
-    reader.read(document, [&] { describe_output(reader, output); });
-    return file->shipped ? name : file->path.string();
-}
-
 void make_absolute(Scene& scene) {
-    for (auto& [name, body] : scene.bodies)
-        if (auto* file = std::get_if<FileMesh>(&body.mesh.source); file && !file->path.empty())
-            file->path = (fs::path(scene.directory) / file->path).lexically_normal().string();
+    const auto from_folder = [&](std::string& path) {
+        if (!path.empty()) path = (fs::path(scene.directory) / path).lexically_normal().string();
+    };
+    for (auto& [name, body] : scene.bodies) {
+        if (auto* file = std::get_if<FileMesh>(&body.mesh.source)) from_folder(file->path);
+        if (auto* cad = std::get_if<CadMesh>(&body.mesh.source)) from_folder(cad->path);
+    }
 }
 
 /// By place: the scene's own file first, then templates, overrides last.
@@ -79,8 +60,8 @@ Scene build(Tree tree, const std::string& file, const fs::path& directory, const
     Scene scene;
     scene.name = name_from(file);
     scene.directory = directory.string();
-    const std::string template_name = read_template(tree, directory, scene.output, faults);
-    const KnownNames names{keys_under(tree, "bodies"), keys_under(tree, "sets")};
+    const KnownNames names{keys_under(tree, "bodies"), keys_under(tree, "sets"), keys_under(tree, "contact")};
+    const std::string template_name = read_template(tree, directory, names, scene.output, faults);
     TreeReader reader(names, faults);
     reader.read(tree, [&] { describe(reader, scene); });
     scene.output.template_name = template_name;

@@ -62,6 +62,9 @@ std::vector<Override> Study::overrides_of(const Combination& combination,
     for (const StudySetting& setting : settings_of(combination)) list.push_back(setting.change);
     list.insert(list.end(), command_line.begin(), command_line.end());
     const bool nodes = reads(*this, RowSource::contact), bodies = reads(*this, RowSource::body);
+    list.push_back({"output.template", "minimal"});
+    list.push_back({"output.probes", "{}"});
+    list.push_back({"output.plots", "{}"});
     list.push_back({"output.body_fields", bodies ? "[displacement, stress, von_mises, reaction]" : "[]"});
     list.push_back(
         {"output.slave_fields", nodes ? "[gap, contact_force, normal_stress, slip, status, normal, area]" : "[]"});

@@ -1,5 +1,6 @@
 #include "osculate/scene/surface_study.hpp"
 
+#include "scene/describe.hpp"
 #include "scene/describe_parts.hpp"
 #include "scene/tree_reader.hpp"
 
@@ -73,6 +74,8 @@ void describe(Visitor& v, RefinedMeshes& m) {
              m.irregularity);
 }
 
+} // namespace
+
 void describe(Visitor& v, SurfaceStudy& study, const Words& methods) {
     v.text({.name = "title", .meaning = "Heading of the report."}, study.title);
     named(v,
@@ -95,6 +98,8 @@ void describe(Visitor& v, SurfaceStudy& study, const Words& methods) {
                .range = {.low = 1, .high = 100}},
               study.points);
 }
+
+namespace {
 
 /// A list of numbers; empty, with a fault, where it is something else.
 std::vector<double> numbers(const Tree& list, const std::string& key, std::vector<Fault>& faults) {

@@ -216,7 +216,7 @@ void TreeReader::flag(const Key& key, bool& value) {
 }
 
 const Words& TreeReader::referred(Names names) const {
-    return names == Names::body ? names_.bodies : names_.sets;
+    return names == Names::body ? names_.bodies : names == Names::pair ? names_.pairs : names_.sets;
 }
 
 bool TreeReader::check_name(const Tree& at, const Place& place, const Key& key, const std::string& name, Names names) {
@@ -229,16 +229,17 @@ bool TreeReader::check_name(const Tree& at, const Place& place, const Key& key, 
     const Words& known = referred(names);
     if (std::ranges::count(known, name) > 0) return true;
     if (names == Names::body && known.empty()) return true; // a scene without bodies is one fault, not many
-    const std::string what = names == Names::body ? "body" : "set";
+    const std::string what = names == Names::body ? "body" : names == Names::pair ? "pair" : "set";
     return reject(known.empty() ? "the name of a " + what + " (there is none)"
                                 : "the name of a " + what + ": " + join(known),
                   nearest(name, known));
 }
 
 void TreeReader::text(const Key& key, std::string& value) {
-    const std::string expected = key.names == Names::body  ? "the name of a body"
-                                 : key.names == Names::set ? "the name of a set"
-                                                           : "a text";
+    const std::string expected = key.names == Names::body   ? "the name of a body"
+                                 : key.names == Names::set  ? "the name of a set"
+                                 : key.names == Names::pair ? "the name of a pair"
+                                                            : "a text";
     const Tree* tree = take(key, expected);
     if (!tree) return;
     if (tree->kind != Tree::Kind::scalar || (key.required && tree->scalar.empty())) return fault(*tree, key, expected);

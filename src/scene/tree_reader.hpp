@@ -11,7 +11,7 @@ namespace osculate::scene {
 
 /// Names that other keys may refer to.
 struct KnownNames {
-    Words bodies, sets;
+    Words bodies, sets, pairs;
 };
 
 /// "a pressure (Pa) > 0".

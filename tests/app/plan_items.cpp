@@ -60,18 +60,30 @@ GMRES                        x x x x x x x x x x x x x x
 stabilisation springs        . . . . . . . . . . . . . .
 threads                      . . . . . . . . . . . . . .
 field displacement           x x x x x x x x x x x x x x
+field velocity               . . . . . . . . . . . . . .
+field acceleration           . . . . . . . . . . . . . .
 field stress                 x . x . . x x x x x x x x x
 field von_mises              x . x . . x x x x x x x x x
+field stress_max             . . . . . . . . . . . . . .
+field stress_mid             . . . . . . . . . . . . . .
+field stress_min             . . . . . . . . . . . . . .
+field strain                 . . . . . . . . . . . . . .
+field energy_density         . . . . . . . . . . . . . .
 field reaction               x . x . . x x x x x x x x x
 field out_of_balance         . . . . . . . . . . . . . .
 slave field gap              x . x . . x x x x x x x x x
 slave field contact_force    x . x . . x x x x x x x x x
 slave field normal_stress    x . x . . x x x x x x x x x
+slave field tangential_traction . . . . . . . . . . . . . .
+slave field friction_use     . . . . . . . . . . . . . .
+slave field slip_rate        . . . . . . . . . . . . . .
+slave field master_facet     . . . . . . . . . . . . . .
 slave field slip             x . x . . x x x x x x x x x
 slave field status           x . x . . x x x x x x x x x
 slave field normal           x . x . . x x x x x x x x x
 slave field area             . . . . . . . . . . . . . .
 master field contact_force   x . x . . x x x x x x x x x
+master field normal_stress   . . . . . . . . . . . . . .
 frames                       x x x x x x x x x x x x x x
 frames on a second thread    . . . . . . . . . . . . . .
 nodal stresses               x . x . . x x x x x x x x x
@@ -83,6 +95,10 @@ history of energies          x x x x x . . . . x x . . .
 steps.csv                    x x x x x x x x x x x x x x
 iterations.csv               . . . . . . . . . . . x x x
 checks                       x x x x x x x x x x x x x x
+probes                       . . . . . x x x x . . . . .
+plots                        . . . . . x x x x . . . . .
+show_in_paraview.py          x . x . . x x x x x x x x x
+report                       . . . . . . . . . . . . . .
 expectation                  . . . . . . . . . . . . . .
 post-mortem                  . . . . . . . . . . . . . .
 failed iterate               . . . . . . . . . . . . . .

@@ -33,7 +33,7 @@ TEST_P(BadScene, IsRefusedWithPlaceKeyAndReason) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Ten, BadScene,
+    All, BadScene,
     testing::Values(
         Refusal{"unknown_key",
                 {"34:5: contact.joint.frcition: expected one of the keys slave, master, discretisation, friction, "
@@ -61,7 +61,33 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"absurd_size",
                 {"7:74: bodies.base.mesh.block.divisions: expected at most 2e+07 elements, found 6.4e+10",
                  "12:52: bodies.cap.mesh.block.size: expected a list of three, each a length (m) in [1e-12, 1e+09], "
-                 "found '1e10 m'"}}),
+                 "found '1e10 m'"}},
+        Refusal{"twice_the_same_key",
+                {"35:5: contact.joint.friction: expected every key once, found 'friction' again (first in line 34)"}},
+        Refusal{"misspelt_unit",
+                {"39:21: stages.press.pressure.top: expected a pressure (Pa), found '100 KPa' (unknown unit 'KPa') "
+                 "(did you mean 'Pa'?)"}},
+        Refusal{"missing_modulus",
+                {"14:23: bodies.cap.material.linear_elastic.E: expected a pressure (Pa) > 0, found nothing"}},
+        Refusal{"two_meshes",
+                {"12:7: bodies.cap.mesh: expected only one of block, half_tube, contactor, ball, cylinder, tube, file, "
+                 "cad, found block and ball"}},
+        Refusal{"misspelt_surface",
+                {"33:16: contact.joint.master.surface.belnd: expected one of the keys facets, rpim, blend, found "
+                 "unknown key 'belnd' (did you mean 'blend'?)"}},
+        Refusal{"word_for_a_list", {"26:15: supports.side.fix: expected a list of x, y, z, found 'x'"}},
+        Refusal{"number_for_a_vector",
+                {"36:10: gravity: expected a list of three, each an acceleration (m/s^2) in [-1e+09, 1e+09], found "
+                 "'-9.81 m/s^2'"}},
+        Refusal{"half_a_step", {"42:12: stages.pull.steps: expected a whole number in [1, 1e+06], found '2.5'"}},
+        Refusal{"key_one_level_too_high",
+                {"46:1: pressure: expected one of the keys name, description, bodies, sets, supports, contact, "
+                 "gravity, stages, solver, output, expect, found unknown key 'pressure'"}},
+        Refusal{"incompressible",
+                {"9:39: bodies.base.material.linear_elastic.nu: expected a number in (-1, 0.5), found '0.5'"}},
+        Refusal{"unit_of_another_kind",
+                {"44:58: stages.pull.displacement.rear.x.unit: expected a unit of length such as m, found 'kPa' "
+                 "(pressure)"}}),
     [](const auto& test) { return std::string(test.param.scene); });
 
 const std::string press = scene_file("tests/scenes/press.yaml");

@@ -37,7 +37,7 @@ class Run : public Program {};
 TEST_F(Run, LeavesTheFilesOfTheContract) {
     const fs::path files = run(press, {"output.iterations=true"});
     EXPECT_THAT(names_in(files), ElementsAre("frames", "history.csv", "iterations.csv", "scene.yaml", "series.pvd",
-                                             "steps.csv", "summary.json"));
+                                             "show_in_paraview.py", "steps.csv", "summary.json"));
     std::set<std::string> frames;
     for (const char* part : {"base_0000?.vtu", "cap_0000?.vtu", "joint.slave_0000?.vtp", "joint.master_0000?.vtp"})
         for (const char number : {'0', '1', '2', '3', '4'}) {

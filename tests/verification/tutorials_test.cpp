@@ -55,5 +55,27 @@ TEST(Tutorials, RingIsBrakedByFrictionAlone) {
     EXPECT_LT(last.kinetic + last.strain + last.friction - last.external, 1.02 * first.kinetic);
 }
 
+TEST(Tutorials, PressedBlockStandsOnItsPressure) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/press_block.yaml"));
+    EXPECT_NEAR(run.steps.back().pairs[0].on_slave.z(), 1e5, 1) << "100 kPa on a square metre";
+}
+
+TEST(Tutorials, PulledBlockRubs) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/pull_block.yaml"));
+    const Vec3 force = run.steps.back().pairs[0].on_slave;
+    EXPECT_NEAR(force.z(), 1e5, 1);
+    EXPECT_NEAR(force.x(), -0.3 * force.z(), 1) << "mu = 0.3, against the pull";
+}
+
+TEST(Tutorials, PadOfAFileLeavesAPrint) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/pad_from_file.yaml"));
+    const auto force = [&](std::size_t step) { return run.steps[step].pairs[0].on_slave.z(); };
+    EXPECT_GT(force(0), 0);
+    EXPECT_GT(force(3), 4 * force(0)) << "the contact grows with the depth";
+}
+
 } // namespace
 } // namespace osculate

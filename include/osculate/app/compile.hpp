@@ -3,6 +3,7 @@
 
 #include "osculate/core/timing.hpp"
 #include "osculate/model/model.hpp"
+#include "osculate/output/probe.hpp"
 #include "osculate/scene/scene.hpp"
 #include "osculate/time/stepper.hpp"
 
@@ -27,16 +28,27 @@ struct PlanItem {
     PlanCost cost{}; ///< zeros where the part is left out, or where there is nothing worth counting
 };
 
+/// A probe, and how many accepted steps lie between its rows.
+struct PlannedProbe {
+    std::string name;
+    int every = 1;
+    std::unique_ptr<output::Probe> probe;
+};
+
 struct Plan {
     model::Model model;
     std::vector<time::Stage> stages;
     time::StepperOptions stepper;
     std::vector<Index> constrained_sets; ///< of model.sets, in the scene's order
+    std::vector<PlannedProbe> probes;
     std::vector<PlanItem> items;
+    std::vector<std::string> mesh_notes; ///< of build_meshes
 };
 
 /// Meshes of the scene's bodies, in its order. Throws SceneError for what cannot be generated or read.
-[[nodiscard]] std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene);
+/// @param notes  what was mended in meshes of files, and what is suspicious but allowed
+[[nodiscard]] std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene,
+                                                   std::vector<std::string>* notes = nullptr);
 
 /// Builds what the scene needs. Throws SceneError with every fault found: names without nodes or facets, bodies without
 /// support, initial overlaps, elements turned inside out.

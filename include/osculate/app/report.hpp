@@ -10,9 +10,6 @@ namespace osculate::app {
 /// Free displacement components, at the stage that has most of them.
 [[nodiscard]] Index degrees_of_freedom(const Plan& plan);
 
-/// Sizes, pairs, initial gaps and overlaps.
-[[nodiscard]] std::string report(const Plan& plan, int threads);
-
 /// What the plan contains, what it leaves out and why.
 [[nodiscard]] std::string explain(const Plan& plan);
 

@@ -31,8 +31,10 @@ struct CheckpointFile {
 /// Of nodes and elements of all bodies, placed as they are.
 [[nodiscard]] std::uint64_t fingerprint(const model::Model& model);
 
-/// A line that names the format, a checksum, CBOR.
+/// As a file holds it: sealed() CBOR.
 [[nodiscard]] std::string encode(const CheckpointFile& checkpoint);
+/// A line that names the format, the checksum of what follows, and that.
+[[nodiscard]] std::string sealed(std::string_view cbor);
 /// @throws std::runtime_error with what is wrong: no checkpoint, of another format, damaged, incomplete
 [[nodiscard]] CheckpointFile decode(std::string_view bytes);
 

@@ -16,6 +16,7 @@ struct Array {
     int components = 1;         ///< 1, 3, or 6: a symmetric tensor in Voigt order xx, yy, zz, xy, yz, zx
     std::vector<double> values; ///< (points * components), SI
     bool integer = false;       ///< values are whole numbers and are written as Int32
+    std::string unit{};         ///< SI, the array's UNITS_LABEL; empty: none
 };
 
 /// Writes a volume mesh, appended raw data with LZ4; `time` (s) becomes the field array TimeValue.

@@ -7,6 +7,8 @@
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/mesh/portion.hpp"
 #include "osculate/scene/course.hpp"
+#include "osculate/scene/named.hpp"
+#include "osculate/scene/output.hpp"
 
 #include <array>
 #include <map>
@@ -17,9 +19,6 @@
 #include <vector>
 
 namespace osculate::scene {
-
-/// Insertion-ordered name -> value map: the order of a scene file is kept.
-template <class T> using Named = std::vector<std::pair<std::string, T>>;
 
 // ---- meshes --------------------------------------------------------------------------------------------------------
 
@@ -83,8 +82,23 @@ struct TubeMesh {
 };
 
 struct FileMesh {
-    std::string path; ///< VTU file; the reader makes it absolute
+    std::string path;                ///< of a format that mesh::read_mesh_file knows; the reader makes it absolute
+    std::string part;                ///< element set, block, physical volume; empty: all of the file
+    int piece = 0;                   ///< connected piece of it, from 1; 0: all
+    std::vector<std::string> repair; ///< mesh::repair_words() or `all`
     bool operator==(const FileMesh&) const = default;
+};
+
+/// Geometry meshed by Gmsh.
+struct CadMesh {
+    std::string path;       ///< STEP, IGES or BREP file; the reader makes it absolute
+    double size = 0;        ///< largest edge length, m; 0: a tenth of the diagonal of the geometry's box
+    double smallest = 0;    ///< smallest edge length, m
+    int per_circle = 0;     ///< elements around a full circle; 0: curvature does not count
+    bool quadratic = false; ///< tet10; false: tet4
+    std::string part;
+    int piece = 0;
+    bool operator==(const CadMesh&) const = default;
 };
 
 /// Rigid placement applied after generation: x = scale * (rotation * X) + translation.
@@ -97,7 +111,7 @@ struct Placement {
 };
 
 struct MeshSpec {
-    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, TubeMesh, FileMesh> source;
+    std::variant<BlockMesh, HalfTubeMesh, ContactorMesh, BallMesh, CylinderMesh, TubeMesh, FileMesh, CadMesh> source;
     Placement placement;
     bool operator==(const MeshSpec&) const = default;
 };
@@ -300,21 +314,6 @@ struct Solver {
     LinearSolver linear_solver = LinearSolver::automatic;
     bool stabilisation = true; ///< springs under bodies that nothing holds yet, gone before a step is accepted
     bool operator==(const Solver&) const = default;
-};
-
-// ---- output --------------------------------------------------------------------------------------------------------------
-
-struct Output {
-    std::string template_name = "contact";  ///< or the absolute path of a template that is not a shipped one
-    std::vector<std::string> body_fields;   ///< displacement stress von_mises reaction
-    std::vector<std::string> slave_fields;  ///< gap contact_force normal_stress slip status normal area
-    std::vector<std::string> master_fields; ///< contact_force
-    bool history_pairs = true;
-    bool history_reactions = true;
-    bool iterations = false;    ///< write iterations.csv
-    int frame_every = 1;        ///< accepted steps between frames; 0 writes none
-    bool failed_iterate = true; ///< write the last iterate of a run that gives up
-    bool operator==(const Output&) const = default;
 };
 
 // ---- expectation ---------------------------------------------------------------------------------------------------------

@@ -1,0 +1,28 @@
+#pragma once
+/// Scenes from input decks of Abaqus and CalculiX.
+
+#include "osculate/mesh/deck.hpp"
+
+#include <string>
+#include <vector>
+
+namespace osculate::deck {
+
+/// Units that the numbers of a deck are in.
+enum class DeckUnits {
+    si, ///< m, kg, s
+    mm, ///< mm, t, s; so N and MPa
+};
+
+struct ImportedScene {
+    std::string text;                  ///< YAML, with comments
+    std::vector<std::string> left_out; ///< `file:line: what: why`, in order
+};
+
+/// The deck as a scene: a body per connected piece of its mesh, which is read from the deck itself, loads and supports by steps,
+/// contact pairs, materials. What has no counterpart, or another meaning, is listed in comments too.
+/// @param mesh_path  of the deck, as the scene is to name it
+/// Throws mesh::MeshError where the deck has no mesh fit for use, or no step that can be run.
+[[nodiscard]] ImportedScene import_deck(const mesh::Deck& deck, const std::string& mesh_path, DeckUnits units);
+
+} // namespace osculate::deck

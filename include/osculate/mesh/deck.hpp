@@ -1,0 +1,65 @@
+#pragma once
+/// Input decks of Abaqus and CalculiX: keyword lines with their data lines.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace osculate::mesh {
+
+/// A line of data, without comments and empty lines.
+struct DeckLine {
+    std::string_view text;
+    int line = 0; ///< 1-based
+    int file = 0; ///< of Deck::files
+};
+
+/// `*KEYWORD, PARAMETER=value, ...` and the data below it.
+struct DeckCard {
+    std::string keyword; ///< in capitals, without the star, one blank between words
+    std::vector<std::pair<std::string, std::string>> parameters; ///< names in capitals without blanks; values trimmed
+    int line = 0, file = 0;
+    std::size_t first = 0, last = 0; ///< of Deck::lines
+
+    /// A parameter's value, empty for one without; nullptr where it is not given.
+    [[nodiscard]] const std::string* parameter(std::string_view name) const;
+};
+
+struct Deck {
+    std::vector<std::string> files; ///< the deck and those that it includes
+    std::vector<DeckCard> cards;
+    std::vector<DeckLine> lines;
+    std::vector<std::shared_ptr<const std::string>> texts; ///< what the lines are views of
+
+    [[nodiscard]] std::string place(int file, int line) const { return files[file] + ":" + std::to_string(line); }
+    [[nodiscard]] std::string place(const DeckCard& card) const { return place(card.file, card.line); }
+    [[nodiscard]] std::string place(const DeckLine& line) const { return place(line.file, line.line); }
+    [[nodiscard]] auto begin(const DeckCard& card) const {
+        return lines.begin() + static_cast<std::ptrdiff_t>(card.first);
+    }
+    [[nodiscard]] auto end(const DeckCard& card) const {
+        return lines.begin() + static_cast<std::ptrdiff_t>(card.last);
+    }
+};
+
+/// Reads a deck and the files it includes (*INCLUDE, INPUT=file, from the folder of the file that names it).
+/// Throws MeshError: a file that cannot be read, inclusion deeper than 10, more than 4 GB, data before any keyword.
+[[nodiscard]] Deck read_deck(const std::filesystem::path& path);
+
+/// The same of a text that includes nothing. @param name  for messages
+[[nodiscard]] Deck parse_deck(std::string text, const std::string& name);
+
+/// Fields of a data line between commas, trimmed. A comma at the very end adds none.
+void split_fields(std::string_view line, std::vector<std::string_view>& fields);
+
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+[[nodiscard]] std::string in_capitals(std::string_view text);
+
+/// A number as Fortran reads it: signs, 1.D5, 1.E+5; false where it is none or not finite.
+[[nodiscard]] bool to_number(std::string_view text, double& value);
+[[nodiscard]] bool to_integer(std::string_view text, long long& value);
+
+} // namespace osculate::mesh

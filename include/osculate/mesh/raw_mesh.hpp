@@ -1,0 +1,45 @@
+#pragma once
+/// What a mesh file holds, in the file's own numbers, before a body is made of it.
+
+#include "osculate/mesh/mesh.hpp"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace osculate::mesh {
+
+/// A volume cell; nodes in the order of `CellType`.
+struct RawCell {
+    std::int64_t id = 0; ///< the file's
+    CellType type = CellType::hex8;
+    std::array<Index, 10> nodes{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+
+    [[nodiscard]] int count() const { return nodes_per_cell(type); }
+    [[nodiscard]] auto begin() const { return nodes.begin(); }
+    [[nodiscard]] auto end() const { return nodes.begin() + count(); }
+};
+
+/// A face of a cell by its points, in any orientation: 3 or 4 corners, or those of a six-node triangle with the points
+/// midway on the edges 01, 12, 20 behind them.
+struct RawFace {
+    std::array<Index, 6> nodes{-1, -1, -1, -1, -1, -1};
+    int count = 0;
+};
+
+struct RawMesh {
+    std::string file;
+    std::vector<Vec3> points;
+    std::vector<std::int64_t> point_ids; ///< the file's
+    std::vector<char> elsewhere;         ///< per point: a cell that is no volume uses it
+    std::vector<RawCell> cells;
+    std::map<std::string, std::vector<Index>> node_sets;
+    std::map<std::string, std::vector<RawFace>> surfaces;
+    std::map<std::string, std::vector<Index>> parts; ///< named sets of cells
+    bool sets_are_surfaces = false; ///< the exterior facets within a node set are the surface of its name
+    const char* cell_word = "element";
+    const char* point_word = "node";
+};
+
+} // namespace osculate::mesh

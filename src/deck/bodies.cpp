@@ -1,0 +1,206 @@
+#include "deck/bodies.hpp"
+
+#include "osculate/mesh/mesh_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace osculate::deck {
+namespace {
+
+/// Of a piece: the section of most of its elements.
+const DeckSection* section_of(DeckModel& model, const std::vector<Index>& cells, const std::vector<int>& section) {
+    std::map<int, std::size_t> count;
+    for (const Index c : cells) ++count[section[static_cast<std::size_t>(c)]];
+    const auto most =
+        std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most->first < 0) return nullptr;
+    const DeckSection& chosen = model.sections[static_cast<std::size_t>(most->first)];
+    for (const auto& [other, elements] : count)
+        if (other < 0 || model.sections[static_cast<std::size_t>(other)].material != chosen.material)
+            model.left_out.push_back(
+                {other < 0 ? chosen.place : model.sections[static_cast<std::size_t>(other)].place,
+                 fmt::format("{} elements of another material in the piece of '{}'", elements, chosen.elements),
+                 "a body has one material; it is that of most of its elements"});
+    return &chosen;
+}
+
+std::string formulation_of(const DeckModel& model, const std::vector<Index>& cells) {
+    std::map<std::string, std::size_t> count;
+    for (const Index c : cells)
+        ++count[model.mesh.types[static_cast<std::size_t>(model.mesh.type[static_cast<std::size_t>(c)])]];
+    const std::size_t plain = count["C3D8"], modes = count["C3D8I"] + count["C3D8R"];
+    return modes > plain ? "incompatible_modes" : "full";
+}
+
+} // namespace
+
+std::string scene_name(const std::string& name) {
+    std::string fit;
+    for (const char c : name) {
+        const bool good =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+        fit += good ? c : '_';
+    }
+    constexpr std::size_t longest = 60;
+    fit = fit.substr(0, longest);
+    if (fit.empty() || !std::isalpha(static_cast<unsigned char>(fit.front()))) fit = "n" + fit;
+    return fit;
+}
+
+std::string fresh_name(const std::string& wanted, std::set<std::string>& taken) {
+    std::string name = scene_name(wanted);
+    for (int k = 2; !taken.insert(name).second; ++k) name = scene_name(wanted) + "_" + std::to_string(k);
+    return name;
+}
+
+std::string in_quotes(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            result += std::string("\\") + c;
+        else if (code < 0x20 || code == 0x7f)
+            result += fmt::format("\\x{:02x}", code);
+        else
+            result += c;
+    }
+    return result + "\"";
+}
+
+std::vector<DeckBody> make_bodies(DeckModel& model) {
+    const mesh::RawMesh& raw = model.mesh.raw;
+    std::vector<Index> all(raw.cells.size());
+    std::iota(all.begin(), all.end(), 0);
+    const std::vector<int> piece = mesh::pieces_of(raw, all);
+    const int pieces = piece.empty() ? 0 : *std::max_element(piece.begin(), piece.end());
+    std::vector<int> section(raw.cells.size(), -1);
+    for (std::size_t s = 0; s < model.sections.size(); ++s)
+        for (const Index c : model.sections[s].cells) section[static_cast<std::size_t>(c)] = static_cast<int>(s);
+
+    std::vector<DeckBody> bodies(static_cast<std::size_t>(pieces));
+    for (std::size_t c = 0; c < piece.size(); ++c)
+        bodies[static_cast<std::size_t>(piece[c] - 1)].cells.push_back(static_cast<Index>(c));
+    std::map<const DeckSection*, int> pieces_of_section;
+    for (DeckBody& body : bodies) ++pieces_of_section[body.section = section_of(model, body.cells, section)];
+    std::set<std::string> taken;
+    std::map<const DeckSection*, int> seen;
+    mesh::MeshFileOptions options;
+    options.repairs.wanted[static_cast<std::size_t>(mesh::Repair::dangling_nodes)] = true;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        DeckBody& body = bodies[b];
+        const std::string wanted = body.section != nullptr ? body.section->elements : "body";
+        body.name = fresh_name(
+            pieces_of_section[body.section] > 1 ? wanted + "_" + std::to_string(++seen[body.section]) : wanted, taken);
+        body.piece = pieces > 1 ? static_cast<int>(b) + 1 : 0;
+        body.formulation = formulation_of(model, body.cells);
+        options.piece = body.piece;
+        body.mesh = mesh::make_mesh(raw, options);
+        body.exterior = mesh::exterior_facets(body.mesh);
+        std::vector<char> used(raw.points.size(), 0);
+        for (const Index c : body.cells)
+            for (const Index point : raw.cells[static_cast<std::size_t>(c)]) used[static_cast<std::size_t>(point)] = 1;
+        for (std::size_t p = 0; p < used.size(); ++p)
+            if (used[p]) body.points.push_back(static_cast<Index>(p));
+    }
+    return bodies;
+}
+
+DeckSets::DeckSets(const DeckModel& model, const std::vector<DeckBody>& bodies, double scale)
+    : model_(model), bodies_(bodies), scale_(scale), body_of_(model.mesh.raw.points.size(), -1),
+      node_of_(model.mesh.raw.points.size(), -1) {
+    Eigen::AlignedBox3d box;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (std::size_t n = 0; n < bodies[b].points.size(); ++n) {
+            const auto p = static_cast<std::size_t>(bodies[b].points[n]);
+            body_of_[p] = static_cast<int>(b);
+            node_of_[p] = static_cast<Index>(n);
+            box.extend(model.mesh.raw.points[p]);
+        }
+    constexpr double small = 1e-7; // of the extent: nodes stand further apart, and round-off is less
+    tolerance_ = small * box.diagonal().norm();
+}
+
+std::string DeckSets::add(std::size_t body, const std::string& wanted, const std::string& selection) {
+    const auto [known, fresh] = known_.try_emplace(std::to_string(body) + selection);
+    if (!fresh) return known->second;
+    known->second = fresh_name(wanted, taken_);
+    yaml_ += fmt::format("  {}: {{body: {}, {}}}\n", known->second, bodies_[body].name, selection);
+    return known->second;
+}
+
+Eigen::AlignedBox3d DeckSets::box_of(const std::vector<Index>& points) const {
+    Eigen::AlignedBox3d box;
+    for (const Index p : points) box.extend(model_.mesh.raw.points[static_cast<std::size_t>(p)]);
+    box.min().array() -= tolerance_;
+    box.max().array() += tolerance_;
+    return box;
+}
+
+std::string DeckSets::box_around(const std::vector<Index>& points) const {
+    const Eigen::AlignedBox3d box = box_of(points);
+    const Vec3 low = scale_ * box.min(), high = scale_ * box.max();
+    return fmt::format("box: {{min: [{:.9g}, {:.9g}, {:.9g}], max: [{:.9g}, {:.9g}, {:.9g}]}}", low[0], low[1], low[2],
+                       high[0], high[1], high[2]);
+}
+
+bool DeckSets::box_has_just(const DeckBody& body, const std::vector<Index>& points) const {
+    const Eigen::AlignedBox3d box = box_of(points);
+    std::size_t inside = 0;
+    for (const Vec3& x : body.mesh.nodes) inside += box.contains(x) ? 1 : 0;
+    return inside == points.size();
+}
+
+std::vector<std::string> DeckSets::of_points(std::size_t body, const std::vector<Index>& points,
+                                             const std::string& wanted) {
+    std::vector<Index> nodes;
+    for (const Index p : points) nodes.push_back(node_of(p));
+    for (const auto& [name, set] : bodies_[body].mesh.node_sets)
+        if (set == nodes) return {add(body, name, "nodes: " + in_quotes(name))};
+    if (box_has_just(bodies_[body], points)) return {add(body, wanted, box_around(points))};
+    std::vector<std::string> names;
+    for (const Index p : points)
+        names.push_back(add(body, wanted + "_" + std::to_string(model_.mesh.raw.point_ids[static_cast<std::size_t>(p)]),
+                            box_around({p})));
+    return names;
+}
+
+std::string DeckSets::of_facets(std::size_t body, const std::vector<Index>& facets, const std::string& wanted) {
+    const DeckBody& b = bodies_[body];
+    const auto key = [](const mesh::Facet& f) { return std::pair(f.block, std::pair(f.element, f.nodes)); };
+    std::set<std::pair<Index, std::pair<Index, std::array<Index, 4>>>> asked;
+    std::set<Index> nodes;
+    for (const Index f : facets) {
+        asked.insert(key(b.exterior[static_cast<std::size_t>(f)]));
+        for (const Index n : b.exterior[static_cast<std::size_t>(f)]) nodes.insert(n);
+    }
+    for (const auto& [name, surface] : b.mesh.surfaces)
+        if (surface.size() == asked.size() &&
+            std::all_of(surface.begin(), surface.end(), [&](const mesh::Facet& f) { return asked.contains(key(f)); }))
+            return add(body, name, "surface: " + in_quotes(name));
+    // A set of nodes stands for the facets within it.
+    std::size_t within = 0;
+    for (const mesh::Facet& f : b.exterior)
+        within += std::all_of(f.begin(), f.end(), [&](Index n) { return nodes.contains(n); }) ? 1 : 0;
+    if (within != asked.size()) return "";
+    std::vector<Index> points;
+    for (const Index n : nodes) points.push_back(b.points[static_cast<std::size_t>(n)]);
+    const std::vector<std::string> names =
+        box_has_just(b, points) || points.size() > 1 ? of_points(body, points, wanted) : std::vector<std::string>{};
+    return names.size() == 1 ? names.front() : "";
+}
+
+std::string DeckSets::of_surface(std::size_t body, const std::string& in_capitals) {
+    const mesh::Mesh& mesh = bodies_[body].mesh;
+    if (const auto at = model_.mesh.surface_names.find(in_capitals);
+        at != model_.mesh.surface_names.end() && mesh.surfaces.contains(at->second))
+        return add(body, at->second, "surface: " + in_quotes(at->second));
+    if (const auto at = model_.mesh.node_set_names.find(in_capitals);
+        at != model_.mesh.node_set_names.end() && mesh.node_sets.contains(at->second))
+        return add(body, at->second, "nodes: " + in_quotes(at->second));
+    return "";
+}
+
+} // namespace osculate::deck

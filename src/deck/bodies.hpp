@@ -1,0 +1,70 @@
+#pragma once
+/// The bodies of a deck, and sets of a scene for groups of their nodes and facets.
+
+#include "deck/model.hpp"
+#include "osculate/mesh/mesh.hpp"
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace osculate::deck {
+
+/// A connected piece of a deck's mesh.
+struct DeckBody {
+    std::string name; ///< fit for a scene
+    int piece = 0;    ///< as in a scene
+    std::vector<Index> cells;
+    mesh::Mesh mesh;
+    std::vector<Index> points; ///< of the deck, of every node
+    std::vector<mesh::Facet> exterior;
+    const DeckSection* section = nullptr; ///< the one that most of its elements have
+    std::string formulation;              ///< of its hexahedra
+};
+
+/// Letters, digits, _ and -, as scenes want names.
+[[nodiscard]] std::string scene_name(const std::string& name);
+
+/// A name that is not taken yet, which it is from then on.
+[[nodiscard]] std::string fresh_name(const std::string& wanted, std::set<std::string>& taken);
+
+/// Throws mesh::MeshError where a piece is no mesh fit for use. Adds to what the model leaves out.
+[[nodiscard]] std::vector<DeckBody> make_bodies(DeckModel& model);
+
+/// Sets of a scene, made as they are asked for.
+class DeckSets {
+public:
+    /// @param scale  metres per unit of the deck
+    DeckSets(const DeckModel& model, const std::vector<DeckBody>& bodies, double scale);
+
+    /// Names of sets that have just these points of a body: a node set of the deck, a box around them, or a box each.
+    std::vector<std::string> of_points(std::size_t body, const std::vector<Index>& points, const std::string& wanted);
+    /// A set with just these facets, empty where there is none. @param facets  of DeckBody::exterior
+    std::string of_facets(std::size_t body, const std::vector<Index>& facets, const std::string& wanted);
+    /// A surface of the deck, or a node set that serves as one; empty where the body has no share in it.
+    std::string of_surface(std::size_t body, const std::string& in_capitals);
+
+    [[nodiscard]] int body_of(Index point) const { return body_of_[static_cast<std::size_t>(point)]; }
+    [[nodiscard]] Index node_of(Index point) const { return node_of_[static_cast<std::size_t>(point)]; }
+    [[nodiscard]] const std::string& yaml() const { return yaml_; } ///< the entries of `sets`
+
+private:
+    std::string add(std::size_t body, const std::string& wanted, const std::string& selection);
+    std::string box_around(const std::vector<Index>& points) const;
+    bool box_has_just(const DeckBody& body, const std::vector<Index>& points) const;
+    Eigen::AlignedBox3d box_of(const std::vector<Index>& points) const;
+
+    const DeckModel& model_;
+    const std::vector<DeckBody>& bodies_;
+    double scale_, tolerance_;
+    std::vector<int> body_of_;
+    std::vector<Index> node_of_;
+    std::set<std::string> taken_;
+    std::map<std::string, std::string> known_; ///< body and selection -> name
+    std::string yaml_;
+};
+
+/// In double quotes, as YAML has it.
+[[nodiscard]] std::string in_quotes(const std::string& text);
+
+} // namespace osculate::deck

@@ -1,0 +1,435 @@
+#include "deck/model.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace osculate::deck {
+namespace {
+
+using mesh::DeckCard;
+using mesh::DeckLine;
+using mesh::in_capitals;
+using mesh::split_fields;
+using mesh::to_integer;
+using mesh::to_number;
+
+constexpr int components = 3;
+
+/// What these say is in the mesh, or has nothing to say.
+const std::set<std::string> read_elsewhere{"NODE",    "ELEMENT", "NSET",     "ELSET",
+                                           "SURFACE", "HEADING", "PREPRINT", "END STEP"};
+
+const std::map<std::string, const char*> reasons{
+    {"NODE PRINT", "what is written is chosen under output"},
+    {"EL PRINT", "what is written is chosen under output"},
+    {"NODE FILE", "what is written is chosen under output"},
+    {"EL FILE", "what is written is chosen under output"},
+    {"NODE OUTPUT", "what is written is chosen under output"},
+    {"ELEMENT OUTPUT", "what is written is chosen under output"},
+    {"CONTACT FILE", "what is written is chosen under output"},
+    {"CONTACT OUTPUT", "what is written is chosen under output"},
+    {"CONTACT PRINT", "what is written is chosen under output"},
+    {"OUTPUT", "what is written is chosen under output"},
+    {"FILE FORMAT", "what is written is chosen under output"},
+    {"CONTROLS", "the solver has settings of its own"},
+    {"EQUATION", "there are no equations between nodes"},
+    {"MPC", "there are no equations between nodes"},
+    {"RIGID BODY", "all bodies are elastic"},
+    {"PLASTIC", "all bodies are elastic"},
+    {"CYCLIC HARDENING", "all bodies are elastic"},
+    {"CREEP", "all bodies are elastic"},
+    {"EXPANSION", "there are no temperatures"},
+    {"CONDUCTIVITY", "there are no temperatures"},
+    {"SPECIFIC HEAT", "there are no temperatures"},
+    {"GAP CONDUCTANCE", "there are no temperatures"},
+    {"TEMPERATURE", "there are no temperatures"},
+    {"SURFACE BEHAVIOR", "contact is exact: no penetration, no law of overclosure"},
+    {"TIME POINTS", "frames are chosen under output"},
+    {"RESTART", "runs begin at the beginning"},
+};
+
+class Reader {
+public:
+    explicit Reader(const mesh::Deck& deck) : deck_(deck) { model_.mesh = mesh::read_deck_mesh(deck); }
+
+    DeckModel read() {
+        for (const DeckCard& card : deck_.cards) take(card);
+        if (step_ != nullptr && !step_taken_) drop_step("it has no analysis");
+        return std::move(model_);
+    }
+
+private:
+    void leave(const std::string& place, const std::string& what, const std::string& why) {
+        model_.left_out.push_back({place, what, why});
+    }
+    void leave(const DeckCard& card, const std::string& why) { leave(deck_.place(card), "*" + card.keyword, why); }
+
+    [[nodiscard]] static std::string capitals_of(const DeckCard& card, const char* name) {
+        const std::string* value = card.parameter(name);
+        return value == nullptr ? "" : in_capitals(*value);
+    }
+
+    /// Numbers of a data line; 0 for fields that are left empty or missing.
+    std::vector<double> numbers(const DeckLine& line, std::size_t least) {
+        split_fields(line.text, fields_);
+        std::vector<double> values(std::max(least, fields_.size()), 0.0);
+        for (std::size_t f = 0; f < fields_.size(); ++f)
+            if (!fields_[f].empty() && !to_number(fields_[f], values[f]))
+                leave(deck_.place(line), std::string(line.text.substr(0, 60)), "no number");
+        return values;
+    }
+
+    void take(const DeckCard& card) {
+        const std::string& word = card.keyword;
+        if (word == "STEP") return begin_step(card);
+        if (word == "END STEP") {
+            if (step_ != nullptr && !step_taken_) drop_step("it has no analysis");
+            step_ = nullptr;
+            return;
+        }
+        if (read_elsewhere.contains(word)) {
+            check_element_type(card);
+            return;
+        }
+        if (word == "MATERIAL") return begin_material(card);
+        if (word == "ELASTIC" || word == "DENSITY" || word == "HYPERELASTIC") return material_data(card);
+        if (word == "SOLID SECTION") return section(card);
+        if (word == "SURFACE INTERACTION") {
+            interaction_ = capitals_of(card, "NAME");
+            model_.friction.try_emplace(interaction_, 0.0);
+            return;
+        }
+        if (word == "FRICTION") return friction(card);
+        if (word == "CONTACT PAIR") return pair(card);
+        if (word == "AMPLITUDE") return amplitude(card);
+        if (word == "BOUNDARY") return boundary(card);
+        if (word == "CLOAD" && step_ != nullptr) return forces(card);
+        if ((word == "DLOAD" || word == "DSLOAD") && step_ != nullptr) return pressures(card);
+        if ((word == "STATIC" || word == "DYNAMIC") && step_ != nullptr) return analysis(card);
+        if (step_ != nullptr && !step_taken_ && is_analysis(word))
+            return drop_step("*" + word + " has no counterpart: statics and implicit dynamics do");
+        const auto reason = reasons.find(word);
+        leave(card, reason != reasons.end() ? reason->second : "it has no counterpart");
+    }
+
+    static bool is_analysis(const std::string& word) {
+        static const std::set<std::string> others{"FREQUENCY",
+                                                  "BUCKLE",
+                                                  "MODAL DYNAMIC",
+                                                  "STEADY STATE DYNAMICS",
+                                                  "HEAT TRANSFER",
+                                                  "VISCO",
+                                                  "NO ANALYSIS",
+                                                  "COMPLEX FREQUENCY",
+                                                  "ELECTROMAGNETICS",
+                                                  "GREEN",
+                                                  "CFD",
+                                                  "UNCOUPLED TEMPERATURE-DISPLACEMENT",
+                                                  "SENSITIVITY",
+                                                  "COUPLED TEMPERATURE-DISPLACEMENT"};
+        return others.contains(word);
+    }
+
+    void check_element_type(const DeckCard& card) {
+        if (card.keyword == "ELEMENT" && capitals_of(card, "TYPE") == "C3D8R")
+            leave(deck_.place(card), "*ELEMENT, TYPE=C3D8R",
+                  "hexahedra are integrated in full; incompatible_modes stands in, which does not lock either");
+    }
+
+    void begin_material(const DeckCard& card) {
+        const std::string* name = card.parameter("NAME");
+        material_ = name == nullptr ? "" : in_capitals(*name);
+        DeckMaterial& m = model_.materials[material_];
+        m.name = name == nullptr ? "" : *name;
+        m.place = deck_.place(card);
+    }
+
+    void material_data(const DeckCard& card) {
+        const auto found = model_.materials.find(material_);
+        if (found == model_.materials.end()) return leave(card, "no *MATERIAL stands before it");
+        if (card.first == card.last) return leave(card, "it has no data");
+        if (card.last - card.first > 1) leave(card, "only its first line counts: nothing depends on temperature");
+        const std::vector<double> v = numbers(*deck_.begin(card), 2);
+        if (card.keyword == "DENSITY") {
+            found->second.density = v[0];
+        } else if (card.keyword == "ELASTIC") {
+            const std::string type = capitals_of(card, "TYPE");
+            if (!type.empty() && type != "ISO" && type != "ISOTROPIC") return leave(card, "materials are isotropic");
+            found->second.elastic = {v[0], v[1]};
+        } else {
+            if (card.parameter("NEOHOOKE") == nullptr)
+                return leave(card, "NEO HOOKE is the only one that has a counterpart");
+            found->second.neo_hookean = {v[0], v[1]};
+            leave(card, "neo_hookean has the same moduli at small strain; at large strain its volumetric part differs");
+        }
+    }
+
+    void section(const DeckCard& card) {
+        DeckSection s;
+        s.place = deck_.place(card);
+        const std::string* name = card.parameter("ELSET");
+        s.elements = name == nullptr ? "" : *name;
+        s.material = capitals_of(card, "MATERIAL");
+        s.cells = cells_of(s.elements);
+        if (const auto at = model_.mesh.element_set_names.find(in_capitals(s.elements));
+            at != model_.mesh.element_set_names.end())
+            s.elements = at->second;
+        if (s.cells.empty()) return leave(card, "no element set '" + s.elements + "'");
+        if (card.parameter("ORIENTATION") != nullptr) leave(card, "ORIENTATION: materials are isotropic");
+        model_.sections.push_back(std::move(s));
+    }
+
+    std::vector<Index> cells_of(std::string_view name) const {
+        long long id = 0;
+        if (to_integer(name, id)) {
+            const Index cell = model_.mesh.cell(id);
+            return cell < 0 ? std::vector<Index>{} : std::vector<Index>{cell};
+        }
+        const auto at = model_.mesh.element_set_names.find(in_capitals(name));
+        return at == model_.mesh.element_set_names.end() ? std::vector<Index>{} : model_.mesh.raw.parts.at(at->second);
+    }
+
+    std::vector<Index> points_of(std::string_view name) const {
+        long long id = 0;
+        if (to_integer(name, id)) {
+            const Index point = model_.mesh.point(id);
+            return point < 0 ? std::vector<Index>{} : std::vector<Index>{point};
+        }
+        const auto at = model_.mesh.node_set_names.find(in_capitals(name));
+        return at == model_.mesh.node_set_names.end() ? std::vector<Index>{} : model_.mesh.raw.node_sets.at(at->second);
+    }
+
+    void friction(const DeckCard& card) {
+        if (step_ != nullptr)
+            return leave(card, "friction belongs to all stages: it stays what it is before the steps");
+        if (card.first == card.last || !model_.friction.contains(interaction_))
+            return leave(card, "no coefficient, or no *SURFACE INTERACTION before it");
+        const std::vector<double> v = numbers(*deck_.begin(card), 1);
+        if (v[0] < 0) return leave(card, "a negative coefficient");
+        model_.friction[interaction_] = v[0];
+        if (v.size() > 1 && v[1] != 0) leave(card, "its stick slope: nodes stick exactly");
+    }
+
+    void pair(const DeckCard& card) {
+        if (step_ != nullptr) return leave(card, "pairs belong to all stages");
+        DeckPair p;
+        p.interaction = capitals_of(card, "INTERACTION");
+        p.mortar = capitals_of(card, "TYPE") == "SURFACE TO SURFACE";
+        p.place = deck_.place(card);
+        for (const char* name : {"ADJUST", "SMALLSLIDING", "TIED"})
+            if (card.parameter(name) != nullptr)
+                leave(card, std::string(name) + ": nodes stay where they are, and slide as far as they do");
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            split_fields(line->text, fields_);
+            if (fields_.size() < 2) {
+                leave(deck_.place(*line), "a pair of one surface", "a body in contact with itself has no counterpart");
+                continue;
+            }
+            p.slave = in_capitals(fields_[0]);
+            p.master = in_capitals(fields_[1]);
+            model_.pairs.push_back(p);
+        }
+    }
+
+    void amplitude(const DeckCard& card) {
+        const std::string name = capitals_of(card, "NAME");
+        if (const std::string type = capitals_of(card, "DEFINITION"); !type.empty() && type != "TABULAR")
+            return leave(card, "only TABULAR amplitudes have a counterpart");
+        if (capitals_of(card, "TIME") == "TOTAL TIME" || card.parameter("USER") != nullptr ||
+            card.parameter("SHIFTX") != nullptr || card.parameter("SHIFTY") != nullptr)
+            return leave(card, "only amplitudes over the time of a step have a counterpart");
+        std::vector<double> all;
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line)
+            for (const double v : numbers(*line, 0)) all.push_back(v);
+        std::vector<std::array<double, 2>> rows;
+        for (std::size_t k = 0; k + 1 < all.size(); k += 2) rows.push_back({all[k], all[k + 1]});
+        for (std::size_t k = 1; k < rows.size(); ++k)
+            if (!(rows[k][0] > rows[k - 1][0])) return leave(card, "its times do not ascend");
+        if (rows.empty()) return leave(card, "it has no rows");
+        model_.amplitudes[name] = std::move(rows);
+    }
+
+    bool amplitude_of(const DeckCard& card, std::string& name) {
+        name = capitals_of(card, "AMPLITUDE");
+        if (name.empty() || model_.amplitudes.contains(name)) return true;
+        leave(card, "its amplitude '" + name + "' has no counterpart");
+        return false;
+    }
+
+    bool is_new(const DeckCard& card) const { return capitals_of(card, "OP") == "NEW"; }
+
+    void boundary(const DeckCard& card) {
+        std::vector<DeckValues>& held = step_ != nullptr ? step_->held : model_.held;
+        if (is_new(card) && step_ != nullptr) step_->forget_held = true;
+        DeckValues values;
+        if (!amplitude_of(card, values.amplitude)) return;
+        if (const std::string type = capitals_of(card, "TYPE"); !type.empty() && type != "DISPLACEMENT")
+            return leave(card, "TYPE=" + type + " has no counterpart");
+        for (const char* name : {"FIXED", "SUBMODEL", "USER", "LOADCASE"})
+            if (card.parameter(name) != nullptr) return leave(card, std::string(name) + " has no counterpart");
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            split_fields(line->text, fields_);
+            values.place = deck_.place(*line);
+            const std::string shown(line->text.substr(0, 60));
+            values.points = fields_.empty() ? std::vector<Index>{} : points_of(fields_[0]);
+            if (values.points.empty()) {
+                leave(values.place, shown, "no node or node set of that name");
+                continue;
+            }
+            values.value = 0;
+            long long first = 0, last = 0;
+            static const std::map<std::string, std::array<int, 2>> words{
+                {"ENCASTRE", {1, 3}}, {"PINNED", {1, 3}}, {"XSYMM", {1, 1}}, {"YSYMM", {2, 2}}, {"ZSYMM", {3, 3}}};
+            const auto word = fields_.size() > 1 ? words.find(in_capitals(fields_[1])) : words.end();
+            if (word != words.end()) {
+                first = word->second[0];
+                last = word->second[1];
+            } else {
+                const bool good = fields_.size() > 1 && to_integer(fields_[1], first) &&
+                                  (fields_.size() < 3 || fields_[2].empty() || to_integer(fields_[2], last)) &&
+                                  (fields_.size() < 4 || fields_[3].empty() || to_number(fields_[3], values.value));
+                if (fields_.size() < 3 || fields_[2].empty()) last = first;
+                if (!good || first < 1 || last < first) {
+                    leave(values.place, shown, "not understood");
+                    continue;
+                }
+            }
+            if (first > components) {
+                leave(values.place, shown, "nodes have three displacements");
+                continue;
+            }
+            values.first = static_cast<int>(first) - 1;
+            values.last = static_cast<int>(std::min<long long>(last, components)) - 1;
+            held.push_back(values);
+        }
+    }
+
+    void forces(const DeckCard& card) {
+        if (is_new(card)) step_->forget_forces = true;
+        DeckValues values;
+        if (!amplitude_of(card, values.amplitude)) return;
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            split_fields(line->text, fields_);
+            values.place = deck_.place(*line);
+            const std::string shown(line->text.substr(0, 60));
+            long long component = 0;
+            if (fields_.size() < 3 || !to_integer(fields_[1], component) || !to_number(fields_[2], values.value)) {
+                leave(values.place, shown, "not understood");
+                continue;
+            }
+            values.points = points_of(fields_[0]);
+            if (values.points.empty() || component < 1 || component > components) {
+                leave(values.place, shown,
+                      values.points.empty() ? "no node or node set of that name" : "nodes have forces alone");
+                continue;
+            }
+            values.first = values.last = static_cast<int>(component) - 1;
+            step_->forces.push_back(values);
+        }
+    }
+
+    void pressures(const DeckCard& card) {
+        if (is_new(card)) step_->forget_pressures = true;
+        const std::size_t before = step_->pressures.size();
+        std::string amplitude;
+        if (!amplitude_of(card, amplitude)) return;
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            split_fields(line->text, fields_);
+            const std::string place = deck_.place(*line), shown(line->text.substr(0, 60));
+            const std::string label = fields_.size() > 1 ? in_capitals(fields_[1]) : "";
+            if (label == "GRAV" && fields_.size() >= 6) {
+                gravity(place, shown, amplitude);
+                continue;
+            }
+            DeckPressure p;
+            p.amplitude = amplitude;
+            p.place = place;
+            if (fields_.size() < 3 || !to_number(fields_[2], p.value)) {
+                leave(place, shown, "not understood");
+                continue;
+            }
+            p.name = std::string(fields_[0]);
+            if (card.keyword == "DSLOAD") {
+                const auto at = model_.mesh.surface_names.find(in_capitals(fields_[0]));
+                if (label == "P" && at != model_.mesh.surface_names.end())
+                    p.faces = model_.mesh.raw.surfaces.at(at->second);
+            } else if (label.size() == 2 && label[0] == 'P' && label[1] >= '1' && label[1] <= '6') {
+                for (const Index c : cells_of(fields_[0]))
+                    if (const mesh::RawFace face = mesh::deck_face(model_.mesh.raw.cells[c], label[1] - '1');
+                        face.count > 0)
+                        p.faces.push_back(face);
+            }
+            if (p.faces.empty()) {
+                leave(place, shown, "only pressures on faces and gravity have a counterpart");
+            } else if (step_->pressures.size() > before && step_->pressures.back().value == p.value) {
+                DeckPressure& one = step_->pressures.back(); // element by element
+                one.faces.insert(one.faces.end(), p.faces.begin(), p.faces.end());
+            } else {
+                step_->pressures.push_back(std::move(p));
+            }
+        }
+    }
+
+    void gravity(const std::string& place, const std::string& shown, const std::string& amplitude) {
+        DeckGravity g;
+        double size = 0;
+        Vec3 direction;
+        bool good = to_number(fields_[2], size);
+        for (int d = 0; d < 3; ++d) good = good && to_number(fields_[3 + static_cast<std::size_t>(d)], direction[d]);
+        g.cells = cells_of(fields_[0]);
+        if (!good || g.cells.empty() || !(direction.norm() > 0)) return leave(place, shown, "not understood");
+        g.acceleration = size * direction.normalized();
+        g.amplitude = amplitude;
+        g.place = place;
+        step_->gravity.push_back(std::move(g));
+    }
+
+    void begin_step(const DeckCard& card) {
+        model_.steps.emplace_back();
+        step_ = &model_.steps.back();
+        step_taken_ = false;
+        step_->place = deck_.place(card);
+        step_->nlgeom = card.parameter("NLGEOM") != nullptr && capitals_of(card, "NLGEOM") != "NO";
+        if (card.parameter("PERTURBATION") != nullptr) drop_step("PERTURBATION has no counterpart");
+    }
+
+    /// Goes on reading into a step that is not kept, so that nothing of it reaches another.
+    void drop_step(const std::string& why) {
+        leave(step_->place, "*STEP", why + "; all of the step is left out");
+        model_.steps.pop_back();
+        step_ = &dropped_;
+        step_taken_ = true;
+    }
+
+    void analysis(const DeckCard& card) {
+        if (step_ == &dropped_) return;
+        step_taken_ = true;
+        step_->dynamic = card.keyword == "DYNAMIC";
+        if (step_->dynamic && card.parameter("EXPLICIT") != nullptr)
+            return drop_step("*DYNAMIC, EXPLICIT has no counterpart: dynamics are implicit");
+        step_->direct = card.parameter("DIRECT") != nullptr;
+        if (const std::string* alpha = card.parameter("ALPHA"); alpha != nullptr && !to_number(*alpha, step_->alpha))
+            leave(card, "ALPHA is no number");
+        if (step_->alpha < -1.0 / 3 || step_->alpha > 0) step_->alpha = -0.05;
+        if (card.first == card.last) return;
+        const std::vector<double> v = numbers(*deck_.begin(card), 2);
+        if (v[0] > 0) step_->increment = v[0];
+        step_->duration = v[1] > 0 ? v[1] : step_->increment;
+    }
+
+    const mesh::Deck& deck_;
+    DeckModel model_;
+    std::string material_, interaction_;
+    DeckStep* step_ = nullptr;
+    DeckStep dropped_;
+    bool step_taken_ = false;
+    std::vector<std::string_view> fields_;
+};
+
+} // namespace
+
+DeckModel read_deck_model(const mesh::Deck& deck) {
+    return Reader(deck).read();
+}
+
+} // namespace osculate::deck

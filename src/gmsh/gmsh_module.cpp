@@ -1,0 +1,280 @@
+/// mesh::read_gmsh and mesh::mesh_cad by Gmsh: a module of its own, as Gmsh and Open CASCADE are large and may be missing.
+
+#include "gmsh/check_msh.hpp"
+#include "osculate/core/without_traps.hpp"
+#include "osculate/mesh/gmsh.hpp"
+#include "osculate/mesh/mesh_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <gmsh.h>
+#include <limits>
+#include <unordered_map>
+
+namespace osculate::mesh {
+namespace {
+
+constexpr double millimetre = 1e-3;
+
+/// Gmsh while it is in use: silent, on one thread, without files or options of the user.
+class Session {
+public:
+    Session() {
+        gmsh::initialize(0, nullptr, false);
+        gmsh::option::setNumber("General.Terminal", 0);
+        gmsh::option::setNumber("General.NumThreads", 1);
+        gmsh::option::setNumber("General.AbortOnError", 2); // throws
+    }
+    ~Session() {
+        try {
+            gmsh::finalize();
+        } catch (...) { // nothing is left to be done
+        }
+    }
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+};
+
+/// What Gmsh throws, as MeshError.
+void guarded(const std::string& file, const std::function<void()>& act) {
+    const WithoutTraps gmsh;
+    try {
+        const Session session;
+        act();
+    } catch (const MeshError&) {
+        throw;
+    } catch (const std::string& reason) {
+        throw MeshError(file, "Gmsh: " + reason);
+    } catch (const std::exception& error) {
+        throw MeshError(file, std::string("Gmsh: ") + error.what());
+    } catch (...) {
+        throw MeshError(file, "Gmsh cannot read it");
+    }
+}
+
+std::string physical_name(int dimension, int tag) {
+    std::string name;
+    gmsh::model::getPhysicalName(dimension, tag, name);
+    return name.empty() ? "physical_" + std::to_string(tag) : name;
+}
+
+/// Our type of an element of Gmsh's, and the place of every node of ours among Gmsh's; nullptr where it has none.
+struct Translation {
+    int gmsh;
+    CellType type;
+    std::array<int, 10> nodes;
+};
+constexpr Translation translations[] = {{4, CellType::tet4, {0, 1, 2, 3}},
+                                        {5, CellType::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
+                                        {6, CellType::wedge6, {0, 2, 1, 3, 5, 4}},
+                                        {11, CellType::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}}};
+
+class Model {
+public:
+    Model(std::string file, RawMesh& raw, double unit) : raw_(raw), unit_(unit) { raw_.file = std::move(file); }
+
+    void take() {
+        take_nodes();
+        gmsh::vectorpair entities;
+        gmsh::model::getEntities(entities);
+        for (const auto& [dimension, tag] : entities) {
+            if (dimension == 3)
+                take_volume(tag);
+            else
+                take_boundary(dimension, tag);
+        }
+        for (auto& [name, set] : raw_.node_sets) {
+            std::sort(set.begin(), set.end());
+            set.erase(std::unique(set.begin(), set.end()), set.end());
+        }
+    }
+
+private:
+    struct Elements {
+        int type = 0, node_count = 0, dimension = 0;
+        std::string name;
+        std::vector<std::size_t> tags, nodes;
+    };
+
+    std::vector<Elements> elements_of(int dimension, int tag) const {
+        std::vector<int> types;
+        std::vector<std::vector<std::size_t>> tags, nodes;
+        gmsh::model::mesh::getElements(types, tags, nodes, dimension, tag);
+        std::vector<Elements> all;
+        for (std::size_t t = 0; t < types.size(); ++t) {
+            Elements& one = all.emplace_back();
+            one.type = types[t];
+            one.tags = std::move(tags[t]);
+            one.nodes = std::move(nodes[t]);
+            int order = 0, primary = 0;
+            std::vector<double> local;
+            gmsh::model::mesh::getElementProperties(one.type, one.name, one.dimension, order, one.node_count, local,
+                                                    primary);
+            if (one.nodes.size() != one.tags.size() * static_cast<std::size_t>(one.node_count))
+                throw MeshError(raw_.file, "elements with a wrong number of nodes");
+        }
+        return all;
+    }
+
+    void take_nodes() {
+        std::vector<std::size_t> tags;
+        std::vector<double> x, parametric;
+        gmsh::model::mesh::getNodes(tags, x, parametric);
+        if (tags.size() > std::numeric_limits<Index>::max() / 3) throw MeshError(raw_.file, "too many nodes");
+        std::vector<std::size_t> order(tags.size());
+        for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tags[a] < tags[b]; });
+        raw_.points.reserve(tags.size());
+        for (const std::size_t k : order) {
+            number_.emplace(tags[k], static_cast<Index>(raw_.points.size()));
+            raw_.point_ids.push_back(static_cast<std::int64_t>(tags[k]));
+            raw_.points.emplace_back(unit_ * x[3 * k], unit_ * x[3 * k + 1], unit_ * x[3 * k + 2]);
+        }
+        raw_.elsewhere.assign(raw_.points.size(), 0);
+    }
+
+    Index number(std::size_t tag) const {
+        const auto found = number_.find(tag);
+        if (found == number_.end())
+            throw MeshError(raw_.file, "an element has node " + std::to_string(tag) + ", which does not exist");
+        return found->second;
+    }
+
+    void take_volume(int tag) {
+        std::vector<Index> members;
+        for (const Elements& some : elements_of(3, tag)) {
+            const auto* to = std::find_if(std::begin(translations), std::end(translations),
+                                          [&](const Translation& one) { return one.gmsh == some.type; });
+            if (to == std::end(translations) && !some.tags.empty())
+                throw MeshError(raw_.file, "element " + std::to_string(some.tags.front()) + " is a " + some.name +
+                                               "; only tetrahedra of 4 or 10 nodes, wedges and hexahedra are read");
+            for (std::size_t e = 0; e < some.tags.size(); ++e) {
+                RawCell cell;
+                cell.id = static_cast<std::int64_t>(some.tags[e]);
+                cell.type = to->type;
+                for (int i = 0; i < cell.count(); ++i)
+                    cell.nodes[i] = number(some.nodes[e * static_cast<std::size_t>(some.node_count) +
+                                                      static_cast<std::size_t>(to->nodes[i])]);
+                members.push_back(static_cast<Index>(raw_.cells.size()));
+                raw_.cells.push_back(cell);
+            }
+        }
+        if (members.empty()) return;
+        for (const std::string& name : names_of(3, tag, "volume_")) {
+            std::vector<Index>& part = raw_.parts[name];
+            part.insert(part.end(), members.begin(), members.end());
+        }
+    }
+
+    /// Faces of surfaces, nodes of curves and points.
+    void take_boundary(int dimension, int tag) {
+        const std::vector<std::string> names = names_of(dimension, tag, dimension == 2 ? "face_" : "");
+        for (const Elements& some : elements_of(dimension, tag)) {
+            const int count = some.type == 2 ? 3 : some.type == 3 ? 4 : some.type == 9 ? 6 : 0;
+            for (std::size_t e = 0; e < some.tags.size(); ++e) {
+                const std::size_t* nodes = some.nodes.data() + e * static_cast<std::size_t>(some.node_count);
+                RawFace face;
+                face.count = count;
+                for (int i = 0; i < some.node_count; ++i) {
+                    const Index n = number(nodes[i]);
+                    raw_.elsewhere[static_cast<std::size_t>(n)] = 1;
+                    if (dimension < 2)
+                        for (const std::string& name : names) raw_.node_sets[name].push_back(n);
+                    else if (i < count)
+                        face.nodes[static_cast<std::size_t>(i)] = n;
+                }
+                if (dimension < 2 || names.empty()) continue;
+                if (count == 0) // no face of any cell that is read
+                    continue;
+                for (const std::string& name : names) raw_.surfaces[name].push_back(face);
+            }
+        }
+    }
+
+    /// Of the physical groups of an entity, of the entity itself, and its number behind a word, unless that is empty.
+    static std::vector<std::string> names_of(int dimension, int tag, const std::string& word) {
+        std::vector<std::string> names;
+        std::vector<int> groups;
+        gmsh::model::getPhysicalGroupsForEntity(dimension, tag, groups);
+        for (const int group : groups) names.push_back(physical_name(dimension, std::abs(group)));
+        std::string own;
+        gmsh::model::getEntityName(dimension, tag, own);
+        if (const std::size_t slash = own.rfind('/'); slash != std::string::npos) own.erase(0, slash + 1);
+        if (!own.empty() && !word.empty()) names.push_back(own);
+        if (!word.empty()) names.push_back(word + std::to_string(tag));
+        std::sort(names.begin(), names.end());
+        names.erase(std::unique(names.begin(), names.end()), names.end());
+        return names;
+    }
+
+    RawMesh& raw_;
+    double unit_;
+    std::unordered_map<std::size_t, Index> number_;
+};
+
+void check_exists(const std::string& path) {
+    if (!std::filesystem::is_regular_file(path)) throw MeshError(path, "no such file");
+}
+
+} // namespace
+} // namespace osculate::mesh
+
+using namespace osculate::mesh;
+
+extern "C" void osculate_gmsh_read(const std::string* path, RawMesh* mesh) {
+    check_exists(*path);
+    if (const std::string fault = fault_of_msh(*path); !fault.empty()) throw MeshError(*path, fault);
+    guarded(*path, [&] {
+        gmsh::open(*path);
+        Model(*path, *mesh, 1).take();
+    });
+}
+
+extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh) {
+    check_exists(options->file);
+    std::string ending = std::filesystem::path(options->file).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string format = ending == ".step" || ending == ".stp"   ? "step"
+                               : ending == ".iges" || ending == ".igs" ? "iges"
+                               : ending == ".brep"                     ? "brep"
+                                                                       : "";
+    if (format.empty())
+        throw MeshError(options->file,
+                        "no geometry has the ending '" + ending + "'; read are .step .stp .iges .igs .brep");
+    const double unit =
+        format == "brep" ? 1 : millimetre; // lengths in which Gmsh works: its tolerances fit millimetres
+    guarded(options->file, [&] {
+        gmsh::option::setString("Geometry.OCCTargetUnit", format == "brep" ? "" : "MM");
+        gmsh::vectorpair shapes;
+        gmsh::model::occ::importShapes(options->file, shapes, true, format);
+        gmsh::model::occ::synchronize();
+        gmsh::vectorpair volumes;
+        gmsh::model::getEntities(volumes, 3);
+        if (volumes.empty()) throw MeshError(options->file, "no solid; surfaces alone cannot be meshed");
+        double low[3], high[3], diagonal = 0;
+        gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
+        for (int d = 0; d < 3; ++d) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
+        diagonal = std::sqrt(diagonal);
+        const double size = options->size > 0 ? options->size / unit : 0.1 * diagonal;
+        // A box of elements of that size: what would not end is refused before it begins.
+        constexpr double most = 2e7;
+        const double boxes = (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) / (size * size * size);
+        if (boxes > most)
+            throw MeshError(options->file, "elements of that size would be more than 2e7: the geometry is " +
+                                               std::to_string(diagonal * unit) + " m across");
+        gmsh::option::setNumber("Mesh.MeshSizeMax", size);
+        gmsh::option::setNumber("Mesh.MeshSizeMin", options->smallest / unit);
+        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", options->per_circle);
+        gmsh::option::setNumber("Mesh.ElementOrder", options->quadratic ? 2 : 1);
+        gmsh::option::setNumber("Mesh.HighOrderOptimize", options->quadratic ? 1 : 0);
+        gmsh::option::setNumber("Mesh.Algorithm", 6);   // frontal Delaunay
+        gmsh::option::setNumber("Mesh.Algorithm3D", 1); // Delaunay; HXT works with threads
+        gmsh::option::setNumber("Mesh.RandomSeed", 1);
+        gmsh::model::mesh::generate(3);
+        Model(options->file, *mesh, unit).take();
+    });
+}

@@ -1,0 +1,59 @@
+#pragma once
+/// Elements of a body by number, and their shape functions by type.
+
+#include "osculate/core/error.hpp"
+#include "osculate/fe/reference_element.hpp"
+#include "osculate/model/model.hpp"
+
+#include <vector>
+
+namespace osculate::output {
+
+/// f.operator()<E>() for the reference element of a cell type.
+template <class F> decltype(auto) with_element(mesh::CellType type, F&& f) {
+    switch (type) {
+    case mesh::CellType::tet4: return f.template operator()<fe::Tet4>();
+    case mesh::CellType::wedge6: return f.template operator()<fe::Wedge6>();
+    case mesh::CellType::hex8: return f.template operator()<fe::Hex8>();
+    case mesh::CellType::tet10: return f.template operator()<fe::Tet10>();
+    }
+    throw InternalError("cell type without a reference element");
+}
+
+/// An element of a body.
+struct ElementOf {
+    Index block = 0, number = 0; ///< of the body's mesh; number within the block
+};
+
+/// Its nodes, local to the body.
+[[nodiscard]] inline std::vector<Index> nodes_of(const model::Body& body, const ElementOf& element) {
+    const mesh::ElementBlock& block = body.mesh.blocks[static_cast<std::size_t>(element.block)];
+    const auto n = static_cast<std::size_t>(nodes_per_cell(block.type));
+    const auto first = block.connectivity.begin() + static_cast<std::ptrdiff_t>(n) * element.number;
+    return {first, first + static_cast<std::ptrdiff_t>(n)};
+}
+
+/// Reference positions of those nodes, 3 x n, m.
+[[nodiscard]] inline Eigen::Matrix3Xd positions_of(const model::Body& body, const std::vector<Index>& nodes) {
+    Eigen::Matrix3Xd X(3, static_cast<Eigen::Index>(nodes.size()));
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        X.col(static_cast<Eigen::Index>(i)) = body.mesh.nodes[static_cast<std::size_t>(nodes[i])];
+    return X;
+}
+
+/// Their displacements, 3 x n, m. @param u  of all nodes
+[[nodiscard]] inline Eigen::Matrix3Xd displacements_of(const model::Body& body, const std::vector<Index>& nodes,
+                                                       const std::vector<Vec3>& u) {
+    Eigen::Matrix3Xd ue(3, static_cast<Eigen::Index>(nodes.size()));
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        ue.col(static_cast<Eigen::Index>(i)) = u[static_cast<std::size_t>(body.first_node + nodes[i])];
+    return ue;
+}
+
+/// f(element) for every element of a body.
+template <class F> void for_each_element(const model::Body& body, F&& f) {
+    for (std::size_t b = 0; b < body.mesh.blocks.size(); ++b)
+        for (Index e = 0; e < body.mesh.blocks[b].size(); ++e) f(ElementOf{static_cast<Index>(b), e});
+}
+
+} // namespace osculate::output

@@ -1,0 +1,69 @@
+#include "output/locate_point.hpp"
+
+#include "osculate/core/without_traps.hpp"
+#include "output/elements.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <limits>
+#include <optional>
+
+namespace osculate::output {
+
+namespace {
+
+constexpr double at_the_edge = 1e-9; ///< natural coordinates
+
+/// Whether shape functions at xi say that xi lies within the element: for a hexahedron by its coordinates.
+template <class E> bool is_inside(const Vec3& xi) {
+    if constexpr (std::is_same_v<E, fe::Hex8>)
+        return xi.cwiseAbs().maxCoeff() <= 1 + at_the_edge;
+    else if constexpr (std::is_same_v<E, fe::Wedge6>)
+        return xi.head<2>().minCoeff() >= -at_the_edge && xi.head<2>().sum() <= 1 + at_the_edge &&
+               E::node_positions().row(2).minCoeff() - at_the_edge <= xi.z() &&
+               xi.z() <= E::node_positions().row(2).maxCoeff() + at_the_edge;
+    else
+        return xi.minCoeff() >= -at_the_edge && xi.sum() <= 1 + at_the_edge;
+}
+
+/// Natural coordinates of X by Newton's method from the element's middle; none where they lie outside.
+template <class E>
+std::optional<Vec3> natural_coordinates(const Eigen::Matrix<double, 3, E::nodes>& nodes, const Vec3& X) {
+    constexpr int most_iterations = 30;
+    constexpr double far = 4; // of the middle: outside
+    const Vec3 middle = E::node_positions().rowwise().mean();
+    Vec3 xi = middle;
+    const WithoutTraps strange_elements;
+    for (int k = 0; k < most_iterations; ++k) {
+        const Vec3 miss = X - nodes * E::shape(xi);
+        const Mat3 J = nodes * E::gradient(xi);
+        const Vec3 step = J.partialPivLu().solve(miss);
+        if (!step.allFinite() || (xi + step - middle).norm() > far) return {};
+        xi += step;
+        if (step.norm() < 1e-14) break;
+    }
+    return is_inside<E>(xi) ? std::optional(xi) : std::nullopt;
+}
+
+} // namespace
+
+LocatedPoint locate_point(const model::Body& body, const Vec3& X) {
+    LocatedPoint found;
+    found.distance = std::numeric_limits<double>::infinity();
+    for_each_element(body, [&](const ElementOf& element) {
+        if (!found.place.points.empty()) return;
+        const std::vector<Index> nodes = nodes_of(body, element);
+        const Eigen::Matrix3Xd positions = positions_of(body, nodes);
+        Eigen::AlignedBox3d box(positions.rowwise().minCoeff(), positions.rowwise().maxCoeff());
+        found.distance = std::min(found.distance, box.exteriorDistance(X));
+        const Vec3 air = Vec3::Constant(at_the_edge * box.diagonal().norm());
+        box = Eigen::AlignedBox3d(box.min() - air, box.max() + air);
+        if (!box.contains(X)) return;
+        with_element(body.mesh.blocks[static_cast<std::size_t>(element.block)].type, [&]<class E>() {
+            if (const auto xi = natural_coordinates<E>(positions, X)) found.place = {nodes, E::shape(*xi)};
+        });
+    });
+    return found;
+}
+
+} // namespace osculate::output

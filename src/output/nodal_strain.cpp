@@ -1,0 +1,80 @@
+#include "output/nodal_strain.hpp"
+
+#include "osculate/fe/extrapolation.hpp"
+#include "osculate/fe/isoparametric_map.hpp"
+#include "output/elements.hpp"
+
+namespace osculate::output {
+
+namespace {
+
+/// Adds up values times volumes of the elements around each node.
+class NodalMean {
+public:
+    NodalMean(Index nodes, int components) : sum_(Matrix::Zero(components, nodes)), volume_(Vector::Zero(nodes)) {}
+
+    template <class Value> void add(Index node, const Value& value, double volume) {
+        sum_.col(node) += volume * value;
+        volume_(node) += volume;
+    }
+    [[nodiscard]] std::vector<double> values() {
+        for (Index i = 0; i < volume_.size(); ++i)
+            if (volume_(i) > 0) sum_.col(i) /= volume_(i);
+        return {sum_.data(), sum_.data() + sum_.size()};
+    }
+
+private:
+    Matrix sum_;
+    Vector volume_;
+};
+
+/// (6 x nodes of the element)
+template <fe::ReferenceElement E>
+Eigen::Matrix<double, 6, E::nodes> element_strain(const Eigen::Matrix<double, 3, E::nodes>& X,
+                                                  const Eigen::Matrix<double, 3, E::nodes>& u, bool linear) {
+    static const fe::ShapeTable<E> table(E::quadrature());
+    static const Eigen::Matrix<double, E::nodes, E::points> to_nodes = fe::extrapolation<E>();
+    const fe::ElementPoints<E> points(table, X);
+    Eigen::Matrix<double, 6, E::points> strain;
+    for (int q = 0; q < E::points; ++q) {
+        const Mat3 H = u * points.gradients[static_cast<std::size_t>(q)];
+        Mat3 e = (H + H.transpose()) / 2;
+        if (!linear) e += H.transpose() * H / 2;
+        strain.col(q) << e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(1, 2), e(2, 0);
+    }
+    return strain * to_nodes.transpose();
+}
+
+} // namespace
+
+std::vector<double> nodal_strain(const model::Body& body, const std::vector<Vec3>& u) {
+    NodalMean mean(body.nodes(), 6);
+    for_each_element(body, [&](const ElementOf& element) {
+        const auto block = static_cast<std::size_t>(element.block);
+        const fe::ElementKernel& kernel = *body.kernels[block];
+        const std::vector<Index> nodes = nodes_of(body, element);
+        const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, u);
+        const double volume = kernel.volume(X);
+        with_element(body.mesh.blocks[block].type, [&]<class E>() {
+            const auto strain = element_strain<E>(X, ue, kernel.linear());
+            for (int i = 0; i < E::nodes; ++i) mean.add(nodes[static_cast<std::size_t>(i)], strain.col(i), volume);
+        });
+    });
+    return mean.values();
+}
+
+std::vector<double> nodal_energy_density(const model::Body& body, const std::vector<Vec3>& u) {
+    NodalMean mean(body.nodes(), 1);
+    for_each_element(body, [&](const ElementOf& element) {
+        const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(element.block)];
+        const std::vector<Index> nodes = nodes_of(body, element);
+        const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, u);
+        const double volume = kernel.volume(X);
+        double energy = 0;
+        (void)kernel.energy(X, ue, energy); // 0 where it is not admissible, as in an iterate that failed
+        for (const Index node : nodes) mean.add(node, Eigen::Matrix<double, 1, 1>(energy / volume), volume);
+    });
+    return mean.values();
+}
+
+} // namespace osculate::output

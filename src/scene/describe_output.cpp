@@ -1,0 +1,172 @@
+/// The keys of `output`, which templates hold, too.
+
+#include "scene/describe.hpp"
+#include "scene/describe_parts.hpp"
+
+#include <algorithm>
+
+namespace osculate::scene {
+
+namespace {
+
+const Words body_fields{"displacement", "velocity",   "acceleration", "stress",   "strain",        "von_mises",
+                        "stress_max",   "stress_mid", "stress_min",   "reaction", "energy_density"};
+const Words slave_fields{"gap",       "contact_force", "normal_stress",       "slip",         "status",      "normal",
+                         "slip_rate", "area",          "tangential_traction", "friction_use", "master_facet"};
+const Words master_fields{"contact_force", "normal_stress"};
+const Words reductions{"mean", "max", "min", "sum"};
+
+void body(Visitor& v, std::string& name) {
+    v.text({.name = "body", .meaning = "Body.", .required = true, .names = Names::body}, name);
+}
+void pair(Visitor& v, std::string& name) {
+    v.text({.name = "pair", .meaning = "Contact pair.", .required = true, .names = Names::pair}, name);
+}
+void place(Visitor& v, const char* name, const char* meaning, Vec3& value) {
+    v.vector({.name = name, .meaning = meaning, .unit = dimension::length, .range = range::position, .required = true},
+             value);
+}
+void fields(Visitor& v, const Words& vocabulary, std::vector<std::string>& names, const char* usual) {
+    v.words({.name = "fields", .meaning = "Fields, see docs/output.md.", .default_text = usual}, vocabulary, names);
+}
+void reduce(Visitor& v, std::vector<std::string>& names, const char* usual) {
+    v.words({.name = "reduce", .meaning = "What becomes of the nodes' values.", .default_text = usual}, reductions,
+            names);
+}
+void samples(Visitor& v, int& count) {
+    v.integer({.name = "samples", .meaning = "Places, both ends among them.", .range = {.low = 2, .high = 100000}},
+              count);
+}
+
+void describe(Visitor& v, PointProbe& p) {
+    body(v, p.body);
+    place(v, "at", "Reference position.", p.at);
+    fields(v, body_fields, p.fields, "[displacement]");
+}
+void describe(Visitor& v, LineProbe& p) {
+    body(v, p.body);
+    place(v, "from", "Reference position of the first sample.", p.from);
+    place(v, "to", "Of the last one; samples outside of the body have no values.", p.to);
+    samples(v, p.samples);
+    fields(v, body_fields, p.fields, "[displacement, stress]");
+}
+void describe(Visitor& v, ContactLineProbe& p) {
+    pair(v, p.pair);
+    place(v, "from", "Start; each sample is taken at the closest point of the undeformed slave surface.", p.from);
+    place(v, "to", "End.", p.to);
+    samples(v, p.samples);
+    fields(v, slave_fields, p.fields, "[normal_stress]");
+}
+void describe(Visitor& v, NodesProbe& p) {
+    v.text({.name = "set", .meaning = "Set of nodes.", .required = true, .names = Names::set}, p.set);
+    fields(v, body_fields, p.fields, "[displacement]");
+    reduce(v, p.reduce, "[mean]");
+}
+void describe(Visitor& v, SlaveNodesProbe& p) {
+    pair(v, p.pair);
+    fields(v, slave_fields, p.fields, "[normal_stress]");
+    reduce(v, p.reduce, "[max]");
+}
+void describe(Visitor& v, SectionForceProbe& p) {
+    body(v, p.body);
+    place(v, "point", "A point of the plane; moments are about it.", p.point);
+    v.vector({.name = "normal",
+              .meaning = "Normal of the plane: the part it points into acts on the other one.",
+              .range = range::direction,
+              .required = true,
+              .direction = true},
+             p.normal);
+}
+
+void describe(Visitor& v, Probe& probe) {
+    static const Words tags{"point", "line", "contact_line", "nodes", "slave_nodes", "section_force"};
+    one_of(v, tags,
+           {"Fields at a point of a body.", "Fields along a line through a body.",
+            "Fields of the slave surface below a line.", "Fields of a set's nodes, reduced.",
+            "Fields of a pair's slave nodes, reduced.",
+            "Force and moment through a plane cut of a body, from the forces of the elements beside it."},
+           true, probe.kind, [&](auto& kind) { describe(v, kind); });
+    v.integer({.name = "every",
+               .meaning = "Accepted steps between rows; the last step has one always.",
+               .range = {.low = 1, .high = 1e6}},
+              probe.every);
+}
+
+void describe(Visitor& v, Curve& curve) {
+    v.text({.name = "rows", .meaning = "history, or the name of a probe."}, curve.rows);
+    v.text({.name = "x", .meaning = "Formula over the columns of that table."}, curve.x);
+    v.text({.name = "y",
+            .meaning = "Formula; pair.*.normal in it stands for every column that fits: a curve each, or none.",
+            .required = true},
+           curve.y);
+    v.text({.name = "where", .meaning = "Formula: rows where it is not 0.", .default_text = "all rows"}, curve.where);
+    v.flag({.name = "last", .meaning = "Only the rows of the last time."}, curve.last);
+}
+
+void describe(Visitor& v, Plot& plot) {
+    v.text({.name = "title", .meaning = "Title.", .default_text = "the plot's name"}, plot.title);
+    v.text({.name = "x_label", .meaning = "Label of the abscissa.", .default_text = "the formula"}, plot.x_label);
+    v.text({.name = "y_label", .meaning = "Label of the ordinate.", .default_text = "the formula"}, plot.y_label);
+    named(v, {.name = "curves", .meaning = "Curves by their title.", .required = true, .item = "curve"}, plot.curves,
+          [&](const std::string& name, Curve& curve) { v.group({.name = name}, [&] { describe(v, curve); }); });
+}
+
+} // namespace
+
+void describe_output(Visitor& v, Output& output) {
+    constexpr const char* from_template = "the template's";
+    v.words({.name = "body_fields", .meaning = "Fields of the bodies' frames.", .default_text = from_template},
+            body_fields, output.body_fields);
+    v.words({.name = "slave_fields", .meaning = "Fields of the slave surfaces' frames.", .default_text = from_template},
+            slave_fields, output.slave_fields);
+    v.words(
+        {.name = "master_fields", .meaning = "Fields of the master surfaces' frames.", .default_text = from_template},
+        master_fields, output.master_fields);
+    static const Words histories{"pairs", "reactions"};
+    std::vector<std::string> history;
+    if (output.history_pairs) history.push_back(histories[0]);
+    if (output.history_reactions) history.push_back(histories[1]);
+    v.words({.name = "history", .meaning = "Column groups of history.csv.", .default_text = from_template}, histories,
+            history);
+    output.history_pairs = std::ranges::count(history, histories[0]) > 0;
+    output.history_reactions = std::ranges::count(history, histories[1]) > 0;
+    v.flag({.name = "iterations", .meaning = "Write iterations.csv.", .default_text = from_template},
+           output.iterations);
+    v.integer({.name = "frame_every",
+               .meaning = "Accepted steps between frames; 0 writes none.",
+               .range = {.low = 0, .high = 1e6},
+               .default_text = from_template},
+              output.frame_every);
+    const auto group = [&v]<class T>(const std::string& name, T& value) {
+        v.group({.name = name}, [&] { describe(v, value); });
+    };
+    named(v,
+          {.name = "probes",
+           .meaning = "Values at places of the scene, into probes/NAME.csv; beside those of the template.",
+           .item = "probe"},
+          output.probes, group);
+    named(
+        v,
+        {.name = "plots",
+         .meaning = "Curves drawn at the end of the run, into plots/NAME.{csv,svg,png}; beside those of the template.",
+         .item = "plot"},
+        output.plots, group);
+    v.flag({.name = "paraview",
+            .meaning = "Write show_in_paraview.py beside the series, which shows it.",
+            .default_text = from_template},
+           output.paraview);
+    v.flag({.name = "report", .meaning = "Write a report at the end of the run.", .default_text = from_template},
+           output.report);
+    v.flag({.name = "failed_iterate",
+            .meaning =
+                "Where the run gives up, write the last iterate, its statuses and the forces out of balance as a "
+                "frame, into the folder failed."},
+           output.failed_iterate);
+}
+
+void describe_template(Visitor& v, std::string& extends, Output& output) {
+    v.text({.name = "extends", .meaning = "Template whose keys hold where this one has none."}, extends);
+    describe_output(v, output);
+}
+
+} // namespace osculate::scene

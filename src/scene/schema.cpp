@@ -1,0 +1,70 @@
+#include "osculate/scene/schema.hpp"
+
+#include "osculate/scene/surface_study.hpp"
+#include "scene/describe.hpp"
+#include "scene/schema_visitor.hpp"
+#include "scene/study_schema.hpp"
+
+namespace osculate::scene {
+
+namespace {
+
+std::string finished(const char* title, const Json& body) {
+    Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+    schema.update(body);
+    return schema.dump(1) + "\n";
+}
+
+/// The value, or what stands for it.
+void allow(Json& value, const Json& short_form) {
+    const Json described{{"description", value["description"]}};
+    value.erase("description");
+    Json either = described;
+    either["anyOf"] = Json::array({short_form, value});
+    value = std::move(either);
+}
+
+/// What expand_short_forms takes: a file's name for its map, true or false for its repairs, and
+/// `contact.<pair>.surface` for `contact.<pair>.master.surface`.
+void add_short_forms(Json& scene) {
+    Json& mesh = scene["properties"]["bodies"]["additionalProperties"]["properties"]["mesh"]["properties"];
+    allow(mesh["file"]["properties"]["repair"], {{"type", "boolean"}});
+    for (const char* tag : {"file", "cad"}) allow(mesh[tag], {{"type", "string"}, {"minLength", 1}});
+    Json& pair = scene["properties"]["contact"]["additionalProperties"];
+    Json surface = pair["properties"]["master"]["properties"]["surface"];
+    surface["description"] = "Short for master.surface.\n\n" + surface["description"].get<std::string>();
+    pair["properties"]["surface"] = std::move(surface);
+    pair["not"] = {{"type", "object"},
+                   {"required", {"surface", "master"}},
+                   {"properties", {{"master", {{"type", "object"}, {"required", {"surface"}}}}}}};
+}
+
+} // namespace
+
+std::string scene_schema() {
+    SchemaVisitor visitor;
+    Scene defaults;
+    Json schema = visitor.document([&] { describe(visitor, defaults); });
+    add_short_forms(schema);
+    return finished("Scene of Osculate", schema);
+}
+
+std::string template_schema() {
+    SchemaVisitor visitor;
+    Output defaults;
+    std::string extends;
+    return finished("Output template of Osculate",
+                    visitor.document([&] { describe_template(visitor, extends, defaults); }));
+}
+
+std::string study_schema(const std::vector<std::string>& methods) {
+    SchemaVisitor visitor;
+    SurfaceStudy defaults;
+    const Json surfaces = visitor.document([&] { describe(visitor, defaults, methods); });
+    // The branch is chosen as is_run_study() does, so that an editor speaks of the one study that is meant.
+    return finished(
+        "Study of Osculate",
+        {{"type", "object"}, {"if", {{"required", {"surfaces"}}}}, {"then", surfaces}, {"else", run_study_schema()}});
+}
+
+} // namespace osculate::scene

@@ -1,0 +1,100 @@
+#include "osculate/app/compile.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/scene/reader.hpp"
+#include "osculate/scene/writer.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+
+namespace osculate::app {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// Two cubes apart in one file, the second inside out and given twice, and a node that belongs to nothing.
+const std::string cubes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+                          "11,3,0,0\n12,4,0,0\n13,4,1,0\n14,3,1,0\n15,3,0,1\n16,4,0,1\n17,4,1,1\n18,3,1,1\n99,9,9,9\n"
+                          "*ELEMENT, TYPE=C3D8, ELSET=left\n1,1,2,3,4,5,6,7,8\n"
+                          "*ELEMENT, TYPE=C3D8, ELSET=right\n2,15,16,17,18,11,12,13,14\n3,15,16,17,18,11,12,13,14\n";
+
+class MeshFilesOfScenes : public ::testing::Test {
+protected:
+    std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "osculate_mesh_files_of_scenes";
+
+    void SetUp() override {
+        std::filesystem::create_directories(folder);
+        std::filesystem::current_path(folder);
+        std::ofstream("cubes.inp") << cubes;
+    }
+    void TearDown() override {
+        std::filesystem::current_path(std::filesystem::temp_directory_path());
+        std::filesystem::remove_all(folder);
+    }
+
+    static scene::Scene scene_with(const std::string& bodies) {
+        return scene::parse_scene("bodies:\n" + bodies + "stages:\n  rest: {}\n", "scene.yaml");
+    }
+};
+
+TEST_F(MeshFilesOfScenes, BodiesArePartsOfOneFileMendedAsAsked) {
+    const scene::Scene scene =
+        scene_with("  left:\n    mesh: {file: {path: cubes.inp, part: left, repair: [dangling_nodes]}}\n"
+                   "    material: {linear_elastic: {E: 1 MPa, nu: 0.2}}\n"
+                   "  right:\n    mesh: {file: {path: cubes.inp, piece: 2, repair: [inverted, "
+                   "degenerate, duplicate, dangling_nodes, coincident_nodes, non_manifold]}}\n"
+                   "    material: {linear_elastic: {E: 1 MPa, nu: 0.2}}\n");
+    std::vector<std::string> notes;
+    const auto meshes = build_meshes(scene, &notes);
+    EXPECT_EQ(meshes[0].nodes.front(), Vec3(0, 0, 0));
+    EXPECT_EQ(meshes[1].nodes.front(), Vec3(3, 0, 0));
+    EXPECT_EQ(meshes[1].element_count(), 1);
+    EXPECT_THAT(notes, ElementsAre(HasSubstr("body left: "), HasSubstr("dangling nodes left out: 99"),
+                                   HasSubstr("inverted elements turned over: 2"),
+                                   HasSubstr("duplicate elements left out: 3")));
+    EXPECT_EQ(scene::parse_scene(scene::write_scene(scene), "again.yaml").bodies, scene.bodies);
+}
+
+TEST_F(MeshFilesOfScenes, ShortFormsStandForAPathAndForAllRepairs) {
+    const scene::Scene all = scene_with("  b: {mesh: {file: {path: cubes.inp, repair: [all]}}, "
+                                        "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n");
+    const scene::Scene yes = scene_with("  b: {mesh: {file: {path: cubes.inp, repair: true}}, "
+                                        "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n");
+    EXPECT_EQ(all.bodies, yes.bodies);
+    EXPECT_EQ(build_meshes(all)[0].element_count(), 2);
+    const scene::Scene plain =
+        scene_with("  b: {mesh: {file: cubes.inp}, material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n");
+    try {
+        (void)build_meshes(plain);
+        FAIL() << "its faults are not mended";
+    } catch (const SceneError& error) {
+        EXPECT_EQ(error.faults().size(), 4u);
+        EXPECT_THAT(error.what(),
+                    AllOf(HasSubstr("bodies.b.mesh"), HasSubstr("node 99 belongs to nothing"),
+                          HasSubstr("element 2 is inverted"), HasSubstr("element 3 has the nodes of element 2")));
+    }
+}
+
+TEST_F(MeshFilesOfScenes, GeometryIsMeshedAsTheSceneSays) {
+    if (!OSCULATE_HAS_GMSH) GTEST_SKIP() << "built without Gmsh's library";
+    std::filesystem::copy_file(OSCULATE_SOURCE_DIR "/tests/mesh/data/quarter_cylinder.brep", "part.brep");
+    const scene::Scene scene = scene_with(
+        "  b:\n    mesh: {cad: {path: part.brep, size: 0.3 m, smallest: 0.05 m, per_circle: 12, quadratic: true, part: "
+        "volume_1, piece: 1}, scale: 0.1}\n"
+        "    material: {linear_elastic: {E: 1 MPa, nu: 0.2}}\n");
+    const mesh::Mesh fine = build_meshes(scene)[0];
+    EXPECT_EQ(fine.blocks.at(0).type, mesh::CellType::tet10);
+    EXPECT_TRUE(fine.surfaces.contains("face_1"));
+    double top = 0;
+    for (const Vec3& x : fine.nodes) top = std::max(top, x.z());
+    EXPECT_DOUBLE_EQ(top, 0.1);
+    EXPECT_EQ(scene::parse_scene(scene::write_scene(scene), "again.yaml").bodies, scene.bodies);
+    EXPECT_THROW((void)scene_with("  b: {mesh: {cad: {path: part.brep, size: 1 m, smallest: 2 m}}, "
+                                  "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"),
+                 SceneError);
+}
+
+} // namespace
+} // namespace osculate::app

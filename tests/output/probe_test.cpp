@@ -1,0 +1,152 @@
+#include "osculate/output/csv_reader.hpp"
+#include "osculate/output/probe.hpp"
+#include "osculate/output/probe_file.hpp"
+#include "output/temporary_folder.hpp"
+#include "output/two_blocks.hpp"
+
+#include <cmath>
+#include <gmock/gmock.h>
+
+namespace osculate::output {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double round_off = 1e-12;
+
+/// An affine displacement, small enough to do no harm.
+Vec3 affine(const Vec3& X) {
+    Mat3 A;
+    A << 1e-3, 2e-3, -3e-3, 4e-4, -5e-3, 6e-3, 7e-3, 8e-4, -9e-3;
+    return A * X + Vec3(0.1, -0.2, 0.3);
+}
+
+void move(TwoBlocks& blocks, Vec3 (*u)(const Vec3&)) {
+    for (std::size_t i = 0; i < blocks.model.X.size(); ++i) blocks.state.u[i] = u(blocks.model.X[i]);
+}
+
+std::vector<std::string> names(const Probe& probe) {
+    std::vector<std::string> names;
+    for (const ProbeColumn& column : probe.columns()) names.push_back(column.header());
+    return names;
+}
+
+TEST(PointProbe, IsExactForALinearDisplacement) {
+    TwoBlocks blocks;
+    move(blocks, affine);
+    const Vec3 X(1.337, 0.271, 0.618);
+    const auto probe = make_point_probe(blocks.model, 0, X, {"displacement"});
+    EXPECT_THAT(names(*probe), ElementsAre("displacement_x [m]", "displacement_y [m]", "displacement_z [m]"));
+    const auto rows = probe->rows(blocks.snapshot());
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_NEAR((Eigen::Map<const Vec3>(rows[0].data()) - affine(X)).norm(), 0, round_off);
+}
+
+TEST(PointProbe, IsExactInDistortedElementsOfEveryType) {
+    for (const mesh::CellType type :
+         {mesh::CellType::hex8, mesh::CellType::wedge6, mesh::CellType::tet4, mesh::CellType::tet10}) {
+        model::Model model;
+        const auto pattern = type == mesh::CellType::wedge6 ? mesh::BlockPattern::triangle : mesh::BlockPattern::quad;
+        const auto element = type == mesh::CellType::wedge6 ? mesh::CellType::hex8 : type;
+        model::Body body{"block", mesh::make_block({0, 0, 0}, {2, 1, 1}, {3, 2, 2}, element, pattern), 0, {}, 0};
+        ASSERT_EQ(body.mesh.blocks.front().type, type);
+        if (type != mesh::CellType::tet10) // whose edges stay straight
+            for (Vec3& X : body.mesh.nodes)
+                X += 0.05 * Vec3(std::sin(5 * X.y()), std::sin(4 * X.z()), std::sin(3 * X.x()));
+        const Vec3 X(1.01, 0.52, 0.53);
+        model.X = body.mesh.nodes;
+        model.bodies.push_back(std::move(body));
+        model::State state;
+        for (const Vec3& node : model.X) state.u.push_back(affine(node));
+        const auto rows = make_point_probe(model, 0, X, {"displacement"})->rows(Snapshot(model, state, {}));
+        EXPECT_NEAR((Eigen::Map<const Vec3>(rows[0].data()) - affine(X)).norm(), 0, round_off)
+            << static_cast<int>(type);
+    }
+}
+
+TEST(PointProbe, RefusesAPointOutsideAndSaysHowFar) {
+    const TwoBlocks blocks;
+    try {
+        (void)make_point_probe(blocks.model, 0, {1, 0.5, 1.25}, {"displacement"});
+        FAIL();
+    } catch (const std::invalid_argument& error) {
+        EXPECT_THAT(error.what(), HasSubstr("0.25 m"));
+    }
+}
+
+TEST(LineProbe, HasNoValuesOutsideOfItsBody) {
+    TwoBlocks blocks;
+    move(blocks, affine);
+    const auto probe = make_line_probe(blocks.model, 0, {-1, 0.5, 0.5}, {1, 0.5, 0.5}, 5, {"displacement", "strain"});
+    const auto rows = probe->rows(blocks.snapshot());
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(probe->columns().size(), 4U + 3 + 6);
+    EXPECT_TRUE(std::isnan(rows[1][4]));
+    EXPECT_EQ(rows[4][0], 2) << "distance from its start";
+    EXPECT_NEAR(rows[4][4], affine({1, 0.5, 0.5}).x(), round_off);
+    EXPECT_NEAR(rows[4][7], 1e-3, round_off) << "strain_xx";
+    EXPECT_NEAR(rows[4][10], 1.2e-3, round_off) << "strain_xy: half the angle";
+    EXPECT_THROW((void)make_line_probe(blocks.model, 0, {-1, 0, 2}, {1, 0, 2}, 5, {"strain"}), std::invalid_argument);
+}
+
+TEST(ContactLineProbe, LooksAtTheSlaveSurfaceBelowIt) {
+    const TwoBlocks blocks;
+    const auto probe = make_contact_line_probe(blocks.model, 0, {0.5, 0.5, 1.1}, {2.5, 0.5, 1.1}, 9,
+                                               {"normal_stress", "status", "gap"});
+    const auto rows = probe->rows(blocks.snapshot());
+    EXPECT_EQ(rows[2][1], 1.0);
+    EXPECT_NEAR(rows[2][3], 1, round_off) << "Z on the surface, not on the line";
+    EXPECT_NEAR(rows[2][4], 100 / 0.25, 1e-9);
+    EXPECT_NEAR(rows[6][4], 50 / 0.25, 1e-9) << "half way to where nothing touches";
+    EXPECT_EQ(rows[0][5], 1) << "sticks";
+    EXPECT_EQ(rows[3][5], 2) << "slips: the nearest node, no mean of statuses";
+    EXPECT_NEAR(rows[2][6], -0.01, round_off);
+    EXPECT_TRUE(std::isnan(rows[8][6])) << "no partner, no gap";
+}
+
+TEST(NodesProbe, ReducesWhatHasAValue) {
+    const TwoBlocks blocks;
+    model::Set set{"ends", 1, {12, 13, 23}, {}};
+    const auto nodes = make_nodes_probe(blocks.model, set, {"displacement"}, {"mean", "sum"});
+    EXPECT_EQ(names(*nodes).front(), "mean_displacement_x [m]");
+    EXPECT_NEAR(nodes->rows(blocks.snapshot())[0][0], 0.02, round_off);
+    EXPECT_NEAR(nodes->rows(blocks.snapshot())[0][5], -0.03, round_off);
+    const auto slaves = make_slave_nodes_probe(blocks.model, 0, {"gap", "normal_stress"}, {"min", "max"});
+    const auto row = slaves->rows(blocks.snapshot())[0];
+    EXPECT_NEAR(row[0], -0.01, round_off) << "those without a partner left out";
+    EXPECT_NEAR(row[3], 400, 1e-9);
+}
+
+TEST(SectionForceProbe, CarriesTheStressOfTheSection) {
+    TwoBlocks blocks;
+    move(blocks, [](const Vec3& X) { return Vec3(1e-3 * X.x(), 0, 0); });
+    const Vec3 P(0.9, 0.5, 0.5); // between the middles of the two elements: the cut goes along x = 1
+    const auto row = make_section_force_probe(blocks.model, 0, P, {1, 0, 0})->rows(blocks.snapshot())[0];
+    const double F = TwoBlocks::E * 1e-3; // on 1 m^2, nu = 0
+    EXPECT_NEAR(row[0], F, round_off * F) << "tension along the normal";
+    for (const std::size_t k : {1U, 2U, 3U, 4U, 5U}) EXPECT_NEAR(row[k], 0, round_off * F);
+    const auto back = make_section_force_probe(blocks.model, 0, P, {-1, 0, 0})->rows(blocks.snapshot())[0];
+    EXPECT_NEAR(back[0], -F, round_off * F) << "the other part on this one";
+    const auto aside = make_section_force_probe(blocks.model, 0, {1, 0.25, 0}, {1, 0, 0})->rows(blocks.snapshot())[0];
+    EXPECT_NEAR(aside[4], 0.5 * F, round_off * F) << "about a point half a metre below its middle";
+    EXPECT_NEAR(aside[5], -0.25 * F, round_off * F);
+    EXPECT_THROW((void)make_section_force_probe(blocks.model, 0, {3, 0, 0}, {1, 0, 0}), std::invalid_argument);
+}
+
+class ProbeFiles : public InTemporaryFolder {};
+
+TEST_F(ProbeFiles, HoldTimeUnitsAndEmptyCells) {
+    const TwoBlocks blocks;
+    const auto probe = make_contact_line_probe(blocks.model, 0, {0.5, 0.5, 1}, {2.5, 0.5, 1}, 2, {"gap"});
+    ProbeFile(folder, "line", *probe).write(blocks.snapshot());
+    EXPECT_EQ(content(ProbeFile::path(folder, "line")).substr(0, 44), "time [s],s [m],X [m],Y [m],Z [m],gap [m]\n2.5");
+    const NumberTable table = read_numbers(ProbeFile::path(folder, "line"));
+    EXPECT_TRUE(std::isnan(table.columns[5][1]));
+    EXPECT_EQ(name_of_column(table.names[5]), "gap");
+    ProbeFile::remove(folder);
+    EXPECT_FALSE(std::filesystem::exists(folder / "probes"));
+}
+
+} // namespace
+} // namespace osculate::output

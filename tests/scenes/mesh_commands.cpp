@@ -1,0 +1,61 @@
+#include "scenes/program.hpp"
+
+#include <gmock/gmock.h>
+
+namespace osculate::scenes {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Two cubes on top of each other, pressed.
+const std::string deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+                         "11,0,0,1\n12,1,0,1\n13,1,1,1\n14,0,1,1\n15,0,0,2\n16,1,0,2\n17,1,1,2\n18,0,1,2\n"
+                         "*ELEMENT, TYPE=C3D8, ELSET=cubes\n1,1,2,3,4,5,6,7,8\n2,11,12,13,14,15,16,17,18\n"
+                         "*NSET, NSET=floor, GENERATE\n1,4\n*NSET, NSET=sides, GENERATE\n11,18\n"
+                         "*SURFACE, NAME=low\n1,S2\n*SURFACE, NAME=up\n2,S1\n*SURFACE, NAME=lid\n2,S2\n"
+                         "*MATERIAL, NAME=m\n*ELASTIC\n1000.,.25\n*SOLID SECTION, ELSET=cubes, MATERIAL=m\n"
+                         "*CONTACT PAIR, INTERACTION=i, TYPE=NODE TO SURFACE\nup,low\n*SURFACE INTERACTION, NAME=i\n"
+                         "*BOUNDARY\nfloor,1,3\nsides,1,2\n"
+                         "*STEP\n*STATIC\n*DSLOAD\nlid,P,2.\n*NODE PRINT\nU\n*END STEP\n";
+
+class MeshCommand : public Program {
+protected:
+    void SetUp() override {
+        Program::SetUp();
+        std::ofstream(folder / "deck.inp") << deck;
+    }
+};
+
+TEST_F(MeshCommand, ShowsWhatAFileHolds) {
+    const Outcome outcome = osculate({"mesh", "deck.inp"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out,
+                AllOf(HasSubstr("16 nodes, 2 elements: 2 hex8\nfrom [0, 0, 0] to [1, 1, 2]\n"
+                                "part cubes: 2 elements\nsurface lid: 1 facets, area 1\n"),
+                      HasSubstr("nodes floor: 4\n"), HasSubstr("4 nodes at the place of another, not merged")));
+    EXPECT_THAT(osculate({"mesh", "deck.inp", "--piece", "2"}).out, HasSubstr("8 nodes, 1 elements"));
+    const Outcome merged = osculate({"mesh", "deck.inp", "--repair", "coincident_nodes"});
+    EXPECT_THAT(merged.out, AllOf(HasSubstr("12 nodes, 2 elements"), HasSubstr("4 nodes merged")));
+    const Outcome refused = osculate({"mesh", "deck.inp", "--part", "cube"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("no part is called 'cube'"));
+}
+
+TEST_F(MeshCommand, ImportedDecksPassTheCheckAndRun) {
+    const Outcome imported = osculate({"import", "deck.inp"});
+    EXPECT_EQ(imported.code, 0) << imported.err;
+    EXPECT_EQ(imported.err, "deck.inp:45: *NODE PRINT: what is written is chosen under output\n");
+    std::ofstream(folder / "imported.yaml") << imported.out;
+    const Outcome checked = osculate({"check", "imported.yaml"});
+    EXPECT_EQ(checked.code, 0) << checked.err;
+    EXPECT_THAT(checked.out, HasSubstr("pair up_on_low: 4 slave nodes, 1 master facets"));
+    ASSERT_EQ(osculate({"run", "imported.yaml", "-o", "run", "--quiet"}).code, 0);
+    EXPECT_NEAR(Csv(folder / "run/history.csv").number(0, "pair.up_on_low.normal"), 2, 1e-9);
+    const Outcome refused = osculate({"import", "none.inp"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("none.inp: no such file"));
+}
+
+} // namespace
+} // namespace osculate::scenes

@@ -377,9 +377,6 @@ only. Those said to be views are the run's own memory: they change as it goes on
             },
             py::arg("name"))
         .def_property_readonly(
-            "report", [](const Session& self) { return app::report(self.loaded().plan, self.threads()); },
-            "Sizes, pairs, initial gaps and overlaps: what `osculate check` says.")
-        .def_property_readonly(
             "explain", [](const Session& self) { return app::explain(self.loaded().plan); },
             "What the run holds, what is left out and why.")
         .def("__repr__", [](const Session& self) {

@@ -52,8 +52,7 @@ MESHES = (
 # package, file, part, tet10
 GEOMETRIES = (
     ("gmsh-doc", "/usr/share/doc/gmsh-doc/doc/gmsh/tutorial/t20_data.step.gz", "", False),
-    ("gmsh-doc", "/usr/share/doc/gmsh-doc/doc/gmsh/demos/boolean/component8.step.gz", "", False),
-    ("calculix-cgx-examples", "/usr/share/doc/calculix-cgx-examples/examples/cad/halter.stp", "volume_1", False),
+    ("gmsh-doc", "/usr/share/doc/gmsh-doc/doc/gmsh/demos/boolean/component8.step.gz", "", True),
 )
 # deck, what it is
 DECKS = (

@@ -95,6 +95,15 @@ public:
         }
     }
 
+    /// Puts points on a grid of 1e-10 of the mesh's extent: Gmsh's differ in their last digit from run to run.
+    void round_points() {
+        Eigen::AlignedBox3d box;
+        for (const Vec3& x : raw_.points) box.extend(x);
+        if (box.isEmpty() || !(box.diagonal().norm() > 0)) return;
+        const double step = std::ldexp(1.0, std::ilogb(box.diagonal().norm()) - 32);
+        for (Vec3& x : raw_.points) x = step * (x / step).array().round().matrix();
+    }
+
     /// Makes tet4 cells tet10, with the middle nodes of edges of the boundary on the geometry. Gmsh's own middle nodes
     /// differ in their last digits from run to run.
     void add_middle_nodes() {
@@ -354,6 +363,10 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
         gmsh::model::mesh::generate(3);
         Model model(options->file, *mesh, unit);
         model.take();
-        if (options->quadratic) model.add_middle_nodes();
+        model.round_points();
+        if (options->quadratic) {
+            model.add_middle_nodes();
+            model.round_points();
+        }
     });
 }

@@ -164,7 +164,7 @@ def write_block(n):
 
 
 def speed(program):
-    lines = ["| file | MB | 125 000 hexahedra, s | 1 000 000, s | memory, MB | power |", "|---" * 6 + "|"]
+    lines = ["| file | MB | 125 000 hexahedra, s | 1 000 000, s | power |", "|---" * 5 + "|"]
     seconds = {}
     for n in (50, 100):
         for name in write_block(n):
@@ -174,10 +174,10 @@ def speed(program):
             _, status, used = os.wait4(child, 0)
             if status:
                 raise Failure(f"{name} with {n}^3 elements cannot be read")
-            seconds[name, n] = used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3, (OUT / name).stat().st_size / 1e6
+            seconds[name, n] = used.ru_utime + used.ru_stime, (OUT / name).stat().st_size / 1e6
     for name in write_block(1):
-        (small, _, _), (large, memory, size) = seconds[name, 50], seconds[name, 100]
-        lines.append(f"| {name} | {size:.0f} | {small:.2f} | {large:.2f} | {memory:.0f} | {math.log(large / small) / math.log(8):.2f} |")
+        (small, _), (large, size) = seconds[name, 50], seconds[name, 100]
+        lines.append(f"| {name} | {size:.0f} | {small:.2f} | {large:.2f} | {math.log(large / small) / math.log(8):.2f} |")
     return lines
 
 

@@ -26,7 +26,7 @@ TABLES = ("history.csv", "steps.csv", "iterations.csv")
 def contents(run):
     """Bytes by path of all that a run decides."""
     return {str(path.relative_to(run)): path.read_bytes() for path in sorted(run.rglob("*"))
-            if path.is_file() and path.name not in ("summary.json", "paraview.py") and path.suffix != ".part"
+            if path.is_file() and path.name != "summary.json" and path.suffix != ".part"
             and "checkpoint" not in path.relative_to(run).parts}
 
 

@@ -9,6 +9,7 @@
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
+#include "osculate/app/run_report.hpp"
 #include "osculate/app/surface_study.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
@@ -49,12 +50,12 @@ struct Arguments {
                 checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every)};
     }
     [[nodiscard]] std::vector<scene::Override> overrides() const {
-        std::vector<scene::Override> list;
+        std::vector<scene::Override> result;
         for (const std::string& change : changes) {
             const std::size_t equals = change.find('=');
-            list.push_back({change.substr(0, equals), change.substr(equals + 1)});
+            result.push_back({change.substr(0, equals), change.substr(equals + 1)});
         }
-        return list;
+        return result;
     }
 };
 
@@ -127,6 +128,15 @@ void show_run(const output::Summary& summary, const Arguments& arguments, const 
     print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}{}/history.csv\n", summary.scene,
                       summary.steps.accepted, summary.iterations, summary.total_seconds,
                       frames ? folder + "/series.pvd and " : "", folder));
+}
+
+void report_run(const std::string& folder) {
+    const WrittenReport report = write_report(folder);
+    constexpr double mega = 1e6;
+    print(fmt::format("{} ({:.1f} MB); pictures and plots in {}\n", report.page.string(),
+                      static_cast<double>(std::filesystem::file_size(report.page)) / mega,
+                      (report.page.parent_path() / "report").string()));
+    for (const std::string& note : report.notes) print("  " + note + "\n");
 }
 
 void run_study(Arguments arguments) {
@@ -211,6 +221,9 @@ ExitCode run_command(int argc, char** argv) {
     CLI::App* study = add_study_command(program, arguments);
     CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
     steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    CLI::App* report_page =
+        program.add_subcommand("report", "Write report.html of a run: one file that shows it, to mail or to keep");
+    report_page->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     CLI::App* mesh = program.add_subcommand("mesh", "Show what a mesh file holds: sizes, parts, surfaces, node sets");
     mesh->add_option("FILE", arguments.mesh.file, "Mesh file")->required();
     mesh->add_option("--part", arguments.mesh.part, "Only this part")->type_name("NAME");
@@ -262,6 +275,8 @@ ExitCode run_command(int argc, char** argv) {
         print(arguments.list ? tutorial_list() : init_scene(arguments.scene, arguments.output));
     } else if (*steps) {
         print(diary(arguments.run_folder));
+    } else if (*report_page) {
+        report_run(arguments.run_folder);
     } else {
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
@@ -280,6 +295,9 @@ int command_line(int argc, char** argv) {
         return run_command(argc, argv);
     } catch (const SceneError& error) {
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
+        return bad_scene;
+    } catch (const ReportFailure& error) {
+        fmt::print(stderr, "the report cannot be written: {}\n", error.what());
         return bad_scene;
     } catch (const Interrupted& error) {
         fmt::print(stderr, "{}\n", error.what());

@@ -27,7 +27,8 @@ std::vector<ExpandedFormula> expanded(const std::string& formula, const std::vec
     const std::string before = found[1], after = found[2];
     std::vector<ExpandedFormula> all;
     for (const std::string& name : formula_names(columns)) {
-        if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) continue;
+        if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
+            continue;
         const std::string match = name.substr(before.size(), name.size() - before.size() - after.size());
         all.push_back({std::regex_replace(formula, starred(), "$1" + match + "$2"), match, false});
     }

@@ -127,7 +127,8 @@ Attempt read_attempt(LineReader& line) {
     throw SceneError({{where.string(), line, 1, "", expected, found, ""}});
 }
 
-std::vector<Attempt> read_steps(const fs::path& folder) {
+/// @param cut_off  whether a last line without its end is left out; otherwise it is a fault
+std::vector<Attempt> read_steps(const fs::path& folder, bool cut_off) {
     if (!fs::is_directory(folder))
         refuse(folder, 0, "the folder of a run", fs::exists(folder) ? "a file" : "nothing of that name");
     const fs::path path = folder / "steps.csv";
@@ -143,6 +144,7 @@ std::vector<Attempt> read_steps(const fs::path& folder) {
     int number = 0;
     while (std::getline(stream, text)) {
         ++number;
+        if (stream.eof() && cut_off) break;
         if (stream.eof())
             refuse(path, number, "a line end", "'" + text + "', where the file stops: it has been cut off");
         if (text.ends_with('\r')) text.pop_back(); // saved by a spreadsheet
@@ -154,7 +156,7 @@ std::vector<Attempt> read_steps(const fs::path& folder) {
         attempts.push_back(read_attempt(line));
         faults.insert(faults.end(), line.faults().begin(), line.faults().end());
     }
-    if (number == 0) refuse(path, 1, "the column names " + header, "an empty file");
+    if (number == 0 && !cut_off) refuse(path, 1, "the column names " + header, "an empty file");
     if (!faults.empty()) throw SceneError(faults);
     return attempts;
 }
@@ -274,10 +276,18 @@ std::string post_mortem(const fs::path& folder) {
 
 std::string diary(const fs::path& folder) {
     const WithoutTraps nan; // values of failed solves may have to be printed
-    const std::vector<Attempt> attempts = read_steps(folder);
+    const std::vector<Attempt> attempts = read_steps(folder, false);
     const std::string end = post_mortem(folder);
     if (attempts.empty()) return end.empty() ? "no attempt yet\n" : "no attempt was made\n" + end;
     return attempts_table(attempts) + '\n' + totals(attempts) + rejections_table(attempts) + end;
+}
+
+std::vector<Attempt> attempts_so_far(const fs::path& folder) {
+    return read_steps(folder, true);
+}
+
+std::string summary_of(const std::vector<Attempt>& attempts) {
+    return attempts.empty() ? "no attempt yet\n" : totals(attempts) + rejections_table(attempts);
 }
 
 } // namespace osculate::app

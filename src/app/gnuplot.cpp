@@ -1,6 +1,7 @@
 #include "app/gnuplot.hpp"
 
 #include <cerrno>
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,12 +13,13 @@ std::string gnuplot_text(const std::string& text) {
     return result + "'";
 }
 
-Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script) {
+Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script, bool quiet) {
     constexpr int not_found = 127, not_there = 126; // as shells have it
     const pid_t child = fork();
     if (child < 0) return Gnuplot::failed;
     if (child == 0) {
         if (chdir(folder.c_str()) != 0) _exit(not_there);
+        if (const int nowhere = quiet ? open("/dev/null", O_WRONLY) : -1; nowhere >= 0) dup2(nowhere, STDERR_FILENO);
         execlp("gnuplot", "gnuplot", script.c_str(), static_cast<char*>(nullptr));
         _exit(errno == ENOENT ? not_found : not_there);
     }

@@ -16,7 +16,7 @@ inline constexpr std::array gnuplot_colours{"#d55e00", "#0072b2", "#111111", "#0
 
 enum class Gnuplot { drawn, missing, failed };
 
-/// Runs gnuplot on a script in its folder and waits for it.
-[[nodiscard]] Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script);
+/// Runs gnuplot on a script in its folder and waits for it. @param quiet  its warnings are of no concern
+[[nodiscard]] Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script, bool quiet = false);
 
 } // namespace osculate::app

@@ -79,19 +79,21 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
         return std::ranges::any_of(of_stress, [&](const char* field) { return probe.probe->reads(field); });
     });
     const bool stresses =
-        in_probes || (frames && std::ranges::any_of(of_stress, [&](const char* f) { return names(out.body_fields, f); }));
+        in_probes ||
+        (frames && std::ranges::any_of(of_stress, [&](const char* f) { return names(out.body_fields, f); }));
     double elements = 0;
     for (const model::Body& body : model.bodies) elements += static_cast<double>(body.mesh.element_count());
     list.say("nodal stresses", stresses,
              in_probes  ? "a probe needs them"
              : stresses ? "a field of frames needs them"
-             : !frames ? "no frame is written"
-                       : not_asked,
+             : !frames  ? "no frame is written"
+                        : not_asked,
              {0, elements, in_probes ? "elements a row" : "elements a frame"});
 
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
     const bool in_frames = frames && names(out.body_fields, "reaction");
-    const bool read = std::ranges::any_of(plan.probes, [](const PlannedProbe& p) { return p.probe->reads("reaction"); });
+    const bool read =
+        std::ranges::any_of(plan.probes, [](const PlannedProbe& p) { return p.probe->reads("reaction"); });
     list.say("nodal reactions", reactions || in_frames || read,
              reactions   ? "history.csv sums them"
              : read      ? "a probe needs them"

@@ -30,7 +30,8 @@ constexpr const char* history_rows = "history";
 /// Columns by the table's name. @param all  with those that dynamic scenes alone have
 std::vector<std::string> columns_of(const scene::Scene& scene, const Plan& plan, const std::string& rows, bool all) {
     if (rows == history_rows) {
-        const bool dynamic = std::ranges::any_of(plan.stages, [](const auto& stage) { return stage.dynamics.has_value(); });
+        const bool dynamic =
+            std::ranges::any_of(plan.stages, [](const auto& stage) { return stage.dynamics.has_value(); });
         return output::History::columns(plan.model, scene.output.history_pairs,
                                         scene.output.history_reactions ? plan.constrained_sets : std::vector<Index>{},
                                         dynamic || all);
@@ -47,8 +48,8 @@ void check_curve(const scene::Scene& scene, const Plan& plan, const std::string&
     std::vector<std::string> tables{history_rows};
     for (const PlannedProbe& probe : plan.probes) tables.push_back(probe.name);
     if (std::ranges::count(tables, curve.rows) == 0) {
-        faults.push_back(fault(key + ".rows", fmt::format("a table: {}", fmt::join(tables, ", ")),
-                               "'" + curve.rows + "'"));
+        faults.push_back(
+            fault(key + ".rows", fmt::format("a table: {}", fmt::join(tables, ", ")), "'" + curve.rows + "'"));
         faults.back().nearest = scene::nearest(curve.rows, tables);
         return;
     }
@@ -78,8 +79,7 @@ struct DrawnCurve {
 
 /// A table of the run, names without units.
 scene::Rows read_table(const fs::path& folder, const std::string& rows) {
-    const fs::path path =
-        rows == history_rows ? folder / "history.csv" : output::ProbeFile::path(folder, rows);
+    const fs::path path = rows == history_rows ? folder / "history.csv" : output::ProbeFile::path(folder, rows);
     output::NumberTable table = output::read_numbers(path);
     for (std::string& name : table.names) name = output::name_of_column(name);
     return {formula_names(table.names), std::move(table.columns)};
@@ -114,8 +114,9 @@ void write_csv(const fs::path& path, const std::vector<DrawnCurve>& curves) {
 
 /// A script that draws NAME.svg and NAME.png, its data inside.
 std::string script_of(const std::string& name, const scene::Plot& plot, const std::vector<DrawnCurve>& curves) {
-    std::string text = "set encoding utf8\nset grid lc rgb '#dddddd'\nset key outside right top noenhanced\n"
-                       "set title noenhanced\nset xlabel noenhanced\nset ylabel noenhanced\nset datafile missing 'NaN'\n";
+    std::string text =
+        "set encoding utf8\nset grid lc rgb '#dddddd'\nset key outside right top noenhanced\n"
+        "set title noenhanced\nset xlabel noenhanced\nset ylabel noenhanced\nset datafile missing 'NaN'\n";
     std::string lines;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         text += fmt::format("$curve_{} << END\n", i + 1);
@@ -124,8 +125,8 @@ std::string script_of(const std::string& name, const scene::Plot& plot, const st
                                                : fmt::format("{:.9g} {:.9g}\n", curves[i].x[k], curves[i].y[k]);
         text += "END\n";
         const bool few = curves[i].x.size() <= 60;
-        lines += fmt::format("{}$curve_{} with {} lw 1.5 lc rgb '{}' {}title {}", lines.empty() ? "" : ", \\\n     ", i + 1,
-                             few ? "linespoints" : "lines", gnuplot_colours[i % gnuplot_colours.size()],
+        lines += fmt::format("{}$curve_{} with {} lw 1.5 lc rgb '{}' {}title {}", lines.empty() ? "" : ", \\\n     ",
+                             i + 1, few ? "linespoints" : "lines", gnuplot_colours[i % gnuplot_colours.size()],
                              few ? "pt 7 ps 0.4 " : "", gnuplot_text(curves[i].title));
     }
     text += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n",
@@ -133,14 +134,15 @@ std::string script_of(const std::string& name, const scene::Plot& plot, const st
                         gnuplot_text(plot.x_label.empty() ? plot.curves.front().second.x : plot.x_label),
                         gnuplot_text(plot.y_label.empty() ? plot.curves.front().second.y : plot.y_label));
     for (const auto& [terminal, ending] : {std::pair{"svg", "svg"}, {"pngcairo", "png"}})
-        text += fmt::format("set terminal {} size 900,600 background 'white'\nset output '{}.{}'\nplot {}\nunset output\n",
-                            terminal, name, ending, lines);
+        text +=
+            fmt::format("set terminal {} size 900,600 background 'white'\nset output '{}.{}'\nplot {}\nunset output\n",
+                        terminal, name, ending, lines);
     return text;
 }
 
 /// @returns  what kept gnuplot from drawing; empty: nothing
 std::string draw(const fs::path& folder, const std::string& name) {
-    switch (run_gnuplot(folder / plot_folder, name + ".gp")) {
+    switch (run_gnuplot(folder / plot_folder, name + ".gp", true)) {
     case Gnuplot::drawn: return {};
     case Gnuplot::missing: return "gnuplot is not installed; plots/*.gp draw them later";
     case Gnuplot::failed: break;

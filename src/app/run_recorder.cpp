@@ -3,6 +3,7 @@
 #include "app/gaps.hpp"
 #include "app/plots.hpp"
 #include "osculate/app/report.hpp"
+#include "osculate/app/run_report.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/output/paraview_script.hpp"
@@ -81,8 +82,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
         if (!resumed()) output::ProbeFile::remove(folder);
         remove_plots(folder);
         for (const PlannedProbe& probe : plan.probes)
-            probes_.emplace_back(folder, probe.name, *probe.probe,
-                                 kept(output::ProbeFile::path({}, probe.name).generic_string()));
+            probes_.emplace_back(folder, probe.name, *probe.probe, kept(output::ProbeFile::relative_path(probe.name)));
         history_ = std::make_unique<output::History>(
             folder / "history.csv", plan.model, out.history_pairs,
             reactions ? plan.constrained_sets : std::vector<Index>{},
@@ -202,13 +202,15 @@ void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
     file.meshes = output::fingerprint(plan_.model);
     file.run = checkpoint;
     if (frames_) file.frames = frames_->written();
-    std::vector<const output::CsvTable*> tables{&history_->table(), steps_.get()};
-    if (iterations_) tables.push_back(iterations_.get());
-    for (const output::ProbeFile& probe : probes_) tables.push_back(&probe.table());
-    for (const output::CsvTable* table : tables) {
-        table->sync();
-        const fs::path path = table->path().lexically_relative(settings_.directory);
-        file.tables.emplace_back(path.generic_string(), table->size());
+    for (const output::CsvTable* table :
+         std::initializer_list<const output::CsvTable*>{&history_->table(), steps_.get(), iterations_.get()})
+        if (table != nullptr) {
+            table->sync();
+            file.tables.emplace_back(table->path().filename().string(), table->size());
+        }
+    for (std::size_t p = 0; p < probes_.size(); ++p) {
+        probes_[p].table().sync();
+        file.tables.emplace_back(output::ProbeFile::relative_path(plan_.probes[p].name), probes_[p].table().size());
     }
     file.steps = summary_.steps;
     file.iterations = summary_.iterations;
@@ -298,8 +300,12 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
 void RunRecorder::write_pictures() {
     if (const std::string note = write_plots(scene_, settings_.directory); !note.empty())
         fmt::print(stderr, "{}\n", note);
-    if (scene_.output.report) {
-        // the report is written here, from the folder's files
+    if (!scene_.output.report) return;
+    try {
+        for (const std::string& note : write_report(settings_.directory).notes)
+            fmt::print(stderr, "report: {}\n", note);
+    } catch (const std::exception& error) { // a run is no worse for a report that cannot be written
+        fmt::print(stderr, "report: {}\n", error.what());
     }
 }
 

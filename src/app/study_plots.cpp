@@ -66,7 +66,8 @@ public:
         std::string text =
             data_ + fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange {}\nset yrange {}\n"
                                 "set xtics {}\nset ytics {}\n",
-                                gnuplot_text(title), gnuplot_text(x), gnuplot_text(y), x_.range(), y_.range(), x_.tics(), y_.tics());
+                                gnuplot_text(title), gnuplot_text(x), gnuplot_text(y), x_.range(), y_.range(),
+                                x_.tics(), y_.tics());
         for (const auto& [terminal, font, ending] :
              {std::tuple{"svg", "sans,14", "svg"}, std::tuple{"pngcairo", "sans,12", "png"}})
             text += fmt::format("set terminal {} size 1000,{} font '{}' background 'white'\nset output '{}.{}'\n"

@@ -245,8 +245,8 @@ Values area(const Snapshot& snapshot, Index pair) {
 
 constexpr Field table[] = {
     {"displacement", FieldPlace::body, 3, "m", false, displacement},
-    {"velocity", FieldPlace::body, 3, "m/s", false, velocity},             // 0 before the first dynamic stage
-    {"acceleration", FieldPlace::body, 3, "m/s^2", false, acceleration},   // the same
+    {"velocity", FieldPlace::body, 3, "m/s", false, velocity},           // 0 before the first dynamic stage
+    {"acceleration", FieldPlace::body, 3, "m/s^2", false, acceleration}, // the same
     {"stress", FieldPlace::body, 6, "Pa", false, stress},
     {"von_mises", FieldPlace::body, 1, "Pa", false, von_mises},
     {"stress_max", FieldPlace::body, 1, "Pa", false, principal<2>},
@@ -258,14 +258,14 @@ constexpr Field table[] = {
     {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance}, // of a failed iterate; 0 otherwise
     {"gap", FieldPlace::slave, 1, "m", false, gap},                      // NaN without a partner
     {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
-    {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress}, // > 0 in compression
+    {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress},             // > 0 in compression
     {"tangential_traction", FieldPlace::slave, 3, "Pa", false, tangential_traction}, // on the slave
     {"friction_use", FieldPlace::slave, 1, "", false, friction_use}, // |traction| over its limit; 0 without friction
     {"slip_rate", FieldPlace::slave, 3, "m/s", false, slip_rate},    // slip over the step's dt
     {"master_facet", FieldPlace::slave, 1, "", true, master_facet},  // below; -1 without a partner, or a mirror image
-    {"slip", FieldPlace::slave, 3, "m", false, slip},                    // of the step; 0 where open
-    {"status", FieldPlace::slave, 1, "", true, status},                  // 0 open, 1 stick, 2 slip
-    {"normal", FieldPlace::slave, 3, "", false, normal},                 // out of the master; 0 without a partner
+    {"slip", FieldPlace::slave, 3, "m", false, slip},                // of the step; 0 where open
+    {"status", FieldPlace::slave, 1, "", true, status},              // 0 open, 1 stick, 2 slip
+    {"normal", FieldPlace::slave, 3, "", false, normal},             // out of the master; 0 without a partner
     {"area", FieldPlace::slave, 1, "m^2", false, area}, // tributary to the node, in the reference configuration
     {"contact_force", FieldPlace::master, 3, "N", false, master_contact_force},
     {"normal_stress", FieldPlace::master, 1, "Pa", false, master_normal_stress}, // > 0 in compression

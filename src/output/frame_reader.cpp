@@ -4,7 +4,9 @@
 #include "osculate/mesh/vtk_threads.hpp"
 
 #include <charconv>
+#include <map>
 #include <stdexcept>
+#include <vtkCell.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkIntArray.h>
@@ -29,7 +31,8 @@ Array copy_of(vtkDataArray& values) {
     return array;
 }
 
-template <class Reader> Frame read(const fs::path& path) {
+/// Reads a file and hands its content to `take`.
+template <class Reader, class Take> auto read_by(const fs::path& path, const Take& take) {
     std::error_code none;
     if (!fs::is_regular_file(path, none)) throw std::runtime_error("cannot read " + path.string());
     mesh::use_no_vtk_threads();
@@ -40,16 +43,56 @@ template <class Reader> Frame read(const fs::path& path) {
     vtkPointSet* data = reader->GetOutput();
     if (reader->GetErrorCode() != 0 || data == nullptr || data->GetNumberOfPoints() == 0)
         throw std::runtime_error("cannot read " + path.string() + ": not a frame of a run");
+    return take(*data);
+}
+
+template <class Take> auto read(const fs::path& path, const Take& take) {
+    return path.extension() == ".vtp" ? read_by<vtkXMLPolyDataReader>(path, take)
+                                      : read_by<vtkXMLUnstructuredGridReader>(path, take);
+}
+
+Frame frame_of(vtkPointSet& data) {
     Frame frame;
-    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+    for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) {
         Vec3 point;
-        data->GetPoint(i, point.data());
+        data.GetPoint(i, point.data());
         frame.points.push_back(point);
     }
-    for (int a = 0; a < data->GetPointData()->GetNumberOfArrays(); ++a)
-        if (vtkDataArray* values = data->GetPointData()->GetArray(a)) frame.arrays.push_back(copy_of(*values));
-    if (vtkDataArray* time = data->GetFieldData()->GetArray("TimeValue")) frame.time = time->GetComponent(0, 0);
+    for (int a = 0; a < data.GetPointData()->GetNumberOfArrays(); ++a)
+        if (vtkDataArray* values = data.GetPointData()->GetArray(a)) frame.arrays.push_back(copy_of(*values));
+    if (vtkDataArray* time = data.GetFieldData()->GetArray("TimeValue")) frame.time = time->GetComponent(0, 0);
     return frame;
+}
+
+std::vector<mesh::Facet> facets_of(vtkPointSet& data) {
+    static const std::map<int, mesh::CellType> solids{{VTK_TETRA, mesh::CellType::tet4},
+                                                      {VTK_WEDGE, mesh::CellType::wedge6},
+                                                      {VTK_HEXAHEDRON, mesh::CellType::hex8},
+                                                      {VTK_QUADRATIC_TETRA, mesh::CellType::tet10}};
+    std::vector<mesh::Facet> polygons;
+    std::map<mesh::CellType, mesh::ElementBlock> blocks;
+    for (vtkIdType i = 0; i < data.GetNumberOfCells(); ++i) {
+        vtkCell* cell = data.GetCell(i);
+        const int count = static_cast<int>(cell->GetNumberOfPoints());
+        const auto solid = solids.find(cell->GetCellType());
+        if (solid != solids.end()) {
+            mesh::ElementBlock& block = blocks[solid->second];
+            block.type = solid->second;
+            for (int c = 0; c < count; ++c) block.connectivity.push_back(static_cast<Index>(cell->GetPointId(c)));
+        } else if (cell->GetCellDimension() == 2 && (count == 3 || count == 4)) {
+            mesh::Facet& facet = polygons.emplace_back();
+            facet.count = count;
+            for (int c = 0; c < count; ++c)
+                facet.nodes[static_cast<std::size_t>(c)] = static_cast<Index>(cell->GetPointId(c));
+        }
+    }
+    if (blocks.empty()) return polygons;
+    mesh::Mesh mesh;
+    mesh.nodes.resize(static_cast<std::size_t>(data.GetNumberOfPoints()));
+    for (auto& [type, block] : blocks) mesh.blocks.push_back(std::move(block));
+    std::vector<mesh::Facet> exterior = mesh::exterior_facets(mesh);
+    polygons.insert(polygons.end(), exterior.begin(), exterior.end());
+    return polygons;
 }
 
 } // namespace
@@ -61,7 +104,11 @@ const Array* Frame::find(const std::string& name) const {
 }
 
 Frame read_frame(const fs::path& path) {
-    return path.extension() == ".vtp" ? read<vtkXMLPolyDataReader>(path) : read<vtkXMLUnstructuredGridReader>(path);
+    return read(path, frame_of);
+}
+
+std::vector<mesh::Facet> read_facets(const fs::path& path) {
+    return read(path, facets_of);
 }
 
 std::optional<fs::path> last_frame(const fs::path& folder, const std::string& part) {

@@ -53,8 +53,7 @@ public:
     }
     [[nodiscard]] std::vector<std::vector<double>> rows(const Snapshot& snapshot) const override {
         std::vector<std::vector<double>> rows;
-        for (const Sample& sample : samples_)
-            rows.push_back({sample.s, sample.X.x(), sample.X.y(), sample.X.z()});
+        for (const Sample& sample : samples_) rows.push_back({sample.s, sample.X.x(), sample.X.y(), sample.X.z()});
         fields_.append_rows(snapshot, part_, places_, rows);
         return rows;
     }

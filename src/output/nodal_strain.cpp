@@ -11,8 +11,7 @@ namespace {
 /// Adds up values times volumes of the elements around each node.
 class NodalMean {
 public:
-    NodalMean(Index nodes, int components)
-        : sum_(Matrix::Zero(components, nodes)), volume_(Vector::Zero(nodes)) {}
+    NodalMean(Index nodes, int components) : sum_(Matrix::Zero(components, nodes)), volume_(Vector::Zero(nodes)) {}
 
     template <class Value> void add(Index node, const Value& value, double volume) {
         sum_.col(node) += volume * value;

@@ -18,8 +18,8 @@ std::vector<std::string> headers(const Probe& probe) {
 
 } // namespace
 
-fs::path ProbeFile::path(const fs::path& folder, const std::string& name) {
-    return folder / probe_folder / (name + ".csv");
+std::string ProbeFile::relative_path(const std::string& name) {
+    return std::string(probe_folder) + "/" + name + ".csv";
 }
 
 ProbeFile::ProbeFile(const fs::path& folder, const std::string& name, const Probe& probe,

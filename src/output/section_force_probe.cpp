@@ -28,8 +28,7 @@ public:
         for (const Part& part : parts_) {
             const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(part.element.block)];
             const std::vector<Index> nodes = nodes_of(body, part.element);
-            const Eigen::Matrix3Xd X = positions_of(body, nodes),
-                                   u = displacements_of(body, nodes, snapshot.state().u);
+            const Eigen::Matrix3Xd X = positions_of(body, nodes), u = displacements_of(body, nodes, snapshot.state().u);
             Eigen::Matrix3Xd f(3, kernel.nodes());
             (void)kernel.internal_force(X, u, f);
             for (const int i : part.shared) { // what the element holds of the node, it exerts on the rest the other way

@@ -11,7 +11,7 @@ namespace {
 
 const Words body_fields{"displacement", "velocity",   "acceleration", "stress",   "strain",        "von_mises",
                         "stress_max",   "stress_mid", "stress_min",   "reaction", "energy_density"};
-const Words slave_fields{"gap",       "contact_force", "normal_stress",       "slip",         "status",     "normal",
+const Words slave_fields{"gap",       "contact_force", "normal_stress",       "slip",         "status",      "normal",
                          "slip_rate", "area",          "tangential_traction", "friction_use", "master_facet"};
 const Words master_fields{"contact_force", "normal_stress"};
 const Words reductions{"mean", "max", "min", "sum"};
@@ -108,9 +108,7 @@ void describe(Visitor& v, Plot& plot) {
     v.text({.name = "x_label", .meaning = "Label of the abscissa.", .default_text = "the formula"}, plot.x_label);
     v.text({.name = "y_label", .meaning = "Label of the ordinate.", .default_text = "the formula"}, plot.y_label);
     named(v, {.name = "curves", .meaning = "Curves by their title.", .required = true, .item = "curve"}, plot.curves,
-          [&](const std::string& name, Curve& curve) {
-              v.group({.name = name}, [&] { describe(v, curve); });
-          });
+          [&](const std::string& name, Curve& curve) { v.group({.name = name}, [&] { describe(v, curve); }); });
 }
 
 } // namespace
@@ -147,11 +145,12 @@ void describe_output(Visitor& v, Output& output) {
            .meaning = "Values at places of the scene, into probes/NAME.csv; beside those of the template.",
            .item = "probe"},
           output.probes, group);
-    named(v,
-          {.name = "plots",
-           .meaning = "Curves drawn at the end of the run, into plots/NAME.{csv,svg,png}; beside those of the template.",
-           .item = "plot"},
-          output.plots, group);
+    named(
+        v,
+        {.name = "plots",
+         .meaning = "Curves drawn at the end of the run, into plots/NAME.{csv,svg,png}; beside those of the template.",
+         .item = "plot"},
+        output.plots, group);
     v.flag({.name = "paraview",
             .meaning = "Write show_in_paraview.py beside the series, which shows it.",
             .default_text = from_template},
@@ -163,6 +162,11 @@ void describe_output(Visitor& v, Output& output) {
                 "Where the run gives up, write the last iterate, its statuses and the forces out of balance as a "
                 "frame, into the folder failed."},
            output.failed_iterate);
+}
+
+void describe_template(Visitor& v, std::string& extends, Output& output) {
+    v.text({.name = "extends", .meaning = "Template whose keys hold where this one has none."}, extends);
+    describe_output(v, output);
 }
 
 } // namespace osculate::scene

@@ -42,10 +42,10 @@ public:
     void flag(const Key& key, bool& value) override { list(key, "true or false", value ? "true" : "false"); }
     void text(const Key& key, std::string& value) override {
         list(key,
-             key.names == Names::body  ? "name of a body"
-             : key.names == Names::set ? "name of a set"
+             key.names == Names::body   ? "name of a body"
+             : key.names == Names::set  ? "name of a set"
              : key.names == Names::pair ? "name of a pair"
-                                       : "text",
+                                        : "text",
              value.empty() ? "none" : value);
     }
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override {

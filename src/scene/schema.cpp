@@ -15,8 +15,21 @@ std::string finished(const char* title, const Json& body) {
     return schema.dump(1) + "\n";
 }
 
-/// `contact.<pair>.surface` stands for `contact.<pair>.master.surface`, see expand_short_forms.
+/// The value, or what stands for it.
+void allow(Json& value, const Json& short_form) {
+    const Json described{{"description", value["description"]}};
+    value.erase("description");
+    Json either = described;
+    either["anyOf"] = Json::array({short_form, value});
+    value = std::move(either);
+}
+
+/// What expand_short_forms takes: a file's name for its map, true or false for its repairs, and
+/// `contact.<pair>.surface` for `contact.<pair>.master.surface`.
 void add_short_forms(Json& scene) {
+    Json& mesh = scene["properties"]["bodies"]["additionalProperties"]["properties"]["mesh"]["properties"];
+    allow(mesh["file"]["properties"]["repair"], {{"type", "boolean"}});
+    for (const char* tag : {"file", "cad"}) allow(mesh[tag], {{"type", "string"}, {"minLength", 1}});
     Json& pair = scene["properties"]["contact"]["additionalProperties"];
     Json surface = pair["properties"]["master"]["properties"]["surface"];
     surface["description"] = "Short for master.surface.\n\n" + surface["description"].get<std::string>();
@@ -39,7 +52,9 @@ std::string scene_schema() {
 std::string template_schema() {
     SchemaVisitor visitor;
     Output defaults;
-    return finished("Output template of Osculate", visitor.document([&] { describe_output(visitor, defaults); }));
+    std::string extends;
+    return finished("Output template of Osculate",
+                    visitor.document([&] { describe_template(visitor, extends, defaults); }));
 }
 
 std::string study_schema(const std::vector<std::string>& methods) {

@@ -271,13 +271,19 @@ void SchemaVisitor::flag(const Key& key, bool& value) {
 }
 
 void SchemaVisitor::text(const Key& key, std::string& value) {
-    const bool refers = key.names == Names::body || key.names == Names::set;
+    const auto what = [&]() -> std::string {
+        switch (key.names) {
+        case Names::body: return "name of a body";
+        case Names::set: return "name of a set";
+        case Names::pair: return "name of a pair";
+        default: return "text";
+        }
+    };
     Json schema;
     schema["type"] = {"string", "number", "boolean"}; // a name of digits is a number to YAML
     if (key.names == Names::identifier) schema["pattern"] = identifier;
     if (key.required) schema["minLength"] = 1;
-    add(key, schema, refers ? std::string("name of a ") + (key.names == Names::body ? "body" : "set") : "text",
-        value.empty() ? Json(nullptr) : Json(value));
+    add(key, schema, what(), value.empty() ? Json(nullptr) : Json(value));
 }
 
 void SchemaVisitor::word(const Key& key, const Words& vocabulary, std::size_t& index) {

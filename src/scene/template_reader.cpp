@@ -24,8 +24,7 @@ public:
         if (!file) {
             const Words known = known_templates(directory);
             faults_.push_back(fault_at(
-                at, key,
-                name.ends_with(".yaml") ? "a template file that exists" : "an output template: " + join(known),
+                at, key, name.ends_with(".yaml") ? "a template file that exists" : "an output template: " + join(known),
                 "'" + name + "'", nearest(name, known)));
             return {};
         }
@@ -38,21 +37,16 @@ public:
             return {};
         }
         const Tree document = read_yaml(file->path.string(), faults_);
-        const Tree* base = document.find(extends.name);
+        const Tree* base = document.find("extends");
         if (base != nullptr && base->kind == Tree::Kind::scalar && !base->scalar.empty())
             (void)read(base->scalar, base->place, "extends", file->path.parent_path());
         std::string written;
         TreeReader reader(names_, faults_);
-        reader.read(document, [&] {
-            reader.text(extends, written);
-            describe_output(reader, output_);
-        });
+        reader.read(document, [&] { describe_template(reader, written, output_); });
         return file;
     }
 
 private:
-    inline static const Key extends{.name = "extends", .meaning = "Template whose keys hold where this one has none."};
-
     const KnownNames& names_;
     Output& output_;
     std::vector<Fault>& faults_;
@@ -67,8 +61,8 @@ std::string read_template(const Tree& scene, const fs::path& directory, const Kn
     const Tree* given = section ? section->find("template") : nullptr;
     if (given && given->kind != Tree::Kind::scalar) return output.template_name; // reported by the reader
     const std::string name = given ? given->scalar : output.template_name;
-    const auto file = Chain(names, output, faults).read(name, given ? given->place : scene.place, "output.template",
-                                                        directory);
+    const auto file =
+        Chain(names, output, faults).read(name, given ? given->place : scene.place, "output.template", directory);
     return !file || file->shipped ? name : file->path.string();
 }
 

@@ -236,10 +236,10 @@ bool TreeReader::check_name(const Tree& at, const Place& place, const Key& key, 
 }
 
 void TreeReader::text(const Key& key, std::string& value) {
-    const std::string expected = key.names == Names::body  ? "the name of a body"
-                                 : key.names == Names::set ? "the name of a set"
+    const std::string expected = key.names == Names::body   ? "the name of a body"
+                                 : key.names == Names::set  ? "the name of a set"
                                  : key.names == Names::pair ? "the name of a pair"
-                                                           : "a text";
+                                                            : "a text";
     const Tree* tree = take(key, expected);
     if (!tree) return;
     if (tree->kind != Tree::Kind::scalar || (key.required && tree->scalar.empty())) return fault(*tree, key, expected);

@@ -170,7 +170,7 @@ std::shared_ptr<CondensedTangent::Laws> CondensedTangent::present_laws() const {
 }
 
 void CondensedTangent::factorise(Laws& laws) const {
-    const auto& [dt, couplings, terms, B, D] = static_cast<const ContactLaws&>(laws);
+    const auto& terms = laws.terms;
     // columns of F = C W C^T
     const auto count = static_cast<Index>(terms.size()), reduced = first_.back();
     Matrix T(3 * count, 3 * count);
@@ -192,10 +192,10 @@ void CondensedTangent::factorise(Laws& laws) const {
                         u.segment(first_[b], first_[b + 1] - first_[b]) += local(c) * bodies_[b].W().col(r - first_[b]);
             }
             relative(laws, u.data(), w);
-            for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, column) = B[i] * w.segment<3>(3 * i);
+            for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, column) = laws.B[i] * w.segment<3>(3 * i);
         }
     });
-    for (Index j = 0; j < count; ++j) T.block<3, 3>(3 * j, 3 * j) += D[j];
+    for (Index j = 0; j < count; ++j) T.block<3, 3>(3 * j, 3 * j) += laws.D[j];
     laws.usable = laws.T.factorise(std::move(T));
     laws.factorised = true;
 }

@@ -1,6 +1,5 @@
-#include "osculate/output/probe.hpp"
-
 #include "osculate/output/csv_reader.hpp"
+#include "osculate/output/probe.hpp"
 #include "osculate/output/probe_file.hpp"
 #include "output/temporary_folder.hpp"
 #include "output/two_blocks.hpp"
@@ -53,7 +52,8 @@ TEST(PointProbe, IsExactInDistortedElementsOfEveryType) {
         model::Body body{"block", mesh::make_block({0, 0, 0}, {2, 1, 1}, {3, 2, 2}, element, pattern), 0, {}, 0};
         ASSERT_EQ(body.mesh.blocks.front().type, type);
         if (type != mesh::CellType::tet10) // whose edges stay straight
-            for (Vec3& X : body.mesh.nodes) X += 0.05 * Vec3(std::sin(5 * X.y()), std::sin(4 * X.z()), std::sin(3 * X.x()));
+            for (Vec3& X : body.mesh.nodes)
+                X += 0.05 * Vec3(std::sin(5 * X.y()), std::sin(4 * X.z()), std::sin(3 * X.x()));
         const Vec3 X(1.01, 0.52, 0.53);
         model.X = body.mesh.nodes;
         model.bodies.push_back(std::move(body));

@@ -118,9 +118,10 @@ TEST(BadScene, AbsurdSizes) {
 }
 
 TEST(BadScene, UnknownTemplate) {
-    expect_fault(replaced(small_scene, "minimal", "minmal"), "bad.yaml:27:20: output.template: expected an output "
-                                                             "template: contact, minimal, found 'minmal' (did you mean "
-                                                             "'minimal'?)");
+    expect_fault(replaced(small_scene, "minimal", "minmal"),
+                 "bad.yaml:27:20: output.template: expected an output "
+                 "template: contact, dynamics, everything, minimal, paper, found 'minmal' (did you mean "
+                 "'minimal'?)");
 }
 
 TEST(BadScene, NothingInIt) {

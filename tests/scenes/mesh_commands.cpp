@@ -45,7 +45,7 @@ TEST_F(MeshCommand, ShowsWhatAFileHolds) {
 TEST_F(MeshCommand, ImportedDecksPassTheCheckAndRun) {
     const Outcome imported = osculate({"import", "deck.inp"});
     EXPECT_EQ(imported.code, 0) << imported.err;
-    EXPECT_EQ(imported.err, "deck.inp:46: *NODE PRINT: what is written is chosen under output\n");
+    EXPECT_EQ(imported.err, "deck.inp:45: *NODE PRINT: what is written is chosen under output\n");
     std::ofstream(folder / "imported.yaml") << imported.out;
     const Outcome checked = osculate({"check", "imported.yaml"});
     EXPECT_EQ(checked.code, 0) << checked.err;

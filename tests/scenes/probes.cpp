@@ -109,6 +109,13 @@ TEST_F(Probes, PlotsAreDrawnFromTheRunsTables) {
     EXPECT_THAT(content(files / "forces.gp"), HasSubstr("set title 'the section''s force'"));
 }
 
+TEST_F(Probes, PlotsOfAQuietRunSayNothing) {
+    const Outcome outcome = osculate(
+        {"run", column, "-o", "run", "--quiet", "--set", "output.plots={level: {curves: {level: {y: time * 0 + 2}}}}"});
+    EXPECT_EQ(outcome.err, "") << "gnuplot has something to say of curves that are level";
+    EXPECT_TRUE(fs::exists(folder / "run" / "plots" / "level.csv"));
+}
+
 TEST_F(Probes, WithoutGnuplotTheScriptIsThereAndTheRunIsDone) {
     const Outcome outcome = osculate({"run", column, "-o", "run", "--quiet"}, [] { setenv("PATH", "/nowhere", 1); });
     EXPECT_EQ(outcome.code, 0);
@@ -118,8 +125,8 @@ TEST_F(Probes, WithoutGnuplotTheScriptIsThereAndTheRunIsDone) {
 }
 
 TEST_F(Probes, ArePlottedWhereTheRunGivesUp) {
-    const Outcome outcome = osculate({"run", column, "-o", "run", "--quiet", "--set",
-                                      "stages.torn_off={pressure: {top: -10 kPa}, steps: 2}"});
+    const Outcome outcome = osculate(
+        {"run", column, "-o", "run", "--quiet", "--set", "stages.torn_off={pressure: {top: -10 kPa}, steps: 2}"});
     EXPECT_EQ(outcome.code, 3) << "nothing holds the upper column then";
     const fs::path files = folder / "run";
     EXPECT_TRUE(fs::exists(files / "post_mortem.json"));
@@ -147,13 +154,12 @@ TEST_F(Probes, MinimalWritesNoneAndComputesNone) {
 }
 
 TEST_F(Probes, PlacesAndFormulasThatAreNoneAreNamedBeforeTheRun) {
-    const Outcome outside =
-        osculate({"check", column, "--set", "output.probes.middle.point.at=[0.3 m, 0.4 m, 3 m]", "--set",
-                  "output.probes.cut.section_force.point=[0, 0, 5 m]"});
+    const Outcome outside = osculate({"check", column, "--set", "output.probes.middle.point.at=[0.3 m, 0.4 m, 3 m]",
+                                      "--set", "output.probes.cut.section_force.point=[0, 0, 5 m]"});
     EXPECT_EQ(outside.code, 2);
     EXPECT_THAT(outside.err, AllOf(HasSubstr("a point of body 'upper'"), HasSubstr("1 m from"), HasSubstr("a plane")));
-    const Outcome formula = osculate({"check", column, "--set", "output.plots.forces.curves.section.y=-force_y2", "--set",
-                                      "output.plots.profile.curves.stress.rows=thorough"});
+    const Outcome formula = osculate({"check", column, "--set", "output.plots.forces.curves.section.y=-force_y2",
+                                      "--set", "output.plots.profile.curves.stress.rows=thorough"});
     EXPECT_EQ(formula.code, 2);
     EXPECT_THAT(formula.err, AllOf(HasSubstr("output.plots.forces.curves.section.y"), HasSubstr("'force_y'"),
                                    HasSubstr("did you mean 'through'")));

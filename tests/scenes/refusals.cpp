@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"14:23: bodies.cap.material.linear_elastic.E: expected a pressure (Pa) > 0, found nothing"}},
         Refusal{"two_meshes",
                 {"12:7: bodies.cap.mesh: expected only one of block, half_tube, contactor, ball, cylinder, tube, file, "
-                 "found block and ball"}},
+                 "cad, found block and ball"}},
         Refusal{"misspelt_surface",
                 {"33:16: contact.joint.master.surface.belnd: expected one of the keys facets, rpim, blend, found "
                  "unknown key 'belnd' (did you mean 'blend'?)"}},

@@ -18,13 +18,12 @@ using testing::IsEmpty;
 
 const std::string press = scene_file("tests/scenes/press.yaml");
 
-/// Contents by path of all files whose bytes a run decides: not the clock, nor the folder's name.
+/// Contents by path of all files whose bytes a run decides: not the clock's.
 std::map<std::string, std::string> files_of(const fs::path& run) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(run)) {
         const std::string name = fs::relative(entry.path(), run).string();
-        if (entry.is_regular_file() && name != "summary.json" && name != "paraview.py" &&
-            !name.starts_with("checkpoint"))
+        if (entry.is_regular_file() && name != "summary.json" && !name.starts_with("checkpoint"))
             files[name] = content(entry.path());
     }
     return files;

@@ -28,12 +28,13 @@ class Init : public Program {};
 
 TEST_F(Init, ListsEveryTutorialWithWhatItShows) {
     const std::string list = osculate({"init", "--list"}).out;
-    for (const auto& entry : std::filesystem::directory_iterator(scene_file("configs/tutorials")))
-        if (entry.path().extension() == ".yaml")
-            EXPECT_THAT(list, testing::ContainsRegex(entry.path().stem().string() + " +[A-Z][^\n]+\\.\n"));
+    for (const auto& entry : std::filesystem::directory_iterator(scene_file("configs/tutorials"))) {
+        if (entry.path().extension() != ".yaml") continue;
+        EXPECT_THAT(list, testing::ContainsRegex(entry.path().stem().string() + " +[A-Z][^\n]+\\.\n"));
+    }
 }
 
-TEST_F(Init, WritesAScenesWithItsMeshThatRunsWhereItIs) {
+TEST_F(Init, WritesASceneWithItsMeshThatRunsWhereItIs) {
     const Outcome outcome = osculate({"init", "pad_from_file", "-o", "mine/pad.yaml"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "mine/pad.yaml written, its mesh mine/meshes/pad.vtu; run it: osculate run mine/pad.yaml\n");

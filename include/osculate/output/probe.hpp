@@ -62,7 +62,8 @@ using FieldNames = std::vector<std::string>;
                                                       const FieldNames& fields,
                                                       const std::vector<std::string>& reductions);
 /// The same of all slave nodes of a pair.
-[[nodiscard]] std::unique_ptr<Probe> make_slave_nodes_probe(const model::Model& model, Index pair, const FieldNames& fields,
+[[nodiscard]] std::unique_ptr<Probe> make_slave_nodes_probe(const model::Model& model, Index pair,
+                                                            const FieldNames& fields,
                                                             const std::vector<std::string>& reductions);
 
 /// Force and moment that the part of a body on the side of `normal` exerts on the rest through a plane: elements belong

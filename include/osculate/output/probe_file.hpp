@@ -4,7 +4,9 @@
 #include "osculate/output/csv_table.hpp"
 #include "osculate/output/probe.hpp"
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace osculate::output {
@@ -14,15 +16,20 @@ constexpr const char* probe_folder = "probes"; ///< of a run's folder
 /// The rows of a probe over time: a column time, then the probe's, units in brackets. What has no value is an empty cell.
 class ProbeFile {
 public:
-    /// Starts the file anew, or after the bytes to keep, see CsvTable. The probe must outlive it. @throws std::runtime_error with path and reason, as write() does
+    /// @param probe  must outlive it
+    /// @param keep   see CsvTable
+    /// @throws std::runtime_error with path and reason, as write() does
     ProbeFile(const std::filesystem::path& folder, const std::string& name, const Probe& probe,
               std::optional<std::uintmax_t> keep = std::nullopt);
 
     void write(const Snapshot& snapshot);
     [[nodiscard]] const CsvTable& table() const { return table_; }
 
-    /// Path of a probe's table in the folder of a run.
-    [[nodiscard]] static std::filesystem::path path(const std::filesystem::path& folder, const std::string& name);
+    /// Where a probe's table lies in the folder of a run.
+    [[nodiscard]] static std::string relative_path(const std::string& name);
+    [[nodiscard]] static std::filesystem::path path(const std::filesystem::path& folder, const std::string& name) {
+        return folder / relative_path(name);
+    }
     /// Removes the tables of an earlier run, and the folder where nothing else is in it.
     static void remove(const std::filesystem::path& folder);
 

@@ -388,7 +388,7 @@ By `mesh: {{cad: {{path: FILE}}}}`, elements a tenth of the geometry's diagonal;
 Of `calculix-ccx-test`: imported by `osculate import`, checked and run, and solved by CalculiX with either kind of contact, same mesh
 and loads. Numbers are in the deck's units. Contact force: ours the sum of normal forces, CalculiX's the reaction of the lower body.
 Differences are those of nodal displacements from the first row's, of the largest. Osculate's contact is exact, CalculiX's a penalty, which
-in these decks gives by about a tenth of the displacement; with one {STIFFER} times as stiff what is left is seen. Seconds are the best of {REPETITIONS}, starting and writing included.
+in these decks gives by about a tenth of the displacement; with one {STIFFER} times as stiff what is left is seen, but for friction1, whose stick slope stays the deck's. Seconds are the best of {REPETITIONS}, starting and writing included.
 
 {chr(10).join(notes)}
 

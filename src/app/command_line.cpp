@@ -102,7 +102,13 @@ CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
         ->type_name("AXIS=VALUES")
         ->check(assignment)
         ->allow_extra_args(false);
-    command->add_flag("--report-only", arguments.study.report_only, "Run nothing; write tables and plots anew");
+    command->add_flag("--report-only,--gather", arguments.study.report_only,
+                      "Run nothing; write tables and plots anew from the runs that are there");
+    command
+        ->add_option("--emit", arguments.study.emit,
+                     "Run nothing; write a Snakemake workflow or a SLURM array script that runs it elsewhere")
+        ->type_name("snakemake|slurm")
+        ->check(CLI::IsMember({"snakemake", "slurm"}));
     command->add_flag("--quiet", arguments.study.quiet, "Show no progress");
     add_changes(command, arguments);
     return command;
@@ -153,6 +159,13 @@ void run_study(Arguments arguments) {
         arguments.study.overrides = arguments.overrides();
         print(run_study(arguments.scene, arguments.study));
         return;
+    }
+    if (!arguments.study.emit.empty()) {
+        Fault fault;
+        fault.file = "--emit";
+        fault.expected = "a study of runs";
+        fault.found = "'" + arguments.scene + "', a study of surfaces, which takes seconds";
+        throw SceneError({fault});
     }
     const int threads = arguments.study.threads > 0 ? arguments.study.threads : arguments.threads;
     const scene::SurfaceStudy study = scene::read_surface_study(arguments.scene, study::method_names());

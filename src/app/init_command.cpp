@@ -1,5 +1,6 @@
 #include "app/init_command.hpp"
 
+#include "osculate/core/data_folder.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/scene/nearest.hpp"
 #include "osculate/scene/reader.hpp"
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 
 fs::path folder() {
     const char* given = std::getenv("OSCULATE_TUTORIALS");
-    return given != nullptr && *given != 0 ? given : OSCULATE_TUTORIAL_DIR;
+    return given != nullptr && *given != 0 ? given : data_folder("configs/tutorials");
 }
 
 std::vector<std::string> names() {

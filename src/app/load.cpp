@@ -7,7 +7,7 @@ namespace osculate::app {
 
 LoadedScene load(const std::string& path, const std::vector<scene::Override>& overrides, int threads,
                  Timings& timings) {
-    LoadedScene loaded{scene::read_scene(path, overrides), {}};
+    LoadedScene loaded{scene::read_scene(path, overrides), {}, path};
     try {
         std::vector<std::string> notes;
         loaded.plan = compile(loaded.scene, build_meshes(loaded.scene, &notes), threads, timings);

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 namespace osculate::app {
 
@@ -26,25 +27,63 @@ namespace {
     throw SceneError({fault});
 }
 
-/// The resolved scene must not take the place of the one a user wrote.
-void check_folder(const fs::path& folder, const std::string& scene_path) {
+/// Folder of a run's files, where the resolved scene must not take the place of the one a user wrote.
+fs::path folder_of(const LoadedScene& loaded, const RunOptions& options) {
+    fs::path folder = options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory;
     std::error_code none;
-    if (fs::equivalent(folder / "scene.yaml", scene_path, none))
-        refuse(scene_path, "another output folder",
+    if (!loaded.path.empty() && fs::equivalent(folder / "scene.yaml", loaded.path, none))
+        refuse(loaded.path, "another output folder",
                "'" + folder.string() + "', where the resolved scene would replace this file");
+    return folder;
 }
 
-output::Summary run(LoadedScene& loaded, const RunRecorder::Settings& settings, Timings& timings) {
-    const Interruption interruption;
-    time::Stepper stepper(loaded.plan.model, loaded.plan.stages, loaded.plan.stepper, timings);
+/// Tells two observers, one after the other.
+class Both final : public time::StepObserver {
+public:
+    Both(time::StepObserver& first, time::StepObserver& second) : first_(first), second_(second) {}
+
+    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override {
+        first_.attempted(attempt, iterations);
+        second_.attempted(attempt, iterations);
+    }
+    void accepted(const time::AcceptedStep& step) override {
+        first_.accepted(step);
+        second_.accepted(step);
+    }
+    void between_steps(const std::function<time::Checkpoint()>& checkpoint) override {
+        first_.between_steps(checkpoint);
+        second_.between_steps(checkpoint);
+    }
+    void gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) override {
+        first_.gave_up(found, iterate);
+        second_.gave_up(found, iterate);
+    }
+
+private:
+    time::StepObserver &first_, &second_;
+};
+
+output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings,
+                    const RunRecorder::Settings& settings, time::StepObserver* beside, bool heed_signals) {
+    std::optional<Interruption> interruption;
+    if (heed_signals) interruption.emplace();
     RunRecorder::Settings heeding = settings;
-    heeding.interruption = &interruption;
+    heeding.interruption = interruption ? &*interruption : nullptr;
     if (settings.from != nullptr) stepper.resume(settings.from->run);
     RunRecorder recorder(loaded.scene, loaded.plan, stepper, timings, heeding);
     try {
-        stepper.run(recorder);
+        if (beside != nullptr) {
+            Both both(recorder, *beside);
+            stepper.run(both);
+        } else {
+            stepper.run(recorder);
+        }
         recorder.wait_for_frames();
     } catch (const Interrupted& ended) {
+        recorder.finish("interrupted", ended.what());
+        throw;
+    } catch (const Stopped& ended) {
+        recorder.wait_for_frames();
         recorder.finish("interrupted", ended.what());
         throw;
     } catch (const RunFailure& failure) {
@@ -58,6 +97,11 @@ output::Summary run(LoadedScene& loaded, const RunRecorder::Settings& settings, 
     }
     recorder.finish("done");
     return recorder.summary();
+}
+
+output::Summary run(LoadedScene& loaded, const RunRecorder::Settings& settings, Timings& timings) {
+    time::Stepper stepper(loaded.plan.model, loaded.plan.stages, loaded.plan.stepper, timings);
+    return run(loaded, stepper, timings, settings, nullptr, true);
 }
 
 } // namespace
@@ -86,9 +130,15 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
     LoadedScene loaded = load(scene_path, overrides, options.threads, timings);
-    const fs::path folder = options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory;
-    check_folder(folder, scene_path);
+    const fs::path folder = folder_of(loaded, options);
     return run(loaded, {folder, options.threads, options.quiet, begin, options.checkpoint_every}, timings);
+}
+
+output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings, const RunOptions& options,
+                    time::StepObserver* beside) {
+    const RunRecorder::Settings settings{folder_of(loaded, options), options.threads, options.quiet,
+                                         std::chrono::steady_clock::now(), options.checkpoint_every};
+    return run(loaded, stepper, timings, settings, beside, options.heed_signals);
 }
 
 output::Summary resume(const fs::path& directory, const fs::path& from, const RunOptions& options) {

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -48,6 +49,22 @@ std::string hash_of(const scene::Scene& scene) {
         if (const auto* cad = std::get_if<scene::CadMesh>(&body.mesh.source)) text += content(cad->path);
     }
     return hash_of(text);
+}
+
+/// Last line of what a run said.
+std::string last_words(const fs::path& messages) {
+    std::istringstream text(content(messages));
+    std::string line, last;
+    while (std::getline(text, line))
+        if (!line.empty()) last = line;
+    return last;
+}
+
+std::optional<int> exit_code(const fs::path& folder) {
+    std::ifstream file(folder / exit_code_file);
+    int code = 0;
+    if (file >> code) return code;
+    return std::nullopt;
 }
 
 Json read_json(const fs::path& path) {
@@ -223,7 +240,8 @@ std::vector<StudyCase> make_cases(const scene::Study& study, const fs::path& fol
         c.record = read_record(c.folder);
         if (c.record.hash != hash || (!c.record.finished() && !c.record.status.empty())) c.record = {};
         // a run that ended as the study itself was killed
-        if (c.record.hash == hash && c.record.status.empty()) add_repeat(c.record, c.folder);
+        if (c.record.hash == hash && c.record.status.empty() && !add_repeat(c.record, c.folder))
+            if (const auto code = exit_code(c.folder)) add_failure(c.record, c.folder, *code);
         c.record.hash = hash;
         cases.push_back(std::move(c));
     }
@@ -277,6 +295,21 @@ bool add_repeat(StudyRecord& record, const fs::path& folder) {
         return false;
     }
     return true;
+}
+
+void add_failure(StudyRecord& record, const fs::path& folder, int code, int signal) {
+    const std::string words = last_words(folder / "messages.txt");
+    record.status = code == 3 ? "gave_up" : code == 2 ? "refused" : "bug";
+    record.reason = words;
+    if (signal != 0)
+        record.reason = fmt::format("killed by signal {}", signal);
+    else if (record.status == "bug")
+        record.reason = fmt::format("exit code {}: {}", code, words);
+}
+
+void announce(const StudyCase& c) {
+    if (read_record(c.folder).hash != c.record.hash) fs::remove_all(c.folder);
+    if (!c.record.finished()) write_record(c);
 }
 
 void measure(const scene::Study& study, std::vector<StudyCase>& cases) {

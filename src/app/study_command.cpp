@@ -1,5 +1,6 @@
 #include "app/study_command.hpp"
 
+#include "app/study_emit.hpp"
 #include "app/study_files.hpp"
 #include "app/study_runner.hpp"
 #include "osculate/core/error.hpp"
@@ -25,6 +26,16 @@ std::string command_of(const std::string& path, const StudyOptions& options) {
     if (options.repeats > 0) text += fmt::format(" --repeats {}", options.repeats);
     if (options.threads > 1) text += fmt::format(" --threads {}", options.threads);
     return text;
+}
+
+/// Words of the program that gather the study from wherever they are given.
+std::vector<std::string> gather_words(const std::string& path, const fs::path& folder, const StudyOptions& options) {
+    std::vector<std::string> words{"study", fs::absolute(path).lexically_normal().string(), "-o",
+                                   fs::absolute(folder).lexically_normal().string(), "--gather"};
+    for (const scene::Override& change : options.overrides)
+        words.insert(words.end(), {"--set", change.key + "=" + change.value});
+    if (options.repeats > 0) words.insert(words.end(), {"--repeats", std::to_string(options.repeats)});
+    return words;
 }
 
 /// Values of every axis that --only names.
@@ -64,15 +75,20 @@ std::string run_study(const std::string& path, const StudyOptions& options) {
     const fs::path folder = options.directory.empty() ? fs::path("out") / study.name : options.directory;
     std::vector<StudyCase> cases = make_cases(study, folder, options.overrides);
     fs::create_directories(folder);
+    const StudyRunOptions run{options.jobs, std::max(1, options.threads),
+                              options.repeats > 0 ? options.repeats : study.repeats, chosen(study, options.only),
+                              options.quiet};
+    if (!options.emit.empty()) {
+        check_cases(study, cases, run);
+        return options.emit == "slurm" ? emit_slurm(study, cases, run, folder, gather_words(path, folder, options))
+                                       : emit_snakemake(study, cases, run, folder, gather_words(path, folder, options));
+    }
     const auto update = [&] {
         measure(study, cases);
         write_study_table(study, cases, folder);
     };
     update();
     if (!options.report_only) {
-        const StudyRunOptions run{options.jobs, std::max(1, options.threads),
-                                  options.repeats > 0 ? options.repeats : study.repeats, chosen(study, options.only),
-                                  options.quiet};
         check_cases(study, cases, run);
         run_cases(cases, run, update);
     }

@@ -17,6 +17,7 @@ struct StudyOptions {
     int repeats = 0;               ///< 0: those of the study
     std::vector<std::string> only; ///< "axis=value,value": runs nothing else
     bool report_only = false, quiet = false;
+    std::string emit; ///< "snakemake" or "slurm": writes files that run it elsewhere, and runs nothing
 };
 
 /// Runs what of a study is not yet run and writes its tables, plots and report.

@@ -41,15 +41,6 @@ bool same_results(const fs::path& a, const fs::path& b) {
     return std::ranges::all_of(files, [&](const fs::path& file) { return content(a / file) == content(b / file); });
 }
 
-/// Last line of what a run said.
-std::string last_words(const fs::path& messages) {
-    std::istringstream text(content(messages));
-    std::string line, last;
-    while (std::getline(text, line))
-        if (!line.empty()) last = line;
-    return last;
-}
-
 class Runner {
 public:
     Runner(std::vector<StudyCase>& cases, const StudyRunOptions& options, const std::function<void()>& finished)
@@ -110,17 +101,13 @@ void Runner::start(StudyCase& c) {
         fs::remove_all(job.folder);
         fs::create_directories(job.folder);
     }
-    std::vector<std::string> words{
-        "run", c.scene_path, "-o", job.folder.string(), "--quiet", "--threads", std::to_string(options_.threads)};
-    for (const scene::Override& change : c.overrides)
-        words.insert(words.end(), {"--set", change.key + "=" + change.value});
-    running_.emplace(start_program(words, job.folder / "messages.txt"), job);
+    running_.emplace(
+        start_program(run_words(c, c.scene_path, job.folder, options_.threads), job.folder / "messages.txt"), job);
 }
 
 void Runner::ended(const Job& job, int status) {
     StudyRecord& record = job.of->record;
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    const std::string words = last_words(job.folder / "messages.txt");
     const std::string before = record.status;
     const bool readable = (code == 0 || code == 3) && add_repeat(record, job.folder);
     if (readable) {
@@ -129,16 +116,8 @@ void Runner::ended(const Job& job, int status) {
             record.same = record.same && record.status == before && same_results(job.of->folder, job.folder);
             record.status = before;
         }
-    } else if (code == 3) { // it gave up before it could say so in a file
-        record.status = "gave_up";
-        record.reason = words;
-    } else if (code == 2) {
-        record.status = "refused";
-        record.reason = words;
-    } else {
-        record.status = "bug";
-        record.reason = WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))
-                                            : fmt::format("exit code {}: {}", code, words);
+    } else { // it may have given up before it could say so in a file
+        add_failure(record, job.folder, code, WIFSIGNALED(status) ? WTERMSIG(status) : 0);
     }
     if (!record.finished()) failed_.insert(job.of);
     write_record(*job.of);
@@ -213,6 +192,15 @@ Json faults_of(const scene::Study& study, const std::vector<const StudyCase*>& c
 }
 
 } // namespace
+
+std::vector<std::string> run_words(const StudyCase& c, const std::string& scene_path, const fs::path& folder,
+                                   int threads) {
+    std::vector<std::string> words{
+        "run", scene_path, "-o", folder.string(), "--quiet", "--threads", std::to_string(threads)};
+    for (const scene::Override& change : c.overrides)
+        words.insert(words.end(), {"--set", change.key + "=" + change.value});
+    return words;
+}
 
 bool is_chosen(const StudyCase& c, const StudyRunOptions& options) {
     for (std::size_t a = 0; a < options.only.size(); ++a)

@@ -13,6 +13,10 @@ struct StudyRunOptions {
     bool quiet = false;
 };
 
+/// Arguments of the program for a case.
+[[nodiscard]] std::vector<std::string> run_words(const StudyCase& study_case, const std::string& scene_path,
+                                                 const std::filesystem::path& folder, int threads);
+
 /// Whether a case is among those to be run.
 [[nodiscard]] bool is_chosen(const StudyCase& study_case, const StudyRunOptions& options);
 

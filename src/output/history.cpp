@@ -71,31 +71,37 @@ std::vector<std::string> History::columns(const model::Model& model, bool pairs,
 
 History::History(const std::filesystem::path& path, const model::Model& model, bool pairs, std::vector<Index> sets,
                  bool ledger, std::optional<std::uintmax_t> keep)
-    : pairs_(pairs ? model.pairs.size() : 0), sets_(std::move(sets)), ledger_(ledger),
-      table_(path, columns(model, pairs, sets_, ledger), keep) {}
+    : pairs_(pairs), sets_(std::move(sets)), ledger_(ledger), table_(path, columns(model, pairs, sets_, ledger), keep) {
+}
 
-void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
-                  const time::Ledger* ledger) {
+std::vector<Cell> History::cells(const Snapshot& snapshot, const model::Constraints& constraints, double dt,
+                                 int iterations, bool pairs, const std::vector<Index>& sets, bool ledger,
+                                 const time::Ledger* energies_now) {
     std::vector<Cell> cells{snapshot.state().time, dt, long{iterations}};
-    for (std::size_t p = 0; p < pairs_; ++p) {
+    for (std::size_t p = 0; pairs && p < snapshot.model().pairs.size(); ++p) {
         const ContactResultants sum = contact_resultants(snapshot, static_cast<Index>(p));
         append(cells, sum.force);
         cells.insert(cells.end(), {sum.normal, sum.friction});
         append(cells, sum.moment);
         cells.insert(cells.end(), {sum.area, sum.open, sum.stick, sum.slip, sum.penetration});
     }
-    if (!sets_.empty()) {
+    if (!sets.empty()) {
         const std::vector<Vec3> reactions = set_reactions(snapshot, constraints);
-        for (const Index set : sets_) append(cells, reactions[set]);
+        for (const Index set : sets) append(cells, reactions[set]);
     }
-    if (ledger_ && ledger != nullptr) {
-        for (const EnergyColumn& energy : energies) cells.emplace_back(ledger->*energy.value);
-        append(cells, ledger->linear);
-        append(cells, Vec3(ledger->angular + snapshot.model().origin.cross(ledger->linear)));
-    } else if (ledger_) {
+    if (ledger && energies_now != nullptr) {
+        for (const EnergyColumn& energy : energies) cells.emplace_back(energies_now->*energy.value);
+        append(cells, energies_now->linear);
+        append(cells, Vec3(energies_now->angular + snapshot.model().origin.cross(energies_now->linear)));
+    } else if (ledger) {
         cells.resize(cells.size() + std::size(energies) + 6, std::string());
     }
-    table_.row(cells);
+    return cells;
+}
+
+void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
+                  const time::Ledger* ledger) {
+    table_.row(cells(snapshot, constraints, dt, iterations, pairs_, sets_, ledger_, ledger));
 }
 
 } // namespace osculate::output

@@ -1,5 +1,7 @@
 #include "scene/templates.hpp"
 
+#include "osculate/core/data_folder.hpp"
+
 #include <cstdlib>
 #include <set>
 
@@ -21,7 +23,7 @@ std::vector<Folder> template_folders(const fs::path& directory) {
         if (folder == folder.parent_path()) break;
     }
     if (const char* given = std::getenv("OSCULATE_TEMPLATES"); given && *given) folders.push_back({given, true});
-    folders.push_back({OSCULATE_TEMPLATE_DIR, true});
+    folders.push_back({data_folder("output_templates"), true});
     return folders;
 }
 

@@ -336,7 +336,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
         attempts.push_back(attempt);
         if (decision.verdict == Verdict::accept) {
             equilibrium.commit();
-            state_ = std::move(next);
+            state_ = next; // in place: its arrays stay where they are for whoever looks at them
             stabilised_steps_ += result.stabilised_solves > 0 ? 1 : 0;
             if (dynamics != nullptr) ledger_ = ledger;
             observer.attempted(attempt, equilibrium.records());

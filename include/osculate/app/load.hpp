@@ -12,6 +12,7 @@ namespace osculate::app {
 struct LoadedScene {
     scene::Scene scene;
     Plan plan;
+    std::string path{}; ///< of the scene file; empty: it comes from a text
 };
 
 /// Reads and compiles a scene file.

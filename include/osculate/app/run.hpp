@@ -1,6 +1,7 @@
 #pragma once
 /// A scene from its file to the files of its run.
 
+#include "osculate/app/load.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/output/summary.hpp"
 #include "osculate/scene/reader.hpp"
@@ -31,6 +32,8 @@ struct RunOptions {
     int threads = 1;
     bool quiet = false;
     CheckpointEvery checkpoint_every{};
+    bool heed_signals =
+        true; ///< SIGINT and SIGTERM end the run between two steps; false: they are the caller's business
 };
 
 /// A run that was asked to end by a signal, and did between two steps, with a checkpoint written.
@@ -41,6 +44,13 @@ public:
 
 private:
     int signal_;
+};
+
+/// What an observer throws from between_steps(), accepted() or attempted() to end a run that writes files: its summary then
+/// says `interrupted`.
+class Stopped : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
 };
 
 /// A run that gave up after an examination of its last attempt.
@@ -61,6 +71,13 @@ private:
 ///         written, with everything accepted before on disk
 output::Summary run(const std::string& scene_path, const std::vector<scene::Override>& overrides,
                     const RunOptions& options);
+
+/// Runs a scene that is compiled, writing the same files.
+/// @param stepper  of loaded.plan, not run yet. Like `loaded` and `timings` it is the caller's, who can look at it later
+/// @param beside   told what the files are told, after them; null: nobody
+/// @throws as run() above does, and what `beside` throws
+output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings, const RunOptions& options,
+                    time::StepObserver* beside = nullptr);
 
 /// Goes on with a run from the checkpoint in its folder, to the same bits as without a break. What the run had written after the
 /// checkpoint is written anew.

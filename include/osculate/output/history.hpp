@@ -29,6 +29,12 @@ public:
     [[nodiscard]] static std::vector<std::string> columns(const model::Model& model, bool pairs,
                                                           const std::vector<Index>& sets, bool ledger);
 
+    /// The row of such a history, a cell per column; an empty text where there is no value.
+    /// @param energies_now  null in a static step
+    [[nodiscard]] static std::vector<Cell> cells(const Snapshot& snapshot, const model::Constraints& constraints,
+                                                 double dt, int iterations, bool pairs, const std::vector<Index>& sets,
+                                                 bool ledger, const time::Ledger* energies_now);
+
     /// A direction that several sets hold at one node counts for the set that Constraints names, so that the sets'
     /// reactions add up to the whole.
     /// @param ledger  null in a static step: its cells stay empty
@@ -37,7 +43,7 @@ public:
     [[nodiscard]] const CsvTable& table() const { return table_; }
 
 private:
-    std::size_t pairs_;
+    bool pairs_;
     std::vector<Index> sets_;
     bool ledger_;
     CsvTable table_;

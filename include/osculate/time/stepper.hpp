@@ -67,7 +67,7 @@ public:
     /// @throws RunFailure where it cannot be one
     void resume(Checkpoint checkpoint);
 
-    [[nodiscard]] const model::State& state() const { return state_; }
+    [[nodiscard]] const model::State& state() const { return state_; } ///< accepted last; its arrays stay in place
     [[nodiscard]] long factorisations() const { return factorisations_; }
     [[nodiscard]] long gmres_iterations() const { return gmres_iterations_; }
     /// Master patches fitted anew between steps, see contact::MasterSurface::refresh().

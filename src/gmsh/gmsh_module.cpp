@@ -4,6 +4,7 @@
 #include "osculate/core/without_traps.hpp"
 #include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/mesh_error.hpp"
+#include "osculate/mesh/quality.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include <functional>
 #include <gmsh.h>
 #include <limits>
+#include <map>
 #include <unordered_map>
 
 namespace osculate::mesh {
@@ -93,7 +95,93 @@ public:
         }
     }
 
+    /// Puts points on a grid of 1e-10 of the mesh's extent: Gmsh's differ in their last digit from run to run.
+    void round_points() {
+        Eigen::AlignedBox3d box;
+        for (const Vec3& x : raw_.points) box.extend(x);
+        if (box.isEmpty() || !(box.diagonal().norm() > 0)) return;
+        const double step = std::ldexp(1.0, std::ilogb(box.diagonal().norm()) - 32);
+        for (Vec3& x : raw_.points) x = step * (x / step).array().round().matrix();
+    }
+
+    /// Makes tet4 cells tet10, with the middle nodes of edges of the boundary on the geometry. Gmsh's own middle nodes
+    /// differ in their last digits from run to run.
+    void add_middle_nodes() {
+        std::map<Edge, std::pair<int, int>> boundary; // dimension and tag; curves before the surfaces that they bound
+        for (const int dimension : {1, 2}) {
+            gmsh::vectorpair entities;
+            gmsh::model::getEntities(entities, dimension);
+            for (const auto& [same, tag] : entities)
+                for (const Elements& some : elements_of(dimension, tag))
+                    for (std::size_t e = 0; e < some.tags.size(); ++e)
+                        for (int i = 0; i < (dimension == 1 ? 1 : some.node_count); ++i) {
+                            const std::size_t* nodes =
+                                some.nodes.data() + e * static_cast<std::size_t>(some.node_count);
+                            boundary.try_emplace(edge(number(nodes[i]), number(nodes[(i + 1) % some.node_count])),
+                                                 dimension, tag);
+                        }
+        }
+        std::map<Edge, Index> middle;
+        for (const RawCell& cell : raw_.cells)
+            for (const auto& [a, b] : tet_edges) middle.try_emplace(edge(cell.nodes[a], cell.nodes[b]), -1);
+        std::int64_t id = raw_.point_ids.empty() ? 0 : raw_.point_ids.back();
+        for (auto& [ends, node] : middle) {
+            node = static_cast<Index>(raw_.points.size());
+            const auto on = boundary.find(ends);
+            raw_.points.push_back(on == boundary.end() ? straight(ends) : on_geometry(ends, on->second));
+            raw_.point_ids.push_back(++id);
+            raw_.elsewhere.push_back(0);
+        }
+        for (RawCell& cell : raw_.cells) {
+            cell.type = CellType::tet10;
+            for (std::size_t i = 0; i < tet_edges.size(); ++i)
+                cell.nodes[4 + i] = middle.at(edge(cell.nodes[tet_edges[i][0]], cell.nodes[tet_edges[i][1]]));
+        }
+        for (auto& [name, faces] : raw_.surfaces)
+            for (RawFace& face : faces) {
+                if (face.count != 3) continue;
+                face.count = 6;
+                for (std::size_t i = 0; i < 3; ++i)
+                    face.nodes[3 + i] = middle.at(edge(face.nodes[i], face.nodes[(i + 1) % 3]));
+            }
+        // Where the geometry bends too much for the elements, edges are straight.
+        constexpr int rounds = 10;
+        for (int round = 0; round < rounds; ++round) {
+            bool any = false;
+            for (const RawCell& cell : raw_.cells) {
+                if (bad_corner(cell.type, {cell.nodes.data(), 10}, raw_.points) < 0) continue;
+                any = true;
+                for (std::size_t i = 0; i < tet_edges.size(); ++i)
+                    raw_.points[static_cast<std::size_t>(cell.nodes[4 + i])] =
+                        straight(edge(cell.nodes[tet_edges[i][0]], cell.nodes[tet_edges[i][1]]));
+            }
+            if (!any) break;
+        }
+    }
+
 private:
+    using Edge = std::pair<Index, Index>; ///< in ascending order
+    static constexpr std::array<std::array<std::size_t, 2>, 6> tet_edges{
+        {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+
+    static Edge edge(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+    [[nodiscard]] Vec3 straight(const Edge& ends) const {
+        return 0.5 *
+               (raw_.points[static_cast<std::size_t>(ends.first)] + raw_.points[static_cast<std::size_t>(ends.second)]);
+    }
+
+    /// The point of a curve or a surface nearest to the middle of an edge; the middle where that is far off.
+    [[nodiscard]] Vec3 on_geometry(const Edge& ends, const std::pair<int, int>& entity) const {
+        const Vec3 middle = straight(ends), seen = middle / unit_;
+        std::vector<double> closest, parametric;
+        gmsh::model::getClosestPoint(entity.first, entity.second, {seen[0], seen[1], seen[2]}, closest, parametric);
+        if (closest.size() != 3) return middle;
+        const Vec3 x = unit_ * Vec3(closest[0], closest[1], closest[2]);
+        const double half = (raw_.points[static_cast<std::size_t>(ends.first)] - middle).norm();
+        return x.allFinite() && (x - middle).norm() < half ? x : middle;
+    }
+
     struct Elements {
         int type = 0, node_count = 0, dimension = 0;
         std::string name;
@@ -269,12 +357,16 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
         gmsh::option::setNumber("Mesh.MeshSizeMax", size);
         gmsh::option::setNumber("Mesh.MeshSizeMin", options->smallest / unit);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", options->per_circle);
-        gmsh::option::setNumber("Mesh.ElementOrder", options->quadratic ? 2 : 1);
-        gmsh::option::setNumber("Mesh.HighOrderOptimize", options->quadratic ? 1 : 0);
         gmsh::option::setNumber("Mesh.Algorithm", 6);   // frontal Delaunay
         gmsh::option::setNumber("Mesh.Algorithm3D", 1); // Delaunay; HXT works with threads
         gmsh::option::setNumber("Mesh.RandomSeed", 1);
         gmsh::model::mesh::generate(3);
-        Model(options->file, *mesh, unit).take();
+        Model model(options->file, *mesh, unit);
+        model.take();
+        model.round_points();
+        if (options->quadratic) {
+            model.add_middle_nodes();
+            model.round_points();
+        }
     });
 }

@@ -66,7 +66,10 @@ TEST(Tutorials, PulledBlockRubs) {
     support::run_scene(run, support::shipped("tutorials/pull_block.yaml"));
     const Vec3 force = run.steps.back().pairs[0].on_slave;
     EXPECT_NEAR(force.z(), 1e5, 1);
-    EXPECT_NEAR(force.x(), -0.3 * force.z(), 1) << "mu = 0.3, against the pull";
+    // the block spreads sideways under its pressure as it slides: friction of a node that goes astray by an angle a falls
+    // short of mu N along the pull by 1 - cos a, and by 1e-3 at 2.5 degrees
+    EXPECT_LT(-force.x(), 0.3 * force.z() * (1 + 1e-9)) << "mu = 0.3, against the pull";
+    EXPECT_GT(-force.x(), 0.3 * force.z() * (1 - 1e-3));
 }
 
 TEST(Tutorials, PadOfAFileLeavesAPrint) {

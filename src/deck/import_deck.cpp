@@ -269,7 +269,9 @@ private:
                     if (group.place.empty()) group.place = f.place;
                     group.force.try_emplace(sets_.node_of(p), Vec3::Zero()).first->second[f.first] += f.value;
                 }
-        for (const auto& [key, group] : groups) {
+        for (const auto& entry : groups) {
+            const auto& key = entry.first;
+            const Group& group = entry.second;
             const auto b = static_cast<std::size_t>(key.first);
             const DeckBody& body = bodies_[b];
             std::vector<Index> facets;

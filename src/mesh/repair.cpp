@@ -332,7 +332,9 @@ MeshFaults find_and_mend(RawMesh& raw, const Repairs& repairs) {
     check_dangling(raw, repairs[Repair::dangling_nodes], all);
     check_shapes(raw, repairs, all);
     const bool duplicates = check_duplicates(raw, repairs[Repair::duplicate], all);
-    if (!duplicates) check_manifold(raw, repairs[Repair::non_manifold], all);
+    // faces of a cell that has a node twice are none, and it is a fault already
+    if (!duplicates && std::ranges::none_of(raw.cells, has_node_twice))
+        check_manifold(raw, repairs[Repair::non_manifold], all);
     return all;
 }
 

@@ -62,6 +62,13 @@ TEST_F(MeshRepairs, InvertedCellsAreNamedAndTurnedOver) {
     EXPECT_THAT(reasons(tangled, repairing({Repair::inverted})), HasSubstr("element 1 is tangled"));
 }
 
+TEST_F(MeshRepairs, QuadraticCellsWithACornerTwiceAreNamed) {
+    const RawMesh two =
+        raw("*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,.5,0,0\n6,.5,.5,0\n7,0,.5,0\n8,0,0,.5\n9,.5,0,.5\n"
+            "*ELEMENT, TYPE=C3D10\n1, 1,2,1,3,5,6,7,8,9,4\n2, 1,2,1,4,5,6,7,8,9,3\n");
+    EXPECT_THAT(reasons(two), AllOf(HasSubstr("element 1 is"), HasSubstr("element 2 is")));
+}
+
 TEST_F(MeshRepairs, DegenerateCellsBecomeWedgesOrGo) {
     const RawMesh wedge = raw(cubes(1) + "*ELEMENT, TYPE=C3D8\n1, 1,2,3,3,11,12,13,13\n");
     EXPECT_THAT(reasons(wedge), HasSubstr("element 1 is degenerate: it has a node twice"));

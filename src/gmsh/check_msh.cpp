@@ -77,6 +77,18 @@ bool blocks_fit(std::string_view body, bool binary, bool elements, double blocks
     return true;
 }
 
+/// Whether a section of names holds as many as it says, of dimensions that there are: Gmsh looks neither up.
+bool names_fit(std::string_view body) {
+    long count = -1;
+    std::istringstream(std::string(next_line(body))) >> count;
+    for (long line = 0; line < count; ++line) {
+        int dimension = -1, tag = 0;
+        if (body.empty() || !(std::istringstream(std::string(next_line(body))) >> dimension >> tag)) return false;
+        if (dimension < 0 || dimension > 3) return false;
+    }
+    return count >= 0;
+}
+
 } // namespace
 
 std::string fault_of_msh(const std::string& path) {
@@ -117,6 +129,7 @@ std::string fault_of_msh(const std::string& path) {
             if (version4 && !blocks_fit(body, binary == 1, name == "Elements", counts[0]))
                 return "section $" + name + " has a block that announces more than it holds";
         }
+        if (name == "PhysicalNames" && !names_fit(body)) return "section $PhysicalNames does not hold what it says";
         rest.remove_prefix(end);
         next_line(rest);
     }

@@ -103,6 +103,11 @@ TEST_F(GmshFiles, WhatGmshWouldTakeForAScriptOrForTooMuchIsRefusedBefore) {
     std::string block = msh4;
     block.replace(block.find("3 1 0 8\n"), 8, "3 1 0 800000000\n");
     EXPECT_THAT(error_of(write("block.msh", block)), HasSubstr("$Nodes has a block that announces more"));
+    for (const char* names :
+         {"1\n4 2 \"ground\"\n", "2\n3 1 \"steel\"\n", "ground\n"}) // no dimension, too few, no count
+        EXPECT_THAT(error_of(write("names.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n" +
+                                                    std::string(names) + "$EndPhysicalNames\n")),
+                    HasSubstr("$PhysicalNames does not hold what it says"));
     std::string binary = binary4();
     binary[binary.find("$Elements") + 10 + 32 + 12 + 5] = 1; // 2^40 elements
     EXPECT_THAT(error_of(write("binary.msh", binary)), HasSubstr("$Elements has a block that announces more"));

@@ -79,8 +79,8 @@ bool blocks_fit(std::string_view body, bool binary, bool elements, double blocks
 
 /// Whether a section of names holds as many as it says, of dimensions that there are: Gmsh looks neither up.
 bool names_fit(std::string_view body) {
-    long count = -1;
-    std::istringstream(std::string(next_line(body))) >> count;
+    long count = 0;
+    if (!(std::istringstream(std::string(next_line(body))) >> count)) return false;
     for (long line = 0; line < count; ++line) {
         int dimension = -1, tag = 0;
         if (body.empty() || !(std::istringstream(std::string(next_line(body))) >> dimension >> tag)) return false;

@@ -199,7 +199,8 @@ void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
     output::CheckpointFile file;
     file.version = version;
     file.scene = scene::write_scene(scene_);
-    file.meshes = output::fingerprint(plan_.model);
+    if (!fingerprint_) fingerprint_ = output::fingerprint(plan_.model);
+    file.meshes = *fingerprint_;
     file.run = checkpoint;
     if (frames_) file.frames = frames_->written();
     for (const output::CsvTable* table :

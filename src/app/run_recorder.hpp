@@ -14,6 +14,7 @@
 #include "osculate/output/summary.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -91,7 +92,8 @@ private:
     std::vector<output::ProbeFile> probes_; ///< as those of the plan
     output::Progress progress_;
     RunChecks checks_;
-    long checkpoint_step_ = 0; ///< accepted steps at the last checkpoint
+    std::optional<std::uint64_t> fingerprint_; ///< of the meshes, from the first checkpoint on
+    long checkpoint_step_ = 0;                 ///< accepted steps at the last checkpoint
     std::chrono::steady_clock::time_point checkpoint_time_;
     double seconds_before_ = 0, cpu_seconds_before_ = 0; ///< of the run before it was resumed
 };

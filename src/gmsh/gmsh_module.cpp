@@ -9,12 +9,18 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <gmsh.h>
 #include <limits>
 #include <map>
+#include <memory>
+#include <sys/mman.h>
+#include <unistd.h>
 #include <unordered_map>
 
 namespace osculate::mesh {
@@ -304,6 +310,28 @@ private:
     std::unordered_map<std::size_t, Index> number_;
 };
 
+/// A file in memory: Gmsh reads files only, and this one has been looked at.
+class MemoryFile {
+public:
+    MemoryFile(const std::string& file, const std::string& text) {
+        if (handle_ < 0) throw MeshError(file, std::string("cannot be held in memory: ") + std::strerror(errno));
+        // a copy of the handle, which the stream closes
+        const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(fdopen(dup(handle_), "wb"), std::fclose);
+        const bool written = stream && std::fwrite(text.data(), 1, text.size(), stream.get()) == text.size();
+        if (written && std::fflush(stream.get()) == 0) return;
+        const std::string reason = std::strerror(errno);
+        close(handle_);
+        throw MeshError(file, "cannot be held in memory: " + reason);
+    }
+    ~MemoryFile() { close(handle_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(handle_); }
+
+private:
+    int handle_ = memfd_create("mesh", MFD_CLOEXEC);
+};
+
 void check_exists(const std::string& path) {
     if (!std::filesystem::is_regular_file(path)) throw MeshError(path, "no such file");
 }
@@ -315,9 +343,9 @@ using namespace osculate::mesh;
 
 extern "C" void osculate_gmsh_read(const std::string* path, RawMesh* mesh) {
     check_exists(*path);
-    if (const std::string fault = fault_of_msh(*path); !fault.empty()) throw MeshError(*path, fault);
+    const MemoryFile checked(*path, checked_msh(*path));
     guarded(*path, [&] {
-        gmsh::open(*path);
+        gmsh::open(checked.path());
         Model(*path, *mesh, 1).take();
     });
 }

@@ -54,6 +54,10 @@ std::string binary4() {
     return text + bytes<Size>({7, 1, 2, 3, 4, 5, 6, 7, 8}) + "\n$EndElements\n";
 }
 
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
 class GmshFiles : public testing::FileTest {
 protected:
     void SetUp() override {
@@ -96,24 +100,46 @@ TEST_F(GmshFiles, FaultsNameTheFilesOwnNumbers) {
 TEST_F(GmshFiles, WhatGmshWouldTakeForAScriptOrForTooMuchIsRefusedBefore) {
     EXPECT_THAT(error_of(write("script.msh", "SystemCall \"touch here\";\n")), HasSubstr("not $MeshFormat"));
     EXPECT_THAT(error_of(write("old.msh", "$MeshFormat\n1.0 0 8\n$EndMeshFormat\n")), HasSubstr("version '1.0'"));
-    EXPECT_THAT(error_of(write("cut.msh", msh2.substr(0, msh2.size() / 2))), HasSubstr("has no end"));
-    std::string many = msh2;
-    many.replace(many.find("$Nodes\n10"), 9, "$Nodes\n1000000000");
-    EXPECT_THAT(error_of(write("many.msh", many)), HasSubstr("$Nodes announces more than it holds"));
-    std::string block = msh4;
-    block.replace(block.find("3 1 0 8\n"), 8, "3 1 0 800000000\n");
-    EXPECT_THAT(error_of(write("block.msh", block)), HasSubstr("$Nodes has a block that announces more"));
-    for (const char* names :
-         {"1\n4 2 \"ground\"\n", "2\n3 1 \"steel\"\n", "ground\n"}) // no dimension, too few, no count
+    EXPECT_THAT(error_of(write("cut.msh", msh2.substr(0, msh2.size() / 2))),
+                HasSubstr("line 17, section $Nodes: expected a coordinate, found ''"));
+    EXPECT_THAT(error_of(write("many.msh", changed(msh2, "$Nodes\n10", "$Nodes\n1000000000"))),
+                HasSubstr("line 22, section $Nodes: expected the number of a node, found '$EndNodes'"));
+    EXPECT_THAT(error_of(write("block.msh", changed(msh4, "3 1 0 8\n", "3 1 0 800000000\n"))),
+                HasSubstr("the number of nodes of a block is 800000000, not from 0 to 8"));
+    for (const auto& [names, fault] : {std::pair("1\n4 2 \"ground\"\n", "the dimension of a name is 4"),
+                                       std::pair("2\n3 1 \"steel\"\n", "found '$EndPhysicalNames'"),
+                                       std::pair("ground\n", "expected the number of names, found 'ground'"),
+                                       std::pair("1\n3 1 \"steel\n", "in double quotes, found ' \"steel'")})
         EXPECT_THAT(error_of(write("names.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n" +
                                                     std::string(names) + "$EndPhysicalNames\n")),
-                    HasSubstr("$PhysicalNames does not hold what it says"));
+                    HasSubstr(fault));
     std::string binary = binary4();
     binary[binary.find("$Elements") + 10 + 32 + 12 + 5] = 1; // 2^40 elements
-    EXPECT_THAT(error_of(write("binary.msh", binary)), HasSubstr("$Elements has a block that announces more"));
-    std::string missing = msh2;
-    missing.replace(missing.find("6 7 20"), 6, "6 7 99");
-    EXPECT_NE(error_of(write("missing.msh", missing)), "");
+    EXPECT_THAT(
+        error_of(write("binary.msh", binary)),
+        AllOf(HasSubstr("byte "), HasSubstr("the number of elements of a block is 1099511627777, not from 0 to 1")));
+    EXPECT_THAT(error_of(write("missing.msh", changed(msh2, "6 7 20", "6 7 99"))),
+                HasSubstr("line 28, section $Elements: element 8 has node 99, which does not exist"));
+    EXPECT_THAT(error_of(write("twice.msh", changed(msh2, "\n20 1 .5 2", "\n19 1 .5 2"))),
+                HasSubstr("node 19 is there twice"));
+    EXPECT_THAT(error_of(write("infinite.msh", changed(msh2, "1 .5 2", "inf .5 2"))),
+                HasSubstr("a coordinate is not finite"));
+    EXPECT_THAT(error_of(write("bounds.msh", changed(msh4, "1 1 1 1 1 1 1\n$End", "1 1 1 1 1 1 9\n$End"))),
+                HasSubstr("entity 1 is bounded by 9, which does not exist"));
+    EXPECT_THAT(error_of(write("greatest.msh", changed(msh4, "1 8 1 8\n", "1 8 1 9\n"))),
+                HasSubstr("numbers of nodes are from 1 to 8, announced are 1 to 9"));
+    EXPECT_THAT(error_of(write("no_elements.msh", msh2.substr(0, msh2.find("$Elements")))),
+                HasSubstr("ends without a section $Elements"));
+}
+
+TEST_F(GmshFiles, SectionsThatNothingIsTakenFromAreLeftOut) {
+    const std::string other = "$NodeData\n1\n\"not even a whole one\"\n$EndNodeData\n";
+    const Mesh mesh = mesh_of(write("more.msh", changed(msh2, "$Nodes\n", other + "$Nodes\n") + other));
+    EXPECT_EQ(mesh.node_count(), 10);
+    EXPECT_EQ(mesh.element_count(), 2);
+    EXPECT_THAT(error_of(write("open.msh", msh2 + "$NodeData\n1\n")), HasSubstr("section $NodeData: has no end"));
+    EXPECT_THAT(error_of(write("cut.msh", msh4 + "$PartitionedEntities\n2\n$EndPartitionedEntities\n")),
+                HasSubstr("cut into partitions; save it whole"));
 }
 
 TEST_F(GmshFiles, SignalsTrapsAndTheTerminalStayAsTheyWere) {

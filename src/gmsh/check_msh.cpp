@@ -92,7 +92,7 @@ private:
         else if (name == "Elements")
             version4_ ? read_elements4() : read_elements2();
         else if (name == "PartitionedEntities")
-            in_.fail("the mesh is cut into partitions; save it whole");
+            fail_partitioned();
         else
             return false;
         return true;
@@ -223,15 +223,16 @@ private:
         }
     }
 
-    /// Group, entity, number of partitions, partitions.
+    /// Group, entity, and of old files partitions.
     void read_tags(int count) {
         for (int t = 0; t < count; ++t) {
-            if (t == 1)
-                in_.integer("the number of an entity", 0, most_int);
-            else
-                in_.integer("a tag", -most_int, most_int);
+            const int tag = in_.integer("a tag", -most_int, most_int);
+            if (t == 1 && tag < 0) in_.fail("the number of an entity is " + std::to_string(tag));
+            if (t > 1 && tag != 0) fail_partitioned();
         }
     }
+
+    [[noreturn]] void fail_partitioned() const { in_.fail("the mesh is cut into partitions; save it whole"); }
 
     void read_elements4() {
         const std::int64_t blocks = in_.size("the number of blocks", 0, most_size);

@@ -28,18 +28,19 @@ namespace {
 
 constexpr double millimetre = 1e-3;
 
-/// Gmsh while it is in use: silent, on one thread, without files or options of the user.
+/// Gmsh while it is in use: silent, on one thread, without files or options of the user. It is initialised once: each time
+/// would keep some memory, and ever more of it.
 class Session {
 public:
     Session() {
-        gmsh::initialize(0, nullptr, false);
+        gmsh::initialize(0, nullptr, false); // nothing but for the first time
         gmsh::option::setNumber("General.Terminal", 0);
         gmsh::option::setNumber("General.NumThreads", 1);
         gmsh::option::setNumber("General.AbortOnError", 2); // throws
     }
     ~Session() {
         try {
-            gmsh::finalize();
+            gmsh::clear();
         } catch (...) { // nothing is left to be done
         }
     }

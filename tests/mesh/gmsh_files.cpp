@@ -138,6 +138,9 @@ TEST_F(GmshFiles, SectionsThatNothingIsTakenFromAreLeftOut) {
     EXPECT_EQ(mesh.node_count(), 10);
     EXPECT_EQ(mesh.element_count(), 2);
     EXPECT_THAT(error_of(write("open.msh", msh2 + "$NodeData\n1\n")), HasSubstr("section $NodeData: has no end"));
+    EXPECT_EQ(mesh_of(write("whole.msh", changed(msh2, "7 5 2 1 1 1", "7 5 3 1 1 0 1"))).element_count(), 2);
+    EXPECT_THAT(error_of(write("cut2.msh", changed(msh2, "7 5 2 1 1 1", "7 5 4 1 1 1 1 1"))),
+                HasSubstr("line 27, section $Elements: the mesh is cut into partitions"));
     EXPECT_THAT(error_of(write("cut.msh", msh4 + "$PartitionedEntities\n2\n$EndPartitionedEntities\n")),
                 HasSubstr("cut into partitions; save it whole"));
 }

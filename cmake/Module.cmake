@@ -3,7 +3,7 @@
 set(OSCULATE_HEADER_ONLY CLI11::CLI11 nlohmann_json::nlohmann_json) # in private use: whoever links a module needs none
 function(osculate_module name)
   cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp ${PROJECT_SOURCE_DIR}/src/${name}/*/*.cpp)
   set(target osculate_${name})
   set(private $<BUILD_INTERFACE:osculate_options>)
   foreach(library ${ARG_PRIVATE_LINKS})

@@ -1,4 +1,4 @@
-#include "app/curve_rows.hpp"
+#include "app/report/curve_rows.hpp"
 
 #include <gmock/gmock.h>
 

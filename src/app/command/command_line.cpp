@@ -1,0 +1,335 @@
+#include "osculate/app/command_line.hpp"
+
+#include "app/check/check.hpp"
+#include "app/command/init_command.hpp"
+#include "app/command/mesh_command.hpp"
+#include "app/command/study_command.hpp"
+#include "app/command/surface_command.hpp"
+#include "osculate/app/diary.hpp"
+#include "osculate/app/load.hpp"
+#include "osculate/app/report.hpp"
+#include "osculate/app/run.hpp"
+#include "osculate/app/run_report.hpp"
+#include "osculate/app/surface_study.hpp"
+#include "osculate/app/version.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/deck/import_deck.hpp"
+#include "osculate/mesh/deck.hpp"
+#include "osculate/mesh/mesh_error.hpp"
+#include "osculate/mesh/repair.hpp"
+#include "osculate/scene/keys.hpp"
+#include "osculate/scene/schema.hpp"
+#include "osculate/scene/study.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <new>
+#include <thread>
+
+namespace osculate::app {
+
+namespace {
+
+enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
+
+struct Arguments {
+    std::string scene, output, key_path, run_folder, checkpoint_every, from, schema = "scene";
+    std::vector<std::string> changes;
+    int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    bool quiet = false;
+    SurfaceOptions surface;
+    StudyOptions study;
+    bool formulas = false, list = false, json = false;
+    MeshCommand mesh;
+    std::string deck;
+    deck::DeckUnits units = deck::DeckUnits::si;
+
+    [[nodiscard]] RunOptions run_options() const {
+        return {output, threads, quiet,
+                checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every)};
+    }
+    [[nodiscard]] std::vector<scene::Override> overrides() const {
+        std::vector<scene::Override> result;
+        for (const std::string& change : changes) {
+            const std::size_t equals = change.find('=');
+            result.push_back({change.substr(0, equals), change.substr(equals + 1)});
+        }
+        return result;
+    }
+};
+
+std::string assignment(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    return equals != std::string::npos && equals > 0 ? "" : "expected name=value, found '" + text + "'";
+}
+
+void add_changes(CLI::App* command, Arguments& arguments) {
+    command
+        ->add_option("--set", arguments.changes,
+                     "Change a value of the scene: --set key.path=value, any number of them")
+        ->type_name("KEY=VALUE")
+        ->check(assignment)
+        ->allow_extra_args(false);
+}
+
+CLI::App* add_scene_command(CLI::App& program, const std::string& name, const std::string& what, Arguments& arguments) {
+    CLI::App* command = program.add_subcommand(name, what);
+    command->add_option("SCENE", arguments.scene, "Scene file")->required();
+    add_changes(command, arguments);
+    return command;
+}
+
+/// `surface-study` is an older name for studies of surfaces.
+CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
+    CLI::App* command = program.add_subcommand("study", "Measure error against run time over combinations of settings");
+    command->alias("surface-study");
+    command->add_option("STUDY", arguments.scene, "Study file");
+    command->add_flag("--formulas", arguments.formulas, "List the formulas that studies may call");
+    command->add_option("-o,--output", arguments.output, "Folder of the tables and plots [out/<study name>]")
+        ->type_name("DIR");
+    const CLI::Range positive(1, 1024);
+    command->add_option("--jobs", arguments.study.jobs, "Runs at a time [1]")->type_name("N")->check(positive);
+    command->add_option("--threads", arguments.study.threads, "Threads of every run [1]; of a study of surfaces [all]")
+        ->type_name("N")
+        ->check(positive);
+    command->add_option("--repeats", arguments.study.repeats, "Times every run is done [the study's]")
+        ->type_name("N")
+        ->check(positive);
+    command
+        ->add_option("--only", arguments.study.only,
+                     "Run only these values of an axis: --only axis=value,value, any number of them")
+        ->type_name("AXIS=VALUES")
+        ->check(assignment)
+        ->allow_extra_args(false);
+    command->add_flag("--report-only,--gather", arguments.study.report_only,
+                      "Run nothing; write tables and plots anew from the runs that are there");
+    command
+        ->add_option("--emit", arguments.study.emit,
+                     "Run nothing; write a Snakemake workflow or a SLURM array script that runs it elsewhere")
+        ->type_name("snakemake|slurm")
+        ->check(CLI::IsMember({"snakemake", "slurm"}));
+    command->add_flag("--quiet", arguments.study.quiet, "Show no progress");
+    add_changes(command, arguments);
+    return command;
+}
+
+void print(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void add_run_options(CLI::App* run, Arguments& arguments) {
+    run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    run->add_option("--checkpoint-every", arguments.checkpoint_every,
+                    "Write a checkpoint after so many accepted steps, '20', or so much time, '5 min'")
+        ->type_name("STEPS|TIME");
+    run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
+}
+
+void show_run(const output::Summary& summary, const Arguments& arguments, const std::string& folder) {
+    if (arguments.quiet) return;
+    const bool frames = std::ranges::count(summary.plan, "frames") > 0;
+    print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}{}/history.csv\n", summary.scene,
+                      summary.steps.accepted, summary.iterations, summary.total_seconds,
+                      frames ? folder + "/series.pvd and " : "", folder));
+}
+
+void report_run(const std::string& folder) {
+    const WrittenReport report = write_report(folder);
+    constexpr double mega = 1e6;
+    print(fmt::format("{} ({:.1f} MB); pictures and plots in {}\n", report.page.string(),
+                      static_cast<double>(std::filesystem::file_size(report.page)) / mega,
+                      (report.page.parent_path() / "report").string()));
+    for (const std::string& note : report.notes) print("  " + note + "\n");
+}
+
+void run_study(Arguments arguments) {
+    if (arguments.formulas) return print(formula_table());
+    if (arguments.scene.empty()) {
+        Fault fault;
+        fault.file = "study";
+        fault.expected = "a study file";
+        fault.found = "none";
+        throw SceneError({fault});
+    }
+    if (scene::is_run_study(arguments.scene)) {
+        arguments.study.directory = arguments.output;
+        arguments.study.overrides = arguments.overrides();
+        print(run_study(arguments.scene, arguments.study));
+        return;
+    }
+    if (!arguments.study.emit.empty()) {
+        Fault fault;
+        fault.file = "--emit";
+        fault.expected = "a study of runs";
+        fault.found = "'" + arguments.scene + "', a study of surfaces, which takes seconds";
+        throw SceneError({fault});
+    }
+    const int threads = arguments.study.threads > 0 ? arguments.study.threads : arguments.threads;
+    const scene::SurfaceStudy study = scene::read_surface_study(arguments.scene, study::method_names());
+    const std::string folder = arguments.output.empty() ? "out/" + study.name : arguments.output;
+    const std::string plots = write_surface_study(study, run_surface_study(study, threads), folder);
+    print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
+}
+
+void import_scene(const std::string& path, deck::DeckUnits units) try {
+    const deck::ImportedScene scene = deck::import_deck(mesh::read_deck(path), path, units);
+    for (const std::string& what : scene.left_out) fmt::print(stderr, "{}\n", what);
+    print(scene.text);
+} catch (const mesh::MeshError& error) {
+    throw mesh_faults(error, "deck");
+}
+
+ExitCode show_keys(const std::string& path) {
+    const std::string keys = scene::describe_keys(path);
+    if (keys.empty()) {
+        fmt::print(stderr, "no key is called '{}'\n", path);
+        return bad_scene;
+    }
+    print(keys);
+    return done;
+}
+
+std::string schema(const std::string& kind) {
+    if (kind == "study") return scene::study_schema(study::method_names());
+    return kind == "template" ? scene::template_schema() : scene::scene_schema();
+}
+
+ExitCode run_command(int argc, char** argv) {
+    Arguments arguments;
+    CLI::App program("Deformable bodies in frictional contact on smooth surfaces.", "osculate");
+    program.set_version_flag("--version", std::string("osculate ") + version);
+    program.require_subcommand(1);
+    CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
+    run->add_option("-o,--output", arguments.output, "Folder of the run's files [out/<scene name>]")->type_name("DIR");
+    add_run_options(run, arguments);
+    CLI::App* resume = program.add_subcommand("resume", "Go on with a run from its last checkpoint");
+    resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    resume->add_option("--from", arguments.from, "Another checkpoint than DIR/checkpoint/state")->type_name("FILE");
+    add_run_options(resume, arguments);
+    CLI::App* check = add_scene_command(
+        program, "check", "Validate a scene; show sizes, cost, pairs, initial gaps, and what looks wrong", arguments);
+    add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
+    CLI::App* surface = add_scene_command(
+        program, "surface", "Write the master surfaces as the solver sees them, before any run", arguments);
+    surface->add_option("--pair", arguments.surface.pair, "Only this contact pair")->type_name("NAME");
+    surface->add_option("-o,--output", arguments.output, "Folder of the files [out/<scene name>/surface]")
+        ->type_name("DIR");
+    surface->add_option("--refine", arguments.surface.refine, "Cut every facet into N x N cells [8]")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    CLI::App* keys = program.add_subcommand("keys", "List the keys of a scene: unit, range, default, meaning");
+    keys->add_option("PATH", arguments.key_path, "Only keys at or below this path");
+    CLI::App* schemas =
+        program.add_subcommand("schema", "Print the JSON Schema of scenes, studies or output templates, for editors");
+    schemas->add_option("KIND", arguments.schema, "scene, study or template [scene]")
+        ->check(CLI::IsMember({"scene", "study", "template"}));
+    CLI::App* init = program.add_subcommand("init", "Write a commented scene to start from");
+    init->add_option("TUTORIAL", arguments.scene, "One of those that --list shows");
+    init->add_flag("--list", arguments.list, "List the tutorials");
+    init->add_option("-o,--output", arguments.output, "The new scene file [TUTORIAL.yaml]")->type_name("FILE");
+    check->add_flag("--json", arguments.json, "As JSON, for programs");
+    CLI::App* study = add_study_command(program, arguments);
+    CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
+    steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    CLI::App* report_page =
+        program.add_subcommand("report", "Write report.html of a run: one file that shows it, to mail or to keep");
+    report_page->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
+    CLI::App* mesh = program.add_subcommand("mesh", "Show what a mesh file holds: sizes, parts, surfaces, node sets");
+    mesh->add_option("FILE", arguments.mesh.file, "Mesh file")->required();
+    mesh->add_option("--part", arguments.mesh.part, "Only this part")->type_name("NAME");
+    mesh->add_option("--piece", arguments.mesh.piece, "Only this connected piece, counted from 1")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber);
+    CLI::App* import = program.add_subcommand("import", "Write an input deck of Abaqus or CalculiX as a scene");
+    import->add_option("DECK", arguments.deck, "Input deck, .inp; the scene reads its mesh from it")->required();
+    const std::map<std::string, deck::DeckUnits> units{{"si", deck::DeckUnits::si}, {"mm", deck::DeckUnits::mm}};
+    import
+        ->add_option("--units", arguments.units,
+                     "Units of the deck's numbers: si (m, kg, s) or mm (mm, t, s, MPa) [si]")
+        ->type_name("si|mm")
+        ->transform(CLI::Transformer(units))
+        ->check(CLI::IsMember(units));
+    std::vector<std::string> repairs = mesh::repair_words();
+    repairs.emplace_back("all");
+    mesh->add_option("--repair", arguments.mesh.repair, "Faults to mend, as `repair` in a scene")
+        ->type_name("WORDS")
+        ->delimiter(',')
+        ->check(CLI::IsMember(repairs));
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return program.exit(error) == 0 ? done : bad_scene; // --help and --version come this way too
+    }
+
+    if (*run) {
+        const output::Summary summary = app::run(arguments.scene, arguments.overrides(), arguments.run_options());
+        show_run(summary, arguments, arguments.output.empty() ? "out/" + summary.scene : arguments.output);
+    } else if (*resume) {
+        show_run(app::resume(arguments.run_folder, arguments.from, arguments.run_options()), arguments,
+                 arguments.run_folder);
+    } else if (*surface) {
+        arguments.surface.directory = arguments.output;
+        arguments.surface.threads = arguments.threads;
+        print(write_surfaces(arguments.scene, arguments.overrides(), arguments.surface));
+    } else if (*study) {
+        run_study(arguments);
+    } else if (*keys) {
+        return show_keys(arguments.key_path);
+    } else if (*import) {
+        import_scene(arguments.deck, arguments.units);
+    } else if (*mesh) {
+        print(describe_mesh(arguments.mesh));
+    } else if (*schemas) {
+        print(schema(arguments.schema));
+    } else if (*init) {
+        print(arguments.list ? tutorial_list() : init_scene(arguments.scene, arguments.output));
+    } else if (*steps) {
+        print(diary(arguments.run_folder));
+    } else if (*report_page) {
+        report_run(arguments.run_folder);
+    } else {
+        Timings unused;
+        const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
+        if (*check)
+            print(check_scene(loaded, arguments.threads, arguments.json));
+        else
+            print(app::explain(loaded.plan));
+    }
+    return done;
+}
+
+} // namespace
+
+int command_line(int argc, char** argv) {
+    try {
+        return run_command(argc, argv);
+    } catch (const SceneError& error) {
+        for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
+        return bad_scene;
+    } catch (const ReportFailure& error) {
+        fmt::print(stderr, "the report cannot be written: {}\n", error.what());
+        return bad_scene;
+    } catch (const Interrupted& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 128 + error.signal(); // as shells report it
+    } catch (const GaveUp& error) {
+        fmt::print(stderr, "the run gave up: {}\n{}", error.what(), error.post_mortem());
+        return gave_up;
+    } catch (const RunFailure& error) {
+        fmt::print(stderr, "the run gave up: {}\n", error.what());
+        return gave_up;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "the run gave up: there is not enough memory for a scene of this size\n");
+        return gave_up;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "a bug in osculate {}, please report it with the scene: {}\n", version, error.what());
+    } catch (...) {
+        fmt::print(stderr, "a bug in osculate {}, please report it with the scene\n", version);
+    }
+    return bug;
+}
+
+} // namespace osculate::app

@@ -1,0 +1,128 @@
+#include "app/command/init_command.hpp"
+
+#include "osculate/core/data_folder.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/scene/nearest.hpp"
+#include "osculate/scene/reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+namespace osculate::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder() {
+    const char* given = std::getenv("OSCULATE_TUTORIALS");
+    return given != nullptr && *given != 0 ? given : data_folder("configs/tutorials");
+}
+
+std::vector<std::string> names() {
+    std::vector<std::string> list;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder(), ignored))
+        if (entry.path().extension() == ".yaml") list.push_back(entry.path().stem().string());
+    std::ranges::sort(list);
+    return list;
+}
+
+[[noreturn]] void refuse(const std::string& what, const std::string& expected, const std::string& found,
+                         const std::string& nearest = {}) {
+    Fault fault;
+    fault.file = what;
+    fault.expected = expected;
+    fault.found = found;
+    fault.nearest = nearest;
+    throw SceneError({fault});
+}
+
+std::string content(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+bool is_modeline(const std::string& line) {
+    return line.starts_with("# yaml-language-server:");
+}
+
+/// First sentence of the comment that a tutorial begins with.
+std::string subject(const fs::path& path) {
+    std::istringstream text(content(path));
+    std::string sentence;
+    for (std::string line; std::getline(text, line) && line.starts_with("#");) {
+        if (is_modeline(line)) continue;
+        sentence += (sentence.empty() ? "" : " ") + line.substr(std::min<std::size_t>(2, line.size()));
+        for (std::size_t i = 0; i + 1 < sentence.size(); ++i)
+            if (sentence[i] == '.' && sentence[i + 1] == ' ') return sentence.substr(0, i + 1);
+    }
+    return sentence;
+}
+
+/// A tutorial for a folder of its own: its schema is named by where that is, or not at all; it is run by its new name.
+std::string adapted(std::string text, const std::string& name, const std::string& file) {
+    if (is_modeline(text)) {
+        const std::size_t end = text.find('\n');
+        const fs::path schema = (folder() / text.substr(0, end).substr(text.find('=') + 1)).lexically_normal();
+        text.erase(0, end + 1);
+        if (fs::exists(schema)) text.insert(0, "# yaml-language-server: $schema=" + schema.string() + "\n");
+    }
+    const std::string shipped = "configs/tutorials/" + name + ".yaml";
+    for (std::size_t at = 0; (at = text.find(shipped, at)) != std::string::npos; at += file.size())
+        text.replace(at, shipped.size(), file);
+    return text;
+}
+
+void copy(const std::string& text, const fs::path& to) {
+    if (fs::exists(to)) refuse(to.string(), "a file that is not there yet: nothing is overwritten", "a file");
+    std::error_code failed;
+    if (to.has_parent_path()) fs::create_directories(to.parent_path(), failed);
+    std::ofstream out(to, std::ios::binary);
+    out << text << std::flush;
+    if (!out) refuse(to.string(), "a file that can be written", "none");
+}
+
+} // namespace
+
+std::string tutorial_list() {
+    const std::vector<std::string> known = names();
+    std::size_t width = 0;
+    for (const std::string& name : known) width = std::max(width, name.size());
+    std::string text;
+    for (const std::string& name : known)
+        text += fmt::format("{:{}}  {}\n", name, width, subject(folder() / (name + ".yaml")));
+    return text;
+}
+
+std::string init_scene(const std::string& name, const std::string& file) {
+    const std::vector<std::string> known = names();
+    if (std::ranges::count(known, name) == 0)
+        refuse("init", fmt::format("a tutorial: {}", fmt::join(known, ", ")), name.empty() ? "none" : "'" + name + "'",
+               scene::nearest(name, known));
+    const fs::path from = folder() / (name + ".yaml"), to = file.empty() ? name + ".yaml" : file;
+    std::vector<std::pair<fs::path, fs::path>> meshes;
+    for (const auto& [body, spec] : scene::read_scene(from.string()).bodies)
+        if (const auto* mesh = std::get_if<scene::FileMesh>(&spec.mesh.source))
+            meshes.emplace_back(mesh->path, to.parent_path() / fs::relative(mesh->path, folder()));
+    for (const auto& [source, mesh] : meshes)
+        if (fs::exists(mesh)) refuse(mesh.string(), "a mesh that is not there yet: nothing is overwritten", "a file");
+    copy(adapted(content(from), name, to.string()), to);
+    std::string text = fmt::format("{} written", to.string());
+    for (const auto& [source, mesh] : meshes) {
+        copy(content(source), mesh);
+        text += fmt::format(", its mesh {}", mesh.string());
+    }
+    return text + fmt::format("; run it: osculate run {}\n", to.string());
+}
+
+} // namespace osculate::app

@@ -1,0 +1,92 @@
+#include "app/fault.hpp"
+#include "app/overloaded.hpp"
+#include "app/plan/mesh_share.hpp"
+#include "osculate/app/compile.hpp"
+#include "osculate/mesh/generators.hpp"
+#include "osculate/mesh/gmsh.hpp"
+#include "osculate/mesh/mesh_error.hpp"
+
+#include <filesystem>
+#include <map>
+
+namespace osculate::app {
+
+namespace {
+
+/// Files and geometries that several bodies are parts of are read and meshed once.
+struct Sources {
+    std::map<std::string, mesh::RawMesh> files;
+    std::vector<std::pair<mesh::CadOptions, mesh::RawMesh>> geometries;
+
+    const mesh::RawMesh& file(const std::string& path) {
+        const auto found = files.find(path);
+        return found != files.end() ? found->second : files.emplace(path, mesh::read_mesh_file(path)).first->second;
+    }
+    const mesh::RawMesh& geometry(const mesh::CadOptions& options) {
+        for (const auto& [known, raw] : geometries)
+            if (known == options) return raw;
+        return geometries.emplace_back(options, mesh::mesh_cad(options)).second;
+    }
+};
+
+mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, Sources& sources,
+                    std::vector<std::string>& notes) {
+    mesh::Mesh m = std::visit(
+        Overloaded{
+            [](const scene::BlockMesh& b) {
+                return mesh::make_block(b.origin, b.size, b.divisions, b.element, b.pattern, b.focus, b.crown);
+            },
+            [](const scene::HalfTubeMesh& t) {
+                return mesh::make_half_tube(t.inner_radius, t.thickness, t.length, t.divisions, t.element);
+            },
+            [](const scene::ContactorMesh& c) {
+                return mesh::make_contactor(c.radius, c.width, c.length, c.height, c.rear, c.divisions, c.element);
+            },
+            [](const scene::BallMesh& b) {
+                return mesh::make_ball(b.radius, b.divisions, b.portion, b.grading, b.pole_refinement);
+            },
+            [](const scene::CylinderMesh& c) {
+                return mesh::make_cylinder(c.radius, c.length, c.divisions, c.portion, c.grading);
+            },
+            [](const scene::TubeMesh& t) {
+                return mesh::make_tube(t.inner_radius, t.thickness, t.length, t.divisions, t.portion);
+            },
+            [&](const scene::FileMesh& f) {
+                const auto path = (std::filesystem::path(directory) / f.path).string();
+                return mesh::make_mesh(sources.file(path), {f.part, f.piece, repairs_of(f.repair)}, &notes);
+            },
+            [&](const scene::CadMesh& c) {
+                const mesh::CadOptions options{(std::filesystem::path(directory) / c.path).string(), c.size, c.smallest,
+                                               c.per_circle, c.quadratic};
+                return mesh::make_mesh(sources.geometry(options), {c.part, c.piece, {}}, &notes);
+            },
+        },
+        spec.source);
+    const scene::Placement& p = spec.placement;
+    if (p.angle != 0 || p.scale != 1 || !p.translation.isZero(0))
+        mesh::place(m, p.axis, p.angle, p.translation, p.scale);
+    return m;
+}
+
+} // namespace
+
+std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene, std::vector<std::string>* notes) {
+    std::vector<mesh::Mesh> meshes;
+    std::vector<Fault> faults;
+    Sources sources;
+    for (const auto& [name, body] : scene.bodies) try {
+            std::vector<std::string> of_body;
+            meshes.push_back(generate(body.mesh, scene.directory, sources, of_body));
+            for (const std::string& note : of_body)
+                if (notes != nullptr) notes->push_back("body " + name + ": " + note);
+        } catch (const mesh::MeshError& error) {
+            for (const std::string& reason : error.reasons())
+                faults.push_back(fault("bodies." + name + ".mesh", "a mesh fit for use", reason));
+        } catch (const std::exception& error) {
+            faults.push_back(fault("bodies." + name + ".mesh", "a mesh that can be made", error.what()));
+        }
+    if (!faults.empty()) throw SceneError(std::move(faults));
+    return meshes;
+}
+
+} // namespace osculate::app

@@ -1,0 +1,65 @@
+#include "app/plan/courses.hpp"
+
+#include <algorithm>
+
+namespace osculate::app {
+
+namespace {
+
+void settle_one(scene::Course& course, double duration) {
+    if (!course.is_value()) course = course.function()(duration);
+}
+
+} // namespace
+
+void Driving::update(const scene::Stage& stage) {
+    for (const auto& [set, components] : stage.displacement)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (components[k]) displacement[set][k] = components[k];
+    for (const auto& [set, value] : stage.pressure) pressure[set] = value;
+    for (const auto& [set, value] : stage.follower_pressure) follower_pressure[set] = value;
+    for (const auto& [body, value] : stage.body_force) body_force[body] = value;
+}
+
+void Driving::settle(double duration) {
+    for (auto& [set, components] : displacement)
+        for (auto& component : components)
+            if (component) settle_one(*component, duration);
+    for (auto& [set, value] : pressure) settle_one(value, duration);
+    for (auto& [set, value] : follower_pressure) settle_one(value, duration);
+    for (auto& [body, components] : body_force)
+        for (auto& component : components) settle_one(component, duration);
+}
+
+bool Driving::has_load_courses() const {
+    const auto varies = [](const scene::Course& course) { return !course.is_value(); };
+    return std::ranges::any_of(pressure, [&](const auto& entry) { return varies(entry.second); }) ||
+           std::ranges::any_of(body_force,
+                               [&](const auto& entry) { return std::ranges::any_of(entry.second, varies); });
+}
+
+Driving Driving::without_courses_of(const Driving& next) const {
+    Driving kept = *this;
+    for (auto& [set, value] : kept.pressure)
+        if (!next.pressure.at(set).is_value()) value = 0.0;
+    for (auto& [body, components] : kept.body_force)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!next.body_force.at(body)[k].is_value()) components[k] = 0.0;
+    return kept;
+}
+
+Index CourseList::index(const std::string& name, const scene::Course& course) {
+    const auto at = std::ranges::find(listed_, course);
+    const auto index = static_cast<Index>(at - listed_.begin());
+    if (at == listed_.end()) {
+        listed_.push_back(course);
+        courses_.push_back({name, course.function(), course.corners()});
+    }
+    return index;
+}
+
+double ramped(const scene::Course& course) {
+    return course.is_value() ? course.value() : 0;
+}
+
+} // namespace osculate::app

@@ -1,0 +1,108 @@
+/// Parts of a plan: what bodies do by themselves.
+
+#include "app/plan/plan_items.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace osculate::app {
+
+namespace {
+
+constexpr const char* every_static = "every stage is static";
+
+bool at_finite_strain(const model::Body& body) {
+    return std::ranges::any_of(body.kernels, [](const auto& kernel) { return !kernel->linear(); });
+}
+
+/// Elements at finite strain, with their places in the stiffness.
+PlanCost finite_strain_cost(const model::Model& model) {
+    PlanCost cost{2 * bytes_of(model.K), 0, "elements an iteration"}; // the tangent and what of it is constant
+    for (const model::Body& body : model.bodies) {
+        if (!at_finite_strain(body)) continue;
+        for (std::size_t b = 0; b < body.kernels.size(); ++b) {
+            const double n = body.kernels[b]->nodes(), elements = body.mesh.blocks[b].size();
+            cost.count += elements;
+            cost.bytes += elements * (n + n * n) * sizeof(Index);
+        }
+    }
+    return cost;
+}
+
+} // namespace
+
+void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list) {
+    const model::Model& model = plan.model;
+    const double blocks = model.K.row_end(model.K.rows() - 1),
+                 vectors = sizeof(Vec3) * static_cast<double>(model.nodes());
+    const bool finite = model.finite_strain != nullptr;
+    list.say("stiffness", true, finite ? "of the bodies at small strain, assembled once" : "assembled once: constant",
+             {bytes_of(model.K), blocks, "3x3 blocks an iteration"});
+    list.say("finite strain", finite, finite ? "forces and tangent anew at every iterate" : "every body is linear",
+             finite ? finite_strain_cost(model) : PlanCost{});
+
+    const std::size_t dynamic = dynamic_stages(plan);
+    constexpr double states = 10; // u, v, a: of the state, of the start of the step and after it; force at the start
+    list.say("inertia", dynamic > 0, dynamic > 0 ? fmt::format("{} dynamic stage(s)", dynamic) : every_static,
+             {bytes_of(model.consistent_mass) + bytes_of(model.lumped_mass) + bytes_of(model.K) + states * vectors,
+              2 * blocks, "3x3 blocks a step"});
+    const auto damped = std::ranges::count_if(plan.stages, [](const time::Stage& stage) {
+        return stage.dynamics && (stage.dynamics->mass_damping > 0 || stage.dynamics->stiffness_damping > 0);
+    });
+    list.say("damping", damped > 0,
+             damped > 0    ? fmt::format("{} stage(s) with mass_damping or stiffness_damping", damped)
+             : dynamic > 0 ? "no stage has mass_damping or stiffness_damping"
+                           : every_static,
+             {0, 2 * blocks, "3x3 blocks a step"});
+    list.say("energy ledger", dynamic > 0,
+             dynamic > 0 ? "judges dynamic steps, and columns of history.csv" : every_static,
+             {0, 4 * blocks, "3x3 blocks a step"});
+    const auto controlled = std::ranges::count_if(plan.stages, [](const time::Stage& stage) {
+        return stage.dynamics && std::isfinite(stage.limits.error_tolerance);
+    });
+    list.say("time error control", controlled > 0,
+             controlled > 0 ? fmt::format("{} stage(s) with control.error_tolerance", controlled)
+             : dynamic > 0  ? "no stage has control.error_tolerance"
+                            : every_static,
+             {0, static_cast<double>(model.nodes()), "nodes a step"});
+    const bool massless = std::ranges::any_of(scene.stages, [](const auto& stage) {
+        const auto* analysis = std::get_if<scene::DynamicAnalysis>(&stage.second.analysis);
+        return analysis != nullptr && analysis->contact_mass != scene::ContactMass::kept;
+    });
+    list.say("massless contact nodes", massless,
+             massless      ? "a stage asks for them by contact_mass"
+             : dynamic > 0 ? "contact nodes keep their mass"
+                           : every_static);
+
+    const bool gravity = !scene.gravity.isZero(0);
+    list.say("gravity", gravity, gravity ? "on every body with a density" : "not given",
+             {0, gravity ? static_cast<double>(plan.stages.size()) : 0, "sum(s) over all elements, once"});
+    double facets = 0, values = 0;
+    for (const time::Stage& stage : plan.stages) {
+        double own = 0;
+        for (const time::FollowerPressure& pressure : stage.follower_pressures)
+            own += static_cast<double>(pressure.facets.size());
+        facets = std::max(facets, own);
+        values = std::max(values, static_cast<double>(stage.courses.size()));
+    }
+    list.say("follower pressure", facets > 0,
+             facets > 0 ? "forces and tangent anew at every iterate" : "no pressure follows",
+             {0, facets, "facets an iteration"});
+    list.say("courses over time", values > 0,
+             values > 0 ? "load(s) and motion(s) by tables or expressions"
+                        : "every load and motion ramps or jumps to its value",
+             {0, values, "value(s) a step"});
+    const bool driven = std::ranges::any_of(plan.stages, [](const time::Stage& stage) {
+        return !stage.dynamics && std::ranges::any_of(stage.constraints, &model::NodeConstraint::driven);
+    });
+    list.say("predictor", driven && plan.stepper.predictor,
+             !driven                  ? "no static stage moves a set"
+             : plan.stepper.predictor ? "driven bodies are moved rigidly before the first iteration"
+                                      : "solver.predictor is off",
+             {0, static_cast<double>(model.nodes()), "nodes a step"});
+    const bool shifted = !model.origin.isZero(0);
+    list.say("moved origin", shifted,
+             shifted ? "far from the scene's origin digits would be lost" : "the scene is near its origin");
+}
+
+} // namespace osculate::app

@@ -1,0 +1,93 @@
+#include "app/plan/plan_items.hpp"
+
+#include "osculate/time/linear_solver.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace osculate::app {
+
+void PlanList::say(std::string part, bool present, std::string reason, PlanCost cost) {
+    items_.push_back({std::move(part), present, std::move(reason), present ? std::move(cost) : PlanCost{}});
+}
+
+void PlanList::set_cost(const std::string& part, PlanCost cost) {
+    for (PlanItem& item : items_)
+        if (item.part == part && item.present) item.cost = std::move(cost);
+}
+
+double bytes_of(const model::BlockMatrix& matrix) {
+    if (matrix.empty()) return 0;
+    const double blocks = matrix.row_end(matrix.rows() - 1);
+    return blocks * (sizeof(Mat3) + sizeof(Index)) + sizeof(Index) * static_cast<double>(matrix.rows() + 1);
+}
+
+std::size_t dynamic_stages(const Plan& plan) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(plan.stages, [](const time::Stage& stage) { return stage.dynamics.has_value(); }));
+}
+
+std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
+    PlanList list;
+    const auto say = [&](std::string part, bool present, std::string reason) {
+        list.say(std::move(part), present, std::move(reason));
+    };
+    add_body_items(scene, plan, list);
+    add_contact_items(scene, plan, list);
+
+    const bool contact = !plan.model.pairs.empty(), finite = plan.model.finite_strain != nullptr;
+    const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
+                                     [](const time::Stage& s) { return !s.follower_pressures.empty(); });
+    const bool unsymmetric = contact || follows || (finite && dynamic_stages(plan) > 0);
+    const time::LinearSolver asked = plan.stepper.linear_solver;
+    const auto cost = time::condensation_cost(plan.model);
+    const bool condensed = time::condenses(plan.model, asked, follows);
+    const bool multigrid = time::goes_by_multigrid(plan.model, asked);
+    const bool direct = unsymmetric && asked == time::LinearSolver::direct;
+    say("multigrid", multigrid,
+        multigrid ? fmt::format("cycles over {} nodes in place of factors", plan.model.nodes())
+                  : "fewer nodes than cycles pay for, or another solver is asked for");
+    say("condensation", condensed,
+        !contact            ? "the scene has no pair"
+        : multigrid         ? "multigrid is used"
+        : finite || follows ? "the tangent of the bodies is not constant"
+        : condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
+                                  cost.condensed, cost.factorising)
+        : asked == time::LinearSolver::automatic
+            ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
+                          "{:.2g} operations",
+                          cost.condensed, 1e-9 * cost.bytes, cost.factorising)
+            : "another solver is asked for");
+    say("LU factorisation", direct, direct ? "asked for, in every iteration" : "only where GMRES gets nowhere");
+    say("Cholesky factorisation", !direct && !multigrid,
+        direct        ? "the tangent itself is factorised"
+        : multigrid   ? "cycles take its place"
+        : condensed   ? "of each body, its contact nodes last"
+        : contact     ? "of the stiffness with softened contact, to precondition GMRES"
+        : unsymmetric ? "of a triangle of the tangent, to precondition GMRES"
+                      : "the tangent is symmetric positive definite");
+    say("GMRES", multigrid || (unsymmetric && !direct),
+        direct        ? "the tangent is factorised"
+        : multigrid   ? "with the whole tangent, preconditioned by cycles"
+        : condensed   ? "on contact nodes and forces alone"
+        : contact     ? "unsymmetric tangent with contact"
+        : follows     ? "unsymmetric tangent of follower pressures"
+        : unsymmetric ? "unsymmetric tangent of finite strain in dynamics"
+                      : "the tangent is symmetric");
+    constexpr double copies = 5; // of the stiffness: with springs and without, PETSc's, coarser ones
+    list.set_cost("multigrid", {copies * bytes_of(plan.model.K), 0, {}});
+    list.set_cost("condensation", {cost.bytes, cost.condensed, "operations once"});
+    list.set_cost("Cholesky factorisation", {0, cost.factorising, "operations each"});
+    const std::size_t statics = plan.stages.size() - dynamic_stages(plan);
+    say("stabilisation springs", false,
+        statics == 0                  ? "inertia holds every body"
+        : !plan.stepper.stabilisation ? "solver.stabilisation is off"
+                                      : "only where a tangent is singular, or as a last resort");
+    list.say("threads", plan.stepper.threads > 1,
+             plan.stepper.threads > 1 ? "share out slave nodes and rows of matrices" : "one does all",
+             {0, static_cast<double>(plan.stepper.threads), "threads"});
+    add_output_items(scene, plan, list);
+    return list.take();
+}
+
+} // namespace osculate::app

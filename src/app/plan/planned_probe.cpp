@@ -1,0 +1,85 @@
+#include "app/plan/planned_probe.hpp"
+
+#include "app/fault.hpp"
+#include "app/overloaded.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace osculate::app {
+
+namespace {
+
+Index body_index(const model::Model& model, const std::string& name) {
+    const auto at = std::ranges::find(model.bodies, name, &model::Body::name);
+    return static_cast<Index>(at - model.bodies.begin());
+}
+
+Index pair_index(const model::Model& model, const std::string& name) {
+    const auto at = std::ranges::find_if(model.pairs, [&](const auto& pair) { return pair->name() == name; });
+    return static_cast<Index>(at - model.pairs.begin());
+}
+
+std::unique_ptr<output::Probe> make(const scene::Probe& spec, const model::Model& model) {
+    return std::visit(
+        Overloaded{[&](const scene::PointProbe& p) {
+                       return output::make_point_probe(model, body_index(model, p.body), p.at, p.fields);
+                   },
+                   [&](const scene::LineProbe& p) {
+                       return output::make_line_probe(model, body_index(model, p.body), p.from, p.to, p.samples,
+                                                      p.fields);
+                   },
+                   [&](const scene::ContactLineProbe& p) {
+                       return output::make_contact_line_probe(model, pair_index(model, p.pair), p.from, p.to, p.samples,
+                                                              p.fields);
+                   },
+                   [&](const scene::NodesProbe& p) {
+                       return output::make_nodes_probe(model, *std::ranges::find(model.sets, p.set, &model::Set::name),
+                                                       p.fields, p.reduce);
+                   },
+                   [&](const scene::SlaveNodesProbe& p) {
+                       return output::make_slave_nodes_probe(model, pair_index(model, p.pair), p.fields, p.reduce);
+                   },
+                   [&](const scene::SectionForceProbe& p) {
+                       return output::make_section_force_probe(model, body_index(model, p.body), p.point, p.normal);
+                   }},
+        spec.kind);
+}
+
+/// The key under which a probe's place stands, and what is expected there.
+std::pair<std::string, std::string> place_of(const scene::Probe& spec) {
+    return std::visit(
+        Overloaded{
+            [](const scene::PointProbe& p) {
+                return std::pair{std::string("point.at"), "a point of body '" + p.body + "'"};
+            },
+            [](const scene::LineProbe& p) {
+                return std::pair{std::string("line"), "a line through body '" + p.body + "'"};
+            },
+            [](const scene::ContactLineProbe& p) {
+                return std::pair{std::string("contact_line"), "a line along the slave surface of '" + p.pair + "'"};
+            },
+            [](const scene::SectionForceProbe& p) {
+                return std::pair{std::string("section_force.point"), "a plane that cuts body '" + p.body + "'"};
+            },
+            [](const auto&) {
+                return std::pair{std::string(), std::string()};
+            }},
+        spec.kind);
+}
+
+} // namespace
+
+std::vector<PlannedProbe> make_probes(const scene::Scene& scene, const model::Model& model,
+                                      std::vector<Fault>& faults) {
+    std::vector<PlannedProbe> probes;
+    for (const auto& [name, spec] : scene.output.probes) try {
+            probes.push_back({name, spec.every, make(spec, model)});
+        } catch (const std::invalid_argument& error) {
+            const auto [key, expected] = place_of(spec);
+            faults.push_back(fault("output.probes." + name + "." + key, expected, error.what()));
+        }
+    return probes;
+}
+
+} // namespace osculate::app

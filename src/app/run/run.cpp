@@ -1,0 +1,173 @@
+#include "osculate/app/run.hpp"
+
+#include "app/run/interruption.hpp"
+#include "app/run/run_recorder.hpp"
+#include "osculate/app/load.hpp"
+#include "osculate/app/report.hpp"
+#include "osculate/app/version.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/scene/units.hpp"
+#include "osculate/scene/writer.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+
+namespace osculate::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& expected, const std::string& found) {
+    Fault fault;
+    fault.file = file.string();
+    fault.expected = expected;
+    fault.found = found;
+    throw SceneError({fault});
+}
+
+/// Folder of a run's files, where the resolved scene must not take the place of the one a user wrote.
+fs::path folder_of(const LoadedScene& loaded, const RunOptions& options) {
+    fs::path folder = options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory;
+    std::error_code none;
+    if (!loaded.path.empty() && fs::equivalent(folder / "scene.yaml", loaded.path, none))
+        refuse(loaded.path, "another output folder",
+               "'" + folder.string() + "', where the resolved scene would replace this file");
+    return folder;
+}
+
+/// Tells two observers, one after the other.
+class Both final : public time::StepObserver {
+public:
+    Both(time::StepObserver& first, time::StepObserver& second) : first_(first), second_(second) {}
+
+    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override {
+        first_.attempted(attempt, iterations);
+        second_.attempted(attempt, iterations);
+    }
+    void accepted(const time::AcceptedStep& step) override {
+        first_.accepted(step);
+        second_.accepted(step);
+    }
+    void between_steps(const std::function<time::Checkpoint()>& checkpoint) override {
+        first_.between_steps(checkpoint);
+        second_.between_steps(checkpoint);
+    }
+    void gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) override {
+        first_.gave_up(found, iterate);
+        second_.gave_up(found, iterate);
+    }
+
+private:
+    time::StepObserver &first_, &second_;
+};
+
+output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings,
+                    const RunRecorder::Settings& settings, time::StepObserver* beside, bool heed_signals) {
+    std::optional<Interruption> interruption;
+    if (heed_signals) interruption.emplace();
+    RunRecorder::Settings heeding = settings;
+    heeding.interruption = interruption ? &*interruption : nullptr;
+    if (settings.from != nullptr) stepper.resume(settings.from->run);
+    RunRecorder recorder(loaded.scene, loaded.plan, stepper, timings, heeding);
+    try {
+        if (beside != nullptr) {
+            Both both(recorder, *beside);
+            stepper.run(both);
+        } else {
+            stepper.run(recorder);
+        }
+        recorder.wait_for_frames();
+    } catch (const Interrupted& ended) {
+        recorder.finish("interrupted", ended.what());
+        throw;
+    } catch (const Stopped& ended) {
+        recorder.wait_for_frames();
+        recorder.finish("interrupted", ended.what());
+        throw;
+    } catch (const RunFailure& failure) {
+        try {
+            recorder.wait_for_frames();
+            recorder.finish("gave_up", failure.what());
+        } catch (const RunFailure&) { // a full disk: the first failure is the one to tell
+        }
+        if (recorder.post_mortem().empty()) throw;
+        throw GaveUp(failure.what(), recorder.post_mortem());
+    }
+    recorder.finish("done");
+    return recorder.summary();
+}
+
+output::Summary run(LoadedScene& loaded, const RunRecorder::Settings& settings, Timings& timings) {
+    time::Stepper stepper(loaded.plan.model, loaded.plan.stages, loaded.plan.stepper, timings);
+    return run(loaded, stepper, timings, settings, nullptr, true);
+}
+
+} // namespace
+
+CheckpointEvery parse_checkpoint_every(const std::string& text) {
+    const scene::Quantity quantity = scene::parse_quantity(text);
+    const bool time = quantity.has_unit && quantity.dimension == scene::dimension::time;
+    const bool steps = !quantity.has_unit && quantity.value == std::floor(quantity.value) && quantity.value < 1e9;
+    if (!quantity.problem.empty() || !(quantity.value > 0) || !std::isfinite(quantity.value) || (!time && !steps))
+        refuse("--checkpoint-every", "a number of steps or a time such as '5 min'", "'" + text + "'");
+    CheckpointEvery every;
+    if (time)
+        every.seconds = quantity.value;
+    else
+        every.steps = static_cast<long>(quantity.value);
+    return every;
+}
+
+Interrupted::Interrupted(int signal, double time, fs::path directory)
+    : std::runtime_error(fmt::format("interrupted at {} s; `osculate resume {}` goes on", scene::number_text(time),
+                                     directory.string())),
+      signal_(signal) {}
+
+output::Summary run(const std::string& scene_path, const std::vector<scene::Override>& overrides,
+                    const RunOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    Timings timings;
+    LoadedScene loaded = load(scene_path, overrides, options.threads, timings);
+    const fs::path folder = folder_of(loaded, options);
+    return run(loaded, {folder, options.threads, options.quiet, begin, options.checkpoint_every}, timings);
+}
+
+output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings, const RunOptions& options,
+                    time::StepObserver* beside) {
+    const RunRecorder::Settings settings{folder_of(loaded, options), options.threads, options.quiet,
+                                         std::chrono::steady_clock::now(), options.checkpoint_every};
+    return run(loaded, stepper, timings, settings, beside, options.heed_signals);
+}
+
+output::Summary resume(const fs::path& directory, const fs::path& from, const RunOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    const fs::path scene_path = directory / "scene.yaml", state = from.empty() ? directory / checkpoint_path : from;
+    std::error_code none;
+    if (!fs::is_regular_file(scene_path, none))
+        refuse(directory, "the folder of a run", fs::exists(directory, none) ? "no scene.yaml in it" : "nothing there");
+    if (!fs::is_regular_file(state, none))
+        refuse(state, "a checkpoint", "nothing there; `osculate run --checkpoint-every 20` writes one every 20 steps");
+    output::CheckpointFile file;
+    try {
+        file = output::read_checkpoint(state);
+    } catch (const std::runtime_error& error) {
+        fs::path previous = state;
+        previous += ".previous";
+        refuse(state, "a checkpoint",
+               std::string(error.what()) +
+                   (fs::exists(previous, none) ? "; the one before it: --from " + previous.string() : ""));
+    }
+    if (file.version != version)
+        refuse(state, std::string("a checkpoint of osculate ") + version, "one of " + file.version);
+    Timings timings;
+    LoadedScene loaded = load(scene_path.string(), {}, options.threads, timings);
+    if (scene::write_scene(loaded.scene) != file.scene)
+        refuse(scene_path, "the scene the checkpoint was written for", "another one");
+    if (output::fingerprint(loaded.plan.model) != file.meshes)
+        refuse(scene_path, "the meshes the checkpoint was written for", "others");
+    return run(loaded, {directory, options.threads, options.quiet, begin, options.checkpoint_every, &file}, timings);
+}
+
+} // namespace osculate::app

@@ -1,0 +1,326 @@
+#include "app/run/run_recorder.hpp"
+
+#include "app/plan/gaps.hpp"
+#include "app/report/plots.hpp"
+#include "osculate/app/report.hpp"
+#include "osculate/app/run_report.hpp"
+#include "osculate/app/version.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/output/paraview_script.hpp"
+#include "osculate/output/post_mortem_file.hpp"
+#include "osculate/scene/writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <sys/resource.h>
+#include <utility>
+
+namespace osculate::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* failed_folder = "failed"; ///< of the last iterate of a run that gave up
+
+/// Runs `write`, at the expense of output. A file that cannot be written ends the run as a failure, not as a bug.
+template <class F> void on_disk(Timings& timings, F&& write) {
+    const ScopedTimer timer(timings, Part::output);
+    try {
+        write();
+    } catch (const std::runtime_error& error) {
+        throw RunFailure(error.what());
+    }
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw std::runtime_error("cannot write " + path.string());
+}
+
+double seconds(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+} // namespace
+
+RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time::Stepper& stepper, Timings& timings,
+                         Settings settings)
+    : scene_(scene), plan_(plan), stepper_(stepper), timings_(timings), settings_(std::move(settings)),
+      progress_(0, stepper.end_time(),
+                settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)),
+      checks_(plan.model, scene.expect) {
+    const scene::Output& out = scene.output;
+    const fs::path& folder = settings_.directory;
+    const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
+    history_reactions_ = reactions;
+    frame_reactions_ = std::ranges::count(out.body_fields, "reaction") > 0;
+    probe_reactions_ =
+        std::ranges::any_of(plan.probes, [](const PlannedProbe& probe) { return probe.probe->reads("reaction"); });
+    describe_plan();
+    on_disk(timings_, [&] {
+        if (!resumed()) {
+            fs::create_directories(folder);
+            write_text(folder / "scene.yaml", scene::write_scene(scene));
+            fs::remove_all(folder / checkpoint_folder);
+        }
+        fs::remove(folder / output::post_mortem_file);
+        output::Frames::remove(folder / failed_folder);
+        if (out.frame_every > 0)
+            frames_ = std::make_unique<output::Frames>(
+                folder, output::FrameFields{out.body_fields, out.slave_fields, out.master_fields}, plan.model,
+                settings_.threads > 1, resumed() ? settings_.from->frames : std::vector<output::SeriesEntry>{});
+        else
+            output::Frames::remove(folder);
+        fs::remove(folder / output::paraview_script_file);
+        if (out.frame_every > 0 && out.paraview)
+            output::write_paraview_script(folder, plan.model, {out.body_fields, out.slave_fields, out.master_fields});
+        if (!resumed()) output::ProbeFile::remove(folder);
+        remove_plots(folder);
+        for (const PlannedProbe& probe : plan.probes)
+            probes_.emplace_back(folder, probe.name, *probe.probe, kept(output::ProbeFile::relative_path(probe.name)));
+        history_ = std::make_unique<output::History>(
+            folder / "history.csv", plan.model, out.history_pairs,
+            reactions ? plan.constrained_sets : std::vector<Index>{},
+            std::any_of(plan.stages.begin(), plan.stages.end(),
+                        [](const time::Stage& stage) { return stage.dynamics.has_value(); }),
+            kept("history.csv"));
+        steps_ = std::make_unique<output::CsvTable>(folder / "steps.csv",
+                                                    std::vector<std::string>{"attempt", "time", "dt", "verdict",
+                                                                             "reason", "body", "node", "value",
+                                                                             "lambda", "iterations"},
+                                                    kept("steps.csv"));
+        if (!out.iterations) fs::remove(folder / "iterations.csv");
+        if (out.iterations)
+            iterations_ = std::make_unique<output::CsvTable>(
+                folder / "iterations.csv",
+                std::vector<std::string>{"attempt", "iteration", "residual", "status_changes", "open", "stick", "slip",
+                                         "facet_changes"},
+                kept("iterations.csv"));
+        if (resumed()) recall(*settings_.from);
+    });
+    checkpoint_step_ = summary_.steps.accepted;
+    checkpoint_time_ = std::chrono::steady_clock::now();
+    if (!resumed()) write_initial_frame();
+    write_summary();
+}
+
+void RunRecorder::describe_plan() {
+    summary_.version = version;
+    summary_.scene = scene_.name;
+    summary_.status = "running";
+    summary_.dofs = degrees_of_freedom(plan_);
+    summary_.threads = settings_.threads;
+    for (const model::Body& body : plan_.model.bodies)
+        summary_.bodies.push_back({body.name, body.nodes(), body.mesh.element_count()});
+    for (const auto& pair : plan_.model.pairs) {
+        const scene::Pair& spec = *scene::find(scene_.contact, pair->name());
+        static const char* const surfaces[] = {"facets", "rpim", "blend"}; // in the order of the variant
+        summary_.pairs.push_back(
+            {pair->name(), pair->size(), pair->surface().facet_count(), surfaces[spec.master.surface.index()]});
+    }
+    for (const PlanItem& item : plan_.items)
+        if (item.present) summary_.plan.push_back(item.part);
+}
+
+void RunRecorder::write_initial_frame() {
+    if (!frames_) return;
+    const scene::Output& out = scene_.output;
+    if (!out.slave_fields.empty() || !out.master_fields.empty())
+        for (const auto& pair : plan_.model.pairs)
+            (void)initial_gaps(*pair, plan_.model.X, timings_, settings_.threads); // evaluates the contact points
+    on_disk(timings_, [&] {
+        std::vector<Vec3> none;
+        if (frame_reactions_) none.assign(plan_.model.X.size(), Vec3::Zero());
+        frames_->write({plan_.model, stepper_.state(), std::move(none)}, 0);
+    });
+}
+
+void RunRecorder::attempted(const time::Attempt& a, const std::vector<time::IterationRecord>& iterations) {
+    ++(a.verdict == time::Verdict::accept ? summary_.steps.accepted : summary_.steps.rejected);
+    summary_.iterations += a.iterations;
+    on_disk(timings_, [&] {
+        const output::Cell node = a.node < 0 ? output::Cell{std::string()} : output::Cell{long{a.node}};
+        steps_->row({long{a.attempt}, a.time, a.dt, name(a.verdict), name(a.reason), a.body, node, a.value, a.lambda,
+                     long{a.iterations}});
+        if (!iterations_) return;
+        for (const time::IterationRecord& i : iterations)
+            iterations_->row({long{a.attempt}, long{i.iteration}, i.residual, long{i.status_changes}, long{i.open},
+                              long{i.stick}, long{i.slip}, long{i.facet_changes}});
+    });
+}
+
+void RunRecorder::accepted(const time::AcceptedStep& step) {
+    checks_.accepted(step);
+    const model::Constraints& constraints = step.equilibrium.constraints();
+    on_disk(timings_, [&] {
+        const int every = scene_.output.frame_every;
+        const bool last = step.state.time >= stepper_.end_time() * (1 - 1e-12);
+        const bool frame = frames_ && (summary_.steps.accepted % every == 0 || last);
+        std::vector<Vec3> reactions;
+        if (history_reactions_ || probe_reactions_ || (frame && frame_reactions_))
+            reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
+        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions), {}, step.dt);
+        history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
+        if (frame) frames_->write(snapshot, summary_.steps.accepted);
+        write_probes(snapshot, last);
+    });
+    write_summary();
+    if (settings_.quiet) return;
+    long contacts = 0;
+    for (const model::ContactHistory& history : step.state.contact)
+        contacts += std::ranges::count_if(history.status, contact::is_closed);
+    progress_.update({summary_.steps.accepted, step.state.time, step.dt, step.iterations, contacts});
+}
+
+void RunRecorder::write_probes(const output::Snapshot& snapshot, bool last) {
+    for (std::size_t p = 0; p < probes_.size(); ++p)
+        if (last || summary_.steps.accepted % plan_.probes[p].every == 0) probes_[p].write(snapshot);
+}
+
+void RunRecorder::between_steps(const std::function<time::Checkpoint()>& checkpoint) {
+    const int signal = settings_.interruption != nullptr ? settings_.interruption->signal() : 0;
+    const CheckpointEvery& every = settings_.checkpoint_every;
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - checkpoint_time_;
+    if (signal == 0 && (every.steps == 0 || summary_.steps.accepted - checkpoint_step_ < every.steps) &&
+        (every.seconds == 0 || passed.count() < every.seconds))
+        return;
+    on_disk(timings_, [&] { write_checkpoint(checkpoint()); });
+    checkpoint_step_ = summary_.steps.accepted;
+    checkpoint_time_ = std::chrono::steady_clock::now();
+    if (signal != 0) throw Interrupted(signal, stepper_.state().time, settings_.directory);
+}
+
+void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
+    output::CheckpointFile file;
+    file.version = version;
+    file.scene = scene::write_scene(scene_);
+    if (!fingerprint_) fingerprint_ = output::fingerprint(plan_.model);
+    file.meshes = *fingerprint_;
+    file.run = checkpoint;
+    if (frames_) file.frames = frames_->written();
+    for (const output::CsvTable* table :
+         std::initializer_list<const output::CsvTable*>{&history_->table(), steps_.get(), iterations_.get()})
+        if (table != nullptr) {
+            table->sync();
+            file.tables.emplace_back(table->path().filename().string(), table->size());
+        }
+    for (std::size_t p = 0; p < probes_.size(); ++p) {
+        probes_[p].table().sync();
+        file.tables.emplace_back(output::ProbeFile::relative_path(plan_.probes[p].name), probes_[p].table().size());
+    }
+    file.steps = summary_.steps;
+    file.iterations = summary_.iterations;
+    const Spent spent = spent_so_far();
+    file.total_seconds = spent.total;
+    file.cpu_seconds = spent.cpu;
+    for (std::size_t part = 0; part < static_cast<std::size_t>(Part::count); ++part)
+        file.seconds.push_back(timings_[static_cast<Part>(part)]);
+    file.checks = checks_.memory();
+    output::write_checkpoint(settings_.directory / checkpoint_path, file);
+}
+
+std::optional<std::uintmax_t> RunRecorder::kept(const std::string& table) const {
+    if (!resumed()) return std::nullopt;
+    for (const auto& [path, bytes] : settings_.from->tables)
+        if (path == table) return bytes;
+    throw std::runtime_error("the checkpoint knows no " + table);
+}
+
+void RunRecorder::recall(const output::CheckpointFile& from) {
+    summary_.steps.accepted = from.steps.accepted;
+    summary_.steps.rejected = from.steps.rejected;
+    summary_.iterations = from.iterations;
+    seconds_before_ = from.total_seconds;
+    cpu_seconds_before_ = from.cpu_seconds;
+    for (std::size_t part = 0; part < std::min(from.seconds.size(), static_cast<std::size_t>(Part::count)); ++part)
+        timings_.add(static_cast<Part>(part), from.seconds[part]);
+    checks_.recall(from.checks);
+}
+
+RunRecorder::Spent RunRecorder::spent_so_far() const {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - settings_.begin;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return {seconds_before_ + elapsed.count(), cpu_seconds_before_ + seconds(usage.ru_utime) + seconds(usage.ru_stime),
+            usage.ru_maxrss * 1024}; // Linux counts in kB
+}
+
+void RunRecorder::gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) {
+    post_mortem_ = output::in_words(found);
+    try {
+        on_disk(timings_, [&] {
+            output::write_post_mortem(settings_.directory / output::post_mortem_file, found);
+            if (iterate != nullptr && scene_.output.failed_iterate) write_failed(*iterate);
+        });
+    } catch (const RunFailure&) { // a full disk: the first failure is the one to tell
+    }
+}
+
+void RunRecorder::write_failed(const time::FailedIterate& iterate) {
+    const auto with = [](std::vector<std::string> fields, std::initializer_list<const char*> more) {
+        for (const char* field : more)
+            if (std::ranges::count(fields, field) == 0) fields.emplace_back(field);
+        return fields;
+    };
+    const scene::Output& out = scene_.output;
+    output::Frames frames(settings_.directory / failed_folder,
+                          {with(out.body_fields, {"displacement", "out_of_balance"}),
+                           with(out.slave_fields, {"gap", "status", "contact_force"}), out.master_fields},
+                          plan_.model);
+    const std::vector<Vec3>& unbalanced = iterate.equilibrium.unbalanced();
+    const std::vector<Vec3> reactions = output::nodal_reactions(iterate.equilibrium.constraints(), unbalanced);
+    std::vector<Vec3> rest = unbalanced;
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= reactions[i];
+    frames.write({plan_.model, iterate.state, reactions, std::move(rest)}, summary_.steps.accepted + 1);
+}
+
+void RunRecorder::wait_for_frames() {
+    if (frames_) on_disk(timings_, [&] { frames_->finish(); });
+}
+
+void RunRecorder::finish(const std::string& status, const std::string& failure) {
+    progress_.finish();
+    summary_.status = status;
+    summary_.failure = failure;
+    if (status != "interrupted") summary_.expectation = checks_.judge(failure); // it may still come to what is expected
+    write_summary();
+    if (status != "interrupted") write_pictures();
+    if (!summary_.expectation) return;
+    const std::vector<std::string>& misses = summary_.expectation->misses;
+    if (!misses.empty())
+        fmt::print(stderr, "not as expected: {}\n", fmt::join(misses, "; "));
+    else if (!settings_.quiet)
+        fmt::print(stderr, "as expected\n");
+}
+
+void RunRecorder::write_pictures() {
+    if (const std::string note = write_plots(scene_, settings_.directory); !note.empty())
+        fmt::print(stderr, "{}\n", note);
+    if (!scene_.output.report) return;
+    try {
+        for (const std::string& note : write_report(settings_.directory).notes)
+            fmt::print(stderr, "report: {}\n", note);
+    } catch (const std::exception& error) { // a run is no worse for a report that cannot be written
+        fmt::print(stderr, "report: {}\n", error.what());
+    }
+}
+
+void RunRecorder::write_summary() {
+    const Spent spent = spent_so_far();
+    summary_.total_seconds = spent.total;
+    summary_.cpu_seconds = spent.cpu;
+    summary_.peak_memory_bytes = spent.peak_bytes;
+    summary_.factorisations = stepper_.factorisations();
+    summary_.gmres_iterations = stepper_.gmres_iterations();
+    summary_.steps.stabilised = stepper_.stabilised_steps();
+    summary_.timings = timings_;
+    summary_.checks = checks_.checks();
+    on_disk(timings_, [&] { output::write_summary(settings_.directory / "summary.json", summary_); });
+}
+
+} // namespace osculate::app

@@ -1,0 +1,184 @@
+#include "app/study/study_emit.hpp"
+
+#include "osculate/core/error.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace osculate::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A word as a shell reads it; control characters do not break the line.
+std::string quoted(const std::string& word) {
+    const auto plain = [](unsigned char c) {
+        return std::isalnum(c) != 0 || std::string("_-./=,:+@%").find(static_cast<char>(c)) != std::string::npos;
+    };
+    if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+    if (std::ranges::none_of(word, [](unsigned char c) { return c < ' '; })) {
+        std::string text = "'";
+        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        return text + "'";
+    }
+    std::string text = "$'";
+    for (const char c : word)
+        if (static_cast<unsigned char>(c) < ' ')
+            text += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+        else
+            text += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    return text + "'";
+}
+
+std::string line_of(const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+    return line;
+}
+
+std::string line_of(const StudyCase& c, int threads) {
+    return line_of(
+        run_words(c, fs::absolute(c.scene_path).lexically_normal().string(), fs::path("runs") / c.id, threads));
+}
+
+std::string program() {
+    return fs::read_symlink("/proc/self/exe").string();
+}
+
+/// A text as Python reads it.
+std::string literal(const std::string& text) {
+    return nlohmann::json(text).dump();
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw RunFailure("cannot write " + path.string());
+}
+
+std::vector<const StudyCase*> announced(const std::vector<StudyCase>& cases, const StudyRunOptions& options,
+                                        bool finished) {
+    std::vector<const StudyCase*> list;
+    for (const StudyCase& c : cases) {
+        if (!is_chosen(c, options) || (c.record.finished() && !finished)) continue;
+        announce(c);
+        list.push_back(&c);
+    }
+    return list;
+}
+
+constexpr const char* snakefile = R"(# Runs the study '{name}': snakemake -s {file} --cores all
+# Each rule is a run, as `osculate study` would start it; a run that gives up is a result. The last one gathers.
+workdir: {directory}
+
+OSCULATE = config.get("osculate", {program})
+
+
+rule study:
+    input: "study.csv"
+
+
+rule gather:
+    input:
+{inputs}
+    output: "study.csv", "study.md"
+    threads: 1
+    shell: "{{OSCULATE:q}} " + {gather}
+)";
+
+constexpr const char* snake_rule = R"(
+
+rule case_{number}:  # {id}
+    output: {output}
+    threads: {threads}
+    shell:
+        "rm -f " + {code} + "; code=0; {{OSCULATE:q}} " + {line} + " || code=$?; "
+        "echo $code > " + {code} + "; [ $code -eq 0 ] || [ $code -eq 3 ]"
+)";
+
+constexpr const char* sbatch = R"sh(#!/bin/bash
+# Runs the study '{name}', one task per line of cases.txt: a name, a tab and the arguments of `osculate`.
+#   job=$(sbatch --parsable {file})
+#   sbatch --dependency=afterany:$job --wrap {wrap}
+# Time, memory and partition are given on the command line of sbatch, or here.
+#SBATCH --job-name={job}
+#SBATCH --array=1-{count}
+#SBATCH --ntasks=1
+#SBATCH --cpus-per-task={threads}
+#SBATCH --output={directory}/runs/slurm-%a.txt
+set -u
+cd {quoted_directory} || exit 1
+osculate=${{OSCULATE:-{program}}}
+line=$(sed -n "${{SLURM_ARRAY_TASK_ID}}p" cases.txt)
+[ -n "$line" ] || {{ echo "cases.txt has no line ${{SLURM_ARRAY_TASK_ID}}" >&2; exit 1; }}
+folder=runs/${{line%%$'\t'*}}
+eval "arguments=(${{line#*$'\t'}})"
+rm -f "$folder/{code}"
+code=0
+srun "$osculate" "${{arguments[@]}}" > "$folder/messages.txt" 2>&1 || code=$?
+echo $code > "$folder/{code}"
+[ $code -eq 0 ] || [ $code -eq 3 ] # a run that gives up is a result
+)sh";
+
+/// A text within a string that Snakemake formats.
+std::string unformatted(const std::string& text) {
+    std::string doubled;
+    for (const char c : text) doubled += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
+    return doubled;
+}
+
+} // namespace
+
+std::string emit_snakemake(const scene::Study& study, const std::vector<StudyCase>& cases,
+                           const StudyRunOptions& options, const fs::path& folder,
+                           const std::vector<std::string>& gather) {
+    const fs::path path = folder / "Snakefile";
+    std::string inputs, rules;
+    int number = 0;
+    for (const StudyCase* c : announced(cases, options, true)) {
+        const std::string run = "runs/" + c->id, summary = literal(run + "/summary.json");
+        inputs += fmt::format("        {},\n", summary);
+        const std::string line = line_of(*c, options.threads) + " > " + quoted(run + "/messages.txt") + " 2>&1";
+        rules +=
+            fmt::format(snake_rule, fmt::arg("number", ++number), fmt::arg("id", c->id), fmt::arg("output", summary),
+                        fmt::arg("threads", options.threads), fmt::arg("line", literal(unformatted(line))),
+                        fmt::arg("code", literal(unformatted(quoted(run + "/" + exit_code_file)))));
+    }
+    if (!inputs.empty()) inputs.pop_back();
+    write_text(path, fmt::format(snakefile, fmt::arg("name", study.name), fmt::arg("file", quoted(path.string())),
+                                 fmt::arg("directory", literal(fs::absolute(folder).lexically_normal().string())),
+                                 fmt::arg("program", literal(program())), fmt::arg("inputs", inputs),
+                                 fmt::arg("gather", literal(unformatted(line_of(gather))))) +
+                         rules);
+    return fmt::format("{}: {} runs; `snakemake -s {} --cores all` runs what is not finished and gathers the results\n",
+                       study.name, number, quoted(path.string()));
+}
+
+std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& cases, const StudyRunOptions& options,
+                       const fs::path& folder, const std::vector<std::string>& gather) {
+    const fs::path path = folder / "study.sbatch";
+    const std::string directory = fs::absolute(folder).lexically_normal().string();
+    const std::string gathering = "osculate " + line_of(gather);
+    std::string table;
+    int count = 0;
+    for (const StudyCase* c : announced(cases, options, false)) {
+        table += c->id + "\t" + line_of(*c, options.threads) + "\n";
+        ++count;
+    }
+    if (count == 0) return fmt::format("{}: every run is finished; `{}` gathers the results\n", study.name, gathering);
+    write_text(folder / "cases.txt", table);
+    write_text(path, fmt::format(sbatch, fmt::arg("name", study.name), fmt::arg("file", quoted(path.string())),
+                                 fmt::arg("wrap", quoted(gathering)), fmt::arg("job", study.name),
+                                 fmt::arg("count", count), fmt::arg("threads", options.threads),
+                                 fmt::arg("directory", directory), fmt::arg("quoted_directory", quoted(directory)),
+                                 fmt::arg("program", quoted(program())), fmt::arg("code", exit_code_file)));
+    return fmt::format("{}: {} runs; `sbatch {}` runs them, then `{}` gathers the results\n", study.name, count,
+                       quoted(path.string()), gathering);
+}
+
+} // namespace osculate::app

@@ -1,6 +1,6 @@
 // Which plots a run has, by the columns of its tables.
 import {chart} from "chart";
-import {report, table} from "data";
+import {floats, report, table} from "data";
 import {make} from "page";
 import {words} from "units";
 
@@ -127,8 +127,23 @@ function residuals(iterations) {
                  .map((name) => ({name: words(name), x: d3.range(attempt.length), y: iterations.get(name)}))});
 }
 
+/// What the scene asks for: curves of its tables and probes.
+async function ofTheScene() {
+  const grid = make("div", {class: "grid"});
+  place("plots").append(grid);
+  for (const plot of report.plots) {
+    const series = await Promise.all(plot.curves.map(async ({name, points, array}) => {
+      const values = await floats(array);
+      return {name, x: values.subarray(0, points), y: values.subarray(points)};
+    }));
+    chart(grid, {title: plot.y_label ? `${plot.title} (${plot.y_label})` : plot.title, unit: "", series, xLabel: plot.x_label,
+                 timed: /^time\b/.test(plot.x_label), stages: report.stages});
+  }
+}
+
 export async function makeCharts() {
   const history = await table("history"), iterations = await table("iterations");
+  if (place("plots")) await ofTheScene();
   if (place("contact")) contact(history);
   if (place("reactions")) reactions(history);
   if (place("energies")) energies(history);

@@ -363,6 +363,10 @@ bool has_columns(const RunFiles& files, const std::string& start) {
 std::string plots_of(const RunFiles& files, const PageOptions& options, PageData& data,
                      std::vector<std::string>& notes) {
     std::string plots;
+    if (!files.plots.empty()) {
+        data.add_plots(files.plots);
+        plots += charts("plots", "Plots of the scene");
+    }
     if (files.history) data.add_table("history", *files.history, notes);
     if (has_columns(files, "pair."))
         plots += charts("contact", "Contact");

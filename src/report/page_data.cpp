@@ -65,6 +65,20 @@ void PageData::add_attempts(const std::vector<time::Attempt>& attempts, std::vec
     json["attempts"] = {{"accepted", taken}, {"rejected", cut}};
 }
 
+void PageData::add_plots(const std::vector<PlotFile>& plots) {
+    json["plots"] = Json::array();
+    for (const PlotFile& plot : plots) {
+        Json curves = Json::array();
+        for (const PlotCurve& curve : plot.curves) {
+            std::vector<float> points(curve.x.begin(), curve.x.end());
+            points.insert(points.end(), curve.y.begin(), curve.y.end());
+            curves.push_back({{"name", curve.name}, {"points", curve.x.size()}, {"array", add(packed_floats(points))}});
+        }
+        json["plots"].push_back(
+            {{"title", plot.title}, {"x_label", plot.x_label}, {"y_label", plot.y_label}, {"curves", curves}});
+    }
+}
+
 Json PageData::view_of(const MovingSurfaces& surfaces) {
     Json parts = Json::array();
     Vec3 low = Vec3::Constant(1e300), high = -low;

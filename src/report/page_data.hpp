@@ -3,6 +3,7 @@
 
 #include "osculate/report/moving_surfaces.hpp"
 #include "osculate/time/attempt.hpp"
+#include "report/plot_files.hpp"
 #include "report/run_files.hpp"
 
 #include <nlohmann/json.hpp>
@@ -21,6 +22,7 @@ public:
     /// A table as columns of 32-bit floats; every n-th row where there are too many, which is noted.
     void add_table(const char* name, const output::NumberTable& table, std::vector<std::string>& notes);
     void add_attempts(const std::vector<time::Attempt>& attempts, std::vector<std::string>& notes);
+    void add_plots(const std::vector<PlotFile>& plots);
     /// @param largest  bytes; frames are thinned out until the view takes no more
     void add_view(MovingSurfaces& surfaces, std::size_t largest, std::vector<std::string>& notes);
 

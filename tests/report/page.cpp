@@ -6,6 +6,9 @@
 #include "output/two_blocks.hpp"
 #include "support/found_in.hpp"
 
+#include <array>
+#include <cmath>
+#include <cstring>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -187,6 +190,36 @@ TEST_F(PageOfFrames, ThatIsTooLargeHoldsFewerFramesAndSaysSo) {
     EXPECT_LT(view["times"].size(), 40U);
     EXPECT_EQ(view["times"].back(), 39);
     EXPECT_EQ(page.pictures.size(), 6U); // start, middle and end, each as PNG and SVG
+}
+
+TEST_F(Page, PlotsOfTheSceneHoldTheirCurves) {
+    file("scene.yaml", R"(
+bodies: {a: {mesh: {block: {size: [1 m, 1 m, 1 m], divisions: [1, 1, 1]}}, material: {linear_elastic: {E: 1 MPa, nu: 0.3}}}}
+stages: {s: {}}
+output:
+  plots:
+    sag_of_a: {x_label: "x, m", y_label: "sag, m", curves: {line: {y: dt}}}
+    torn: {curves: {line: {y: dt}}}
+    never_drawn: {curves: {line: {y: dt}}}
+)");
+    std::filesystem::create_directories(folder / "plots");
+    file("plots/sag_of_a.csv", "curve,x,y\n\"at \"\"a\"\", early\",0,1\n\"at \"\"a\"\", early\",1,\nlate,0,0.5\n");
+    file("plots/torn.csv", "curve,x,y\nline,0,o\n");
+    const report::Page page = make_page(folder, options);
+    const nlohmann::json plots = data_of(page.html)["plots"];
+    ASSERT_EQ(plots.size(), 1U) << "one has no points, one cannot be read";
+    EXPECT_EQ(plots[0]["title"], "sag of a");
+    EXPECT_EQ(plots[0]["y_label"], "sag, m");
+    ASSERT_EQ(plots[0]["curves"].size(), 2U);
+    EXPECT_EQ(plots[0]["curves"][0]["name"], "at \"a\", early");
+    const Bytes points = inflated(array_of(page.html, plots[0]["curves"][0]["array"]));
+    ASSERT_EQ(points.size(), 4 * sizeof(float));
+    std::array<float, 4> values;
+    std::memcpy(values.data(), points.data(), points.size());
+    EXPECT_EQ(std::vector<float>(values.begin(), values.begin() + 3), (std::vector<float>{0, 1, 1}));
+    EXPECT_TRUE(std::isnan(values[3])) << "a gap";
+    EXPECT_THAT(page.notes, Contains(HasSubstr("plots/torn.csv cannot be read: line 2: 'o' is no number")));
+    EXPECT_THAT(missing(page.html, {"Plots of the scene"}), IsEmpty());
 }
 
 TEST_F(Page, ALongHistoryIsThinnedOutAndSaidSo) {

@@ -40,11 +40,23 @@ def read(part, reader, ending):
     return warped
 
 
+def range_of(field):  # one for all parts that have it
+    ranges = []
+    for source, part, place in sources:
+        array = source.PointData[field] if place != "master" else None
+        if array:
+            ranges.append(array.GetRange(-1 if field in VECTORS else 0))
+    low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
+    return (low, high) if high > low else (low, low + 1)
+
+
 def colour(display, field, unit):
     ColorBy(display, ("POINTS", field) + (("Magnitude",) if field in VECTORS else ()))
-    display.RescaleTransferFunctionToDataRange(False, True)
+    map = GetColorTransferFunction(field)
+    map.AutomaticRescaleRangeMode = "Never"
+    map.RescaleTransferFunction(*range_of(field))
     display.SetScalarBarVisibility(view, True)
-    bar = GetScalarBar(GetColorTransferFunction(field), view)
+    bar = GetScalarBar(map, view)
     bar.Title = field.replace("_", " ") + (", " + unit if unit else "")
     bar.ComponentTitle = ""
     bar.TitleFontSize, bar.LabelFontSize, bar.HorizontalTitle = 12, 10, 1

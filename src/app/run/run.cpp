@@ -63,6 +63,16 @@ private:
     time::StepObserver &first_, &second_;
 };
 
+/// A full disk is told beside: how to go on is what matters.
+void finish_interrupted(RunRecorder& recorder, const char* reason) {
+    try {
+        recorder.wait_for_frames();
+        recorder.finish("interrupted", reason);
+    } catch (const RunFailure& failure) {
+        fmt::print(stderr, "{}\n", failure.what());
+    }
+}
+
 output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings,
                     const RunRecorder::Settings& settings, time::StepObserver* beside, bool heed_signals) {
     std::optional<Interruption> interruption;
@@ -80,11 +90,10 @@ output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& 
         }
         recorder.wait_for_frames();
     } catch (const Interrupted& ended) {
-        recorder.finish("interrupted", ended.what());
+        finish_interrupted(recorder, ended.what());
         throw;
     } catch (const Stopped& ended) {
-        recorder.wait_for_frames();
-        recorder.finish("interrupted", ended.what());
+        finish_interrupted(recorder, ended.what());
         throw;
     } catch (const RunFailure& failure) {
         try {

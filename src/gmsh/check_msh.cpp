@@ -2,11 +2,10 @@
 
 #include "gmsh/msh_numbers.hpp"
 #include "gmsh/tag_set.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <set>
 #include <utility>
@@ -287,10 +286,9 @@ private:
 } // namespace
 
 std::string checked_msh(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string text(static_cast<std::size_t>(std::filesystem::file_size(path)), '\0');
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!file) throw MeshError(path, "cannot be read");
+    std::error_code error;
+    const std::string text = file_content(path, error);
+    if (error) throw MeshError(path, "cannot be read");
     return MshCheck(path, text).allowed();
 }
 

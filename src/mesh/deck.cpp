@@ -1,12 +1,12 @@
 #include "osculate/mesh/deck.hpp"
 
+#include "osculate/core/file_content.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 namespace osculate::mesh {
 namespace {
@@ -42,10 +42,8 @@ public:
         if (error) fail("cannot be read");
         if ((total_ += size) > largest) fail("decks of more than 4 GB are not read");
         if (depth > deepest) fail("files that include files, deeper than 10");
-        auto content = std::make_shared<std::string>(size, '\0');
-        std::ifstream stream(path, std::ios::binary);
-        stream.read(content->data(), static_cast<std::streamsize>(size));
-        if (!stream) fail("cannot be read");
+        auto content = std::make_shared<const std::string>(file_content(path, error));
+        if (error) fail("cannot be read");
         text(std::move(content), path.string(), path.parent_path(), depth);
     }
 

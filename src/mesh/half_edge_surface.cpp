@@ -1,5 +1,7 @@
 #include "osculate/mesh/half_edge_surface.hpp"
 
+#include "mesh/sort_unique.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,11 +14,6 @@
 
 namespace osculate::mesh {
 namespace {
-
-void sort_unique(std::vector<Index>& values) {
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 [[noreturn]] void fail(const std::string& what, Index node_a, Index node_b) {
     throw std::runtime_error("surface: " + what + " at the edge between nodes " + std::to_string(node_a) + " and " +

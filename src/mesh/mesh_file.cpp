@@ -1,6 +1,7 @@
 #include "osculate/mesh/mesh_file.hpp"
 
 #include "mesh/sort_few.hpp"
+#include "mesh/sort_unique.hpp"
 #include "mesh/vtk_reader.hpp"
 #include "osculate/mesh/deck_mesh.hpp"
 #include "osculate/mesh/gmsh.hpp"
@@ -58,8 +59,7 @@ RawMesh select(const RawMesh& raw, const MeshFileOptions& options) {
             throw MeshError(raw.file,
                             "no part is called '" + options.part + "'; parts with volume: " + names_of(raw.parts));
         cells = found->second;
-        std::sort(cells.begin(), cells.end());
-        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        sort_unique(cells);
     }
     if (options.piece > 0) {
         const std::vector<int> numbers = pieces_of(raw, cells);
@@ -152,8 +152,7 @@ void name_node_sets(const RawMesh& raw, const std::vector<Index>& number, Mesh& 
         std::vector<Index> nodes;
         for (const Index p : points)
             if (number[p] >= 0) nodes.push_back(number[p]);
-        std::sort(nodes.begin(), nodes.end());
-        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        sort_unique(nodes);
         // A surface keeps its name, and a set of nodes that is something else gets out of its way.
         if (!nodes.empty()) mesh.node_sets[raw.surfaces.contains(name) ? name + ".nodes" : name] = std::move(nodes);
     }

@@ -1,5 +1,7 @@
 #include "osculate/mesh/select.hpp"
 
+#include "mesh/sort_unique.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -18,11 +20,6 @@ std::vector<Index> nodes_of(const std::vector<Facet>& facets) {
     std::vector<Index> nodes;
     for (const Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
     return nodes;
-}
-
-void sort_unique(std::vector<Index>& nodes) {
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
 
 std::vector<Facet> facets_within(const std::vector<Facet>& exterior, const std::vector<char>& member) {

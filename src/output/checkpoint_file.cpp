@@ -1,5 +1,6 @@
 #include "osculate/output/checkpoint_file.hpp"
 
+#include "osculate/core/file_content.hpp"
 #include "output/files.hpp"
 
 #include <algorithm>
@@ -7,8 +8,6 @@
 #include <boost/crc.hpp>
 #include <cstring>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -402,9 +401,9 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointFile& c
 }
 
 CheckpointFile read_checkpoint(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw std::runtime_error("cannot read " + path.string() + ": " + std::strerror(errno));
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    std::error_code failed;
+    const std::string bytes = file_content(path, failed);
+    if (failed) throw std::runtime_error("cannot read " + path.string() + ": " + failed.message());
     try {
         return decode(bytes);
     } catch (const std::runtime_error& error) {

@@ -1,7 +1,8 @@
 #include "osculate/output/csv_reader.hpp"
 
+#include "osculate/core/file_content.hpp"
+
 #include <charconv>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -24,11 +25,9 @@ std::vector<std::string> split(const std::string& line) {
 } // namespace
 
 NumberTable read_numbers(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream content;
-    content << file.rdbuf();
-    if (!file) throw std::runtime_error("cannot read " + path.string());
-    std::string text = content.str();
+    std::error_code error;
+    std::string text = file_content(path, error);
+    if (error) throw std::runtime_error("cannot read " + path.string());
     text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
     std::istringstream lines(text);
     std::string line;

@@ -1,5 +1,6 @@
 #include "osculate/output/series.hpp"
 
+#include "osculate/core/escaped.hpp"
 #include "output/files.hpp"
 
 #include <algorithm>
@@ -9,22 +10,6 @@
 #include <utility>
 
 namespace osculate::output {
-
-namespace {
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-        case '&': result += "&amp;"; break;
-        case '<': result += "&lt;"; break;
-        case '>': result += "&gt;"; break;
-        case '"': result += "&quot;"; break;
-        default: result += c;
-        }
-    }
-    return result;
-}
-} // namespace
 
 Series::Series(std::filesystem::path directory, std::vector<SeriesEntry> earlier)
     : path_(std::move(directory) / "series.pvd"), entries_(std::move(earlier)) {

@@ -1,5 +1,6 @@
 #include "report/html.hpp"
 
+#include "osculate/core/escaped.hpp"
 #include "osculate/scene/outline.hpp"
 
 #include <algorithm>

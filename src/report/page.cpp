@@ -1,5 +1,6 @@
 #include "osculate/report/page.hpp"
 
+#include "osculate/core/escaped.hpp"
 #include "osculate/core/without_traps.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/report/picture.hpp"

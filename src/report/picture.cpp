@@ -1,5 +1,6 @@
 #include "osculate/report/picture.hpp"
 
+#include "osculate/core/escaped.hpp"
 #include "osculate/core/without_traps.hpp"
 #include "osculate/scene/outline.hpp"
 

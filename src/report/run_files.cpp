@@ -1,15 +1,14 @@
 #include "report/run_files.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/reader.hpp"
 
 #include <chrono>
 #include <ctime>
 #include <fmt/format.h>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <sys/stat.h>
 
@@ -18,13 +17,6 @@ namespace osculate::report {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string content(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
 
 std::string time_of(const fs::path& path) {
     struct stat found {};
@@ -58,7 +50,7 @@ void read_scene(const fs::path& folder, RunFiles& files) {
             "scene.yaml is missing: the scene is neither described nor can it be run again from here.");
         return;
     }
-    files.scene_text = content(path);
+    files.scene_text = file_content(path);
     try {
         files.scene = scene::read_scene(path.string());
     } catch (const SceneError& error) {
@@ -89,7 +81,7 @@ RunFiles read_run_files(const fs::path& folder) {
     if (fs::exists(summary)) {
         files.ended = time_of(summary);
         try {
-            files.summary = nlohmann::json::parse(content(summary));
+            files.summary = nlohmann::json::parse(file_content(summary));
             if (!files.summary.is_object()) throw std::runtime_error("it is no object");
         } catch (const std::exception& error) {
             throw std::runtime_error("cannot read " + summary.string() + ": " + error.what());

@@ -1,5 +1,6 @@
 #include "report/scene_section.hpp"
 
+#include "osculate/core/escaped.hpp"
 #include "osculate/scene/outline.hpp"
 #include "report/html.hpp"
 

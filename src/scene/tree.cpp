@@ -1,9 +1,8 @@
 #include "scene/tree.hpp"
 
-#include <cerrno>
-#include <cstring>
+#include "osculate/core/file_content.hpp"
+
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
@@ -176,14 +175,13 @@ Tree read_yaml(const std::string& path, std::vector<Fault>& faults) {
         faults.push_back(fault_at({path, 0, 0}, "", "a YAML file", "a folder"));
         return nothing;
     }
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) {
-        faults.push_back(fault_at({path, 0, 0}, "", "a readable file", std::strerror(errno)));
+    std::error_code error;
+    const std::string text = file_content(path, error);
+    if (error) {
+        faults.push_back(fault_at({path, 0, 0}, "", "a readable file", error.message()));
         return nothing;
     }
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return parse_yaml(text.str(), path, faults);
+    return parse_yaml(text, path, faults);
 }
 
 } // namespace osculate::scene

@@ -32,10 +32,5 @@ TEST(Encode, BytesThatAreNotDeflatedAreRefused) {
     EXPECT_THROW((void)inflated(cut), std::runtime_error);
 }
 
-TEST(Encode, TextCannotLeaveItsElementOrAttribute) {
-    EXPECT_EQ(escaped("<script>\"a\" & 'b'</script>"), "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;&lt;/script&gt;");
-    EXPECT_EQ(escaped(std::string("a\0b\x1b\nc", 6)), "ab\nc");
-}
-
 } // namespace
 } // namespace osculate::report

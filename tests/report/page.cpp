@@ -1,5 +1,6 @@
 #include "osculate/report/page.hpp"
 
+#include "osculate/core/escaped.hpp"
 #include "osculate/output/frames.hpp"
 #include "osculate/report/pack.hpp"
 #include "output/temporary_folder.hpp"

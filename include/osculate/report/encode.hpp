@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace osculate::report {
@@ -16,8 +15,5 @@ using Bytes = std::vector<std::uint8_t>;
 [[nodiscard]] Bytes inflated(const Bytes& bytes);
 
 [[nodiscard]] std::string base64(const Bytes& bytes);
-
-/// Text for HTML, within elements and within quoted attributes; characters that end or break a page are gone.
-[[nodiscard]] std::string escaped(std::string_view text);
 
 } // namespace osculate::report

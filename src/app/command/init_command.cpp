@@ -2,6 +2,7 @@
 
 #include "osculate/core/data_folder.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/scene/nearest.hpp"
 #include "osculate/scene/reader.hpp"
 
@@ -45,20 +46,13 @@ std::vector<std::string> names() {
     throw SceneError({fault});
 }
 
-std::string content(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 bool is_modeline(const std::string& line) {
     return line.starts_with("# yaml-language-server:");
 }
 
 /// First sentence of the comment that a tutorial begins with.
 std::string subject(const fs::path& path) {
-    std::istringstream text(content(path));
+    std::istringstream text(file_content(path));
     std::string sentence;
     for (std::string line; std::getline(text, line) && line.starts_with("#");) {
         if (is_modeline(line)) continue;
@@ -116,10 +110,10 @@ std::string init_scene(const std::string& name, const std::string& file) {
             meshes.emplace_back(mesh->path, to.parent_path() / fs::relative(mesh->path, folder()));
     for (const auto& [source, mesh] : meshes)
         if (fs::exists(mesh)) refuse(mesh.string(), "a mesh that is not there yet: nothing is overwritten", "a file");
-    copy(adapted(content(from), name, to.string()), to);
+    copy(adapted(file_content(from), name, to.string()), to);
     std::string text = fmt::format("{} written", to.string());
     for (const auto& [source, mesh] : meshes) {
-        copy(content(source), mesh);
+        copy(file_content(source), mesh);
         text += fmt::format(", its mesh {}", mesh.string());
     }
     return text + fmt::format("; run it: osculate run {}\n", to.string());

@@ -1,6 +1,7 @@
 #include "app/study/study_case.hpp"
 
 #include "osculate/app/version.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/output/csv_reader.hpp"
 #include "osculate/output/frame_reader.hpp"
 #include "osculate/scene/writer.hpp"
@@ -28,13 +29,6 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* record_file = "study_run.json";
 
-std::string content(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 /// FNV-1a, 64 bits: tells apart what changed, not what was forged.
 std::string hash_of(const std::string& text) {
     std::uint64_t hash = 14695981039346656037ull;
@@ -45,15 +39,15 @@ std::string hash_of(const std::string& text) {
 std::string hash_of(const scene::Scene& scene) {
     std::string text = std::string(version) + "\n" + scene::write_scene(scene);
     for (const auto& [name, body] : scene.bodies) {
-        if (const auto* file = std::get_if<scene::FileMesh>(&body.mesh.source)) text += content(file->path);
-        if (const auto* cad = std::get_if<scene::CadMesh>(&body.mesh.source)) text += content(cad->path);
+        if (const auto* file = std::get_if<scene::FileMesh>(&body.mesh.source)) text += file_content(file->path);
+        if (const auto* cad = std::get_if<scene::CadMesh>(&body.mesh.source)) text += file_content(cad->path);
     }
     return hash_of(text);
 }
 
 /// Last line of what a run said.
 std::string last_words(const fs::path& messages) {
-    std::istringstream text(content(messages));
+    std::istringstream text(file_content(messages));
     std::string line, last;
     while (std::getline(text, line))
         if (!line.empty()) last = line;
@@ -68,7 +62,7 @@ std::optional<int> exit_code(const fs::path& folder) {
 }
 
 Json read_json(const fs::path& path) {
-    return Json::parse(content(path), nullptr, false); // `discarded` where it is none
+    return Json::parse(file_content(path), nullptr, false); // `discarded` where it is none
 }
 
 void read_checks(StudyRecord& record, const Json& json) {

@@ -3,6 +3,7 @@
 #include "app/study/child_process.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/output/progress.hpp"
 
 #include <algorithm>
@@ -11,11 +12,9 @@
 #include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <sys/wait.h>
 
 namespace osculate::app {
@@ -25,20 +24,14 @@ using Json = nlohmann::json;
 
 namespace {
 
-std::string content(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 /// Whether two runs left the same results.
 bool same_results(const fs::path& a, const fs::path& b) {
     std::vector<fs::path> files{"history.csv", "steps.csv"};
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(a / "frames", none))
         files.push_back(fs::path("frames") / entry.path().filename());
-    return std::ranges::all_of(files, [&](const fs::path& file) { return content(a / file) == content(b / file); });
+    return std::ranges::all_of(files,
+                               [&](const fs::path& file) { return file_content(a / file) == file_content(b / file); });
 }
 
 class Runner {

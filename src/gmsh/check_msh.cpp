@@ -119,7 +119,7 @@ private:
         for (std::int64_t& count : counts) count = in_.size("the number of entities", 0, most_int);
         for (std::size_t dimension = 0; dimension < 4; ++dimension)
             for (std::int64_t e = 0; e < counts[dimension]; ++e) {
-                const int tag = in_.integer("the number of an entity", 1, most_int);
+                const int tag = in_.integer("the number of an entity", 0, most_int);
                 if (!entities_[dimension].insert(tag).second)
                     in_.fail("entity " + std::to_string(tag) + " of dimension " + std::to_string(dimension) +
                              " is there twice");
@@ -162,7 +162,7 @@ private:
         std::int64_t read = 0;
         for (std::int64_t b = 0; b < blocks; ++b) {
             const int dimension = in_.integer("the dimension of an entity", 0, 3);
-            in_.integer("the number of an entity", 1, most_int);
+            in_.integer("the number of an entity", 0, most_int);
             const int parametric = in_.integer("whether nodes have parameters", 0, 1);
             const std::int64_t count = in_.size("the number of nodes of a block", 0, total - read);
             for (std::int64_t n = 0; n < count; ++n)
@@ -241,7 +241,7 @@ private:
         std::int64_t read = 0, lowest = most_size, highest = 0;
         for (std::int64_t b = 0; b < blocks; ++b) {
             const int dimension = in_.integer("the dimension of an entity", 0, 3);
-            in_.integer("the number of an entity", 1, most_int);
+            in_.integer("the number of an entity", 0, most_int);
             const ElementShape& shape = read_type();
             if (shape.dimension != dimension) in_.fail("elements are of another dimension than their entity");
             const std::int64_t count = in_.size("the number of elements of a block", 0, total - read);

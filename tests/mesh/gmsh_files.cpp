@@ -88,6 +88,10 @@ TEST_F(GmshFiles, BothVersionsAndTheirBinariesAreRead) {
         EXPECT_THAT(faults(mesh), IsEmpty()) << name;
     }
     EXPECT_EQ(mesh_of(write("ascii4.msh", msh4)).surfaces.at("ground").size(), 1u);
+    // entities that other writers number from 0
+    const std::string zero = changed(changed(binary4(), bytes<int>({3, 1, 0}), bytes<int>({3, 0, 0})),
+                                     bytes<int>({3, 1, 5}), bytes<int>({3, 0, 5}));
+    EXPECT_EQ(mesh_of(write("zero.msh", zero), {"volume_0", 0, {}}).element_count(), 1);
 }
 
 TEST_F(GmshFiles, FaultsNameTheFilesOwnNumbers) {

@@ -28,24 +28,36 @@ namespace {
 
 constexpr double millimetre = 1e-3;
 
-/// Gmsh while it is in use: silent, on one thread, without files or options of the user. It is initialised once: each time
-/// would keep some memory, and ever more of it.
+/// Gmsh while it is in use: silent, on one thread, without files or options of the user, with a model of its own. A host, such
+/// as Python, may use Gmsh, too: its models and options are as before in the end. It is initialised once and never
+/// finalised: each time would keep some memory, and ever more of it.
 class Session {
 public:
     Session() {
-        gmsh::initialize(0, nullptr, false); // nothing but for the first time
-        gmsh::option::setNumber("General.Terminal", 0);
-        gmsh::option::setNumber("General.NumThreads", 1);
-        gmsh::option::setNumber("General.AbortOnError", 2); // throws
+        [[maybe_unused]] static const bool once = (gmsh::initialize(0, nullptr, false), true);
+        for (auto& [name, value] : options_) {
+            const double wanted = value;
+            gmsh::option::getNumber(name, value);
+            gmsh::option::setNumber(name, wanted);
+        }
+        gmsh::model::getCurrent(before_);
+        gmsh::model::add("osculate");
     }
     ~Session() {
         try {
-            gmsh::clear();
+            gmsh::model::remove();
+            gmsh::model::setCurrent(before_);
+            for (const auto& [name, value] : options_) gmsh::option::setNumber(name, value);
         } catch (...) { // nothing is left to be done
         }
     }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
+
+private:
+    std::string before_;
+    std::array<std::pair<const char*, double>, 3> options_{
+        {{"General.Terminal", 0}, {"General.NumThreads", 1}, {"General.AbortOnError", 2}}}; // which throws
 };
 
 /// What Gmsh throws, as MeshError.
@@ -346,7 +358,7 @@ extern "C" void osculate_gmsh_read(const std::string* path, RawMesh* mesh) {
     check_exists(*path);
     const MemoryFile checked(*path, checked_msh(*path));
     guarded(*path, [&] {
-        gmsh::open(checked.path());
+        gmsh::merge(checked.path());
         Model(*path, *mesh, 1).take();
     });
 }

@@ -4,7 +4,9 @@
 
 #include <cfenv>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <dlfcn.h>
 
 namespace osculate::mesh {
 namespace {
@@ -160,6 +162,30 @@ TEST_F(GmshFiles, SignalsTrapsAndTheTerminalStayAsTheyWere) {
     EXPECT_EQ(before.sa_handler, after.sa_handler);
     EXPECT_EQ(fegetexcept(), traps);
     EXPECT_EQ(fegetround(), rounding);
+}
+
+TEST_F(GmshFiles, ModelsAndOptionsOfAHostThatUsesGmshStay) {
+    (void)read_gmsh(write("block.msh", msh2)); // loads and initialises the library
+    void* gmsh = dlopen("libgmsh.so", RTLD_NOW);
+    ASSERT_NE(gmsh, nullptr);
+    const auto add = reinterpret_cast<void (*)(const char*, int*)>(dlsym(gmsh, "gmshModelAdd"));
+    const auto current = reinterpret_cast<void (*)(char**, int*)>(dlsym(gmsh, "gmshModelGetCurrent"));
+    const auto set = reinterpret_cast<void (*)(const char*, double, int*)>(dlsym(gmsh, "gmshOptionSetNumber"));
+    const auto get = reinterpret_cast<void (*)(const char*, double*, int*)>(dlsym(gmsh, "gmshOptionGetNumber"));
+    int error = 0;
+    add("the host's", &error);
+    set("General.Terminal", 0, &error);
+    set("General.NumThreads", 2, &error);
+    EXPECT_EQ(error_of(write("block.msh", msh2)), "");
+    char* name = nullptr;
+    double threads = 0;
+    current(&name, &error);
+    get("General.NumThreads", &threads, &error);
+    EXPECT_STREQ(name, "the host's");
+    EXPECT_EQ(threads, 2);
+    EXPECT_EQ(error, 0);
+    std::free(name);
+    set("General.NumThreads", 1, &error);
 }
 
 TEST_F(GmshFiles, GeometryIsMeshedTheSameEveryTime) {

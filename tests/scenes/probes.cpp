@@ -3,6 +3,7 @@
 #include "scenes/program.hpp"
 
 #include <csignal>
+#include <cstdlib>
 #include <gmock/gmock.h>
 #include <sched.h>
 #include <set>
@@ -110,6 +111,7 @@ TEST_F(Probes, PlotsAreDrawnFromTheRunsTables) {
 }
 
 TEST_F(Probes, PlotsOfAQuietRunSayNothing) {
+    if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
     const Outcome outcome = osculate(
         {"run", column, "-o", "run", "--quiet", "--set", "output.plots={level: {curves: {level: {y: time * 0 + 2}}}}"});
     EXPECT_EQ(outcome.err, "") << "gnuplot has something to say of curves that are level";

@@ -130,7 +130,7 @@ TEST_F(Importing, NeoHookeanHasTheModuliOfTheDeck) {
     const std::string elastic = "*ELASTIC\n210000.,.3\n";
     model.replace(model.find(elastic), elastic.size(), "*HYPERELASTIC, NEO HOOKE\n10.,.01\n");
     const ImportedScene imported = import(pressed, DeckUnits::mm, model);
-    const auto& material = std::get<scene::NeoHookean>(checked(imported).bodies[0].second.material);
+    const auto material = std::get<scene::NeoHookean>(checked(imported).bodies[0].second.material);
     EXPECT_NEAR(material.E / (2 * (1 + material.nu)), 20e6, 1e-3);
     EXPECT_NEAR(material.E / (3 * (1 - 2 * material.nu)), 200e6, 1e-2);
     EXPECT_THAT(imported.left_out, Contains(HasSubstr("volumetric part differs")));

@@ -92,6 +92,8 @@ private:
             version4_ ? read_elements4() : read_elements2();
         else if (name == "PartitionedEntities")
             fail_partitioned();
+        else if (name == "ParametricNodes")
+            in_.fail("nodes with parameters are read in version 4.1 only; save without (Mesh.SaveParametric)");
         else
             return false;
         return true;

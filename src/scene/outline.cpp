@@ -22,7 +22,7 @@ std::string digits(double value) {
 }
 
 /// Gathers what it is shown; lists in words, numbers with their units.
-class Outliner final : public Visitor {
+class Outliner final : public PresentVisitor {
 public:
     [[nodiscard]] OutlineItem take() { return std::move(root_); }
 
@@ -71,16 +71,6 @@ public:
         body();
         here_ = above;
         here_->items.push_back(std::move(mine));
-    }
-    void optional_group(const Key& key, bool& present, const std::function<void()>& body) override {
-        if (present) group(key, body);
-    }
-    void one_of(const Choice& choice) override { choice.describe(choice.active); }
-    void named(const Key& key, const Entries& entries) override {
-        if (entries.size() == 0) return;
-        group(key, [&] {
-            for (std::size_t i = 0; i < entries.size(); ++i) entries.describe(i);
-        });
     }
 
 private:

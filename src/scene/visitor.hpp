@@ -101,4 +101,19 @@ public:
     virtual void named(const Key& key, const Entries& entries) = 0;
 };
 
+/// Walks over the values that are there: what is absent or empty is passed over.
+class PresentVisitor : public Visitor {
+public:
+    void optional_group(const Key& key, bool& present, const std::function<void()>& body) override {
+        if (present) group(key, body);
+    }
+    void one_of(const Choice& choice) override { choice.describe(choice.active); }
+    void named(const Key& key, const Entries& entries) override {
+        if (entries.size() == 0) return;
+        group(key, [&] {
+            for (std::size_t i = 0; i < entries.size(); ++i) entries.describe(i);
+        });
+    }
+};
+
 } // namespace osculate::scene

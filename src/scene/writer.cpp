@@ -42,7 +42,7 @@ std::string decimal(double value) {
 }
 
 /// Writes every key it is shown, two spaces deeper for every level.
-class Writer final : public Visitor {
+class Writer final : public PresentVisitor {
 public:
     [[nodiscard]] std::string take_text() { return std::move(text_); }
 
@@ -86,16 +86,6 @@ public:
         body();
         --depth_;
         if (text_.size() == before + 1) text_.insert(before, " {}");
-    }
-    void optional_group(const Key& key, bool& present, const std::function<void()>& body) override {
-        if (present) group(key, body);
-    }
-    void one_of(const Choice& choice) override { choice.describe(choice.active); }
-    void named(const Key& key, const Entries& entries) override {
-        if (entries.size() == 0) return;
-        group(key, [&] {
-            for (std::size_t i = 0; i < entries.size(); ++i) entries.describe(i);
-        });
     }
 
 private:

@@ -134,6 +134,9 @@ TEST_F(GmshFiles, WhatGmshWouldTakeForAScriptOrForTooMuchIsRefusedBefore) {
                 HasSubstr("entity 1 is bounded by 9, which does not exist"));
     EXPECT_THAT(error_of(write("greatest.msh", changed(msh4, "1 8 1 8\n", "1 8 1 9\n"))),
                 HasSubstr("numbers of nodes are from 1 to 8, announced are 1 to 9"));
+    EXPECT_THAT(error_of(write("parametric.msh", changed(changed(msh2, "$Nodes", "$ParametricNodes"), "$EndNodes",
+                                                         "$EndParametricNodes"))),
+                HasSubstr("section $ParametricNodes: nodes with parameters are read in version 4.1 only"));
     EXPECT_THAT(error_of(write("no_elements.msh", msh2.substr(0, msh2.find("$Elements")))),
                 HasSubstr("ends without a section $Elements"));
 }

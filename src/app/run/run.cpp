@@ -65,12 +65,15 @@ private:
 
 /// A full disk is told beside: how to go on is what matters.
 void finish_interrupted(RunRecorder& recorder, const char* reason) {
-    try {
-        recorder.wait_for_frames();
-        recorder.finish("interrupted", reason);
-    } catch (const RunFailure& failure) {
-        fmt::print(stderr, "{}\n", failure.what());
-    }
+    const auto tell = [](auto&& act) {
+        try {
+            act();
+        } catch (const RunFailure& failure) {
+            fmt::print(stderr, "{}\n", failure.what());
+        }
+    };
+    tell([&] { recorder.wait_for_frames(); });
+    tell([&] { recorder.finish("interrupted", reason); });
 }
 
 output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings,

@@ -1,5 +1,14 @@
+# The Python module takes the modules in; no symbol is ever replaced from outside: calls stay direct.
+function(osculate_position_independent target)
+  if(OSCULATE_PYTHON)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+  endif()
+endfunction()
 # osculate_module(NAME LINKS public... PRIVATE_LINKS private...): static library of src/NAME with headers in
 # include/osculate/NAME, installed as osculate::NAME. A module without sources becomes an interface library.
+osculate_precompiled(osculate_precompiled HEADERS ${OSCULATE_PRECOMPILED} LINKS osculate_options Eigen3::Eigen)
+osculate_position_independent(osculate_precompiled)
 set(OSCULATE_HEADER_ONLY CLI11::CLI11 nlohmann_json::nlohmann_json) # in private use: whoever links a module needs none
 function(osculate_module name)
   cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS" ${ARGN})
@@ -18,10 +27,8 @@ function(osculate_module name)
     target_include_directories(${target} PUBLIC ${headers} PRIVATE ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(${target} PUBLIC ${ARG_LINKS} PRIVATE ${private})
     target_compile_features(${target} PUBLIC cxx_std_20)
-    if(OSCULATE_PYTHON) # whose module takes them in; no symbol is ever replaced from outside: calls stay direct
-      set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-      target_compile_options(${target} PRIVATE -fno-semantic-interposition)
-    endif()
+    osculate_position_independent(${target})
+    target_precompile_headers(${target} REUSE_FROM osculate_precompiled)
   else()
     add_library(${target} INTERFACE)
     target_include_directories(${target} INTERFACE ${headers})

@@ -1,8 +1,8 @@
 #include "contact/facet_rule.hpp"
 
 #include "osculate/contact/facet_patch.hpp"
+#include "osculate/core/dense_algebra.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 namespace osculate::contact {
@@ -43,11 +43,11 @@ std::vector<RulePoint> facet_rule(int corners, int n) {
     // Gauss points from the eigenvalues of the Jacobi matrix (Golub and Welsch 1969)
     Matrix J = Matrix::Zero(n, n);
     for (int i = 1; i < n; ++i) J(i, i - 1) = J(i - 1, i) = i / std::sqrt(4.0 * i * i - 1);
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(J);
+    const SymmetricEigen eigen = symmetric_eigen(J);
     for (int i = 0; i < n; ++i)
         for (int k = 0; k < n; ++k) {
-            const auto w = [&](int at) { return 2 * eigen.eigenvectors()(0, at) * eigen.eigenvectors()(0, at); };
-            rule.push_back({Vec2(eigen.eigenvalues()(i), eigen.eigenvalues()(k)), w(i) * w(k)});
+            const auto w = [&](int at) { return 2 * eigen.vectors(0, at) * eigen.vectors(0, at); };
+            rule.push_back({Vec2(eigen.values(i), eigen.values(k)), w(i) * w(k)});
         }
     return rule;
 }

@@ -1,7 +1,8 @@
 #include "osculate/contact/rpim_patch.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
+
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <limits>
 
 namespace osculate::contact {
@@ -52,7 +53,7 @@ bool full_rank(Matrix D) {
         if (norm == 0) return false;
         D.col(j) /= norm;
     }
-    const Vector s = Eigen::JacobiSVD<Matrix>(D).singularValues();
+    const Vector s = singular_values(D);
     return s(s.size() - 1) > rank_tolerance * s(0);
 }
 

@@ -1,121 +1,58 @@
 #include "osculate/fe/element_block.hpp"
 
+#include "fe/kernel_instances.hpp"
 #include "fe/small_strain.hpp"
-#include "fe/solid_kernel.hpp"
+#include "osculate/core/error.hpp"
+
+#include <stdexcept>
 
 namespace osculate::fe {
+
 namespace {
 
-template <class Formulation> class SmallStrainKernel final : public SolidKernel<typename Formulation::Element> {
-    using E = typename Formulation::Element;
-    static constexpr int n = E::nodes;
-    using Positions = Eigen::Matrix<double, 3, n>;
-
-public:
-    explicit SmallStrainKernel(const material::LinearElastic& material) : D_(material.stiffness()), formulation_(D_) {}
-
-    void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const override {
-        require(X.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n, "stiffness: sizes do not match the element");
-        StrainPoints<E> points;
-        formulation_(this->table_, Positions(X), points);
-        Eigen::Matrix<double, 3 * n, 3 * n> K = Eigen::Matrix<double, 3 * n, 3 * n>::Zero();
-        for (std::size_t q = 0; q < points.B.size(); ++q) {
-            const Eigen::Matrix<double, 6, 3 * n> DB = D_ * points.B[q] * points.volumes[q];
-            K.noalias() += points.B[q].transpose() * DB;
+template <class Material>
+std::unique_ptr<ElementKernel> make(mesh::CellType type, HexFormulation formulation, const Material& material) {
+    switch (type) {
+    case mesh::CellType::tet4: return make_finite_strain_kernel<Tet4, Material, false>(material);
+    case mesh::CellType::wedge6: return make_finite_strain_kernel<Wedge6, Material, false>(material);
+    case mesh::CellType::tet10: return make_finite_strain_kernel<Tet10, Material, false>(material);
+    case mesh::CellType::hex8:
+        switch (formulation) {
+        case HexFormulation::full: return make_finite_strain_kernel<Hex8, Material, false>(material);
+        case HexFormulation::b_bar: return make_finite_strain_kernel<Hex8, Material, true>(material);
+        case HexFormulation::incompatible_modes:
+            throw std::invalid_argument("incompatible modes are for small strain; at finite strain use b_bar or full");
         }
-        Ke = (K + K.transpose()) / 2;
     }
-
-    [[nodiscard]] bool linear() const override { return true; }
-
-    Deformation energy(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                       double& W) const override {
-        require(X.cols() == n && u.cols() == n, "energy: sizes do not match the element");
-        W = 0;
-        StrainPoints<E> points;
-        formulation_(this->table_, Positions(X), points);
-        const Positions displacement = u;
-        for (std::size_t q = 0; q < points.B.size(); ++q) {
-            const Vec6 strain = points.B[q] * displacement.reshaped();
-            W += strain.dot(D_ * strain) / 2 * points.volumes[q];
-        }
-        return {};
-    }
-
-    Deformation internal_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                               Eigen::Ref<Eigen::Matrix3Xd> f) const override {
-        require(X.cols() == n && u.cols() == n && f.cols() == n, "internal_force: sizes do not match the element");
-        StrainPoints<E> points;
-        formulation_(this->table_, Positions(X), points);
-        const Positions displacement = u;
-        Positions sum = Positions::Zero();
-        for (std::size_t q = 0; q < points.B.size(); ++q) {
-            const Vec6 sigma = D_ * (points.B[q] * displacement.reshaped());
-            sum.reshaped() += points.B[q].transpose() * (sigma * points.volumes[q]);
-        }
-        f = sum;
-        return {};
-    }
-
-    Deformation tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>&,
-                        Eigen::Ref<Matrix> Ke) const override {
-        stiffness(X, Ke);
-        return {};
-    }
-
-    Deformation step_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u0,
-                           const Eigen::Ref<const Eigen::Matrix3Xd>& u1, const StepMean& mean,
-                           Eigen::Ref<Eigen::Matrix3Xd> f) const override {
-        const double w = mean.end_weight;
-        const Positions u = w * u1 + (1 - w) * u0 + mean.viscosity * (u1 - u0);
-        return internal_force(X, u, f);
-    }
-
-    Deformation step_tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>&,
-                             const Eigen::Ref<const Eigen::Matrix3Xd>&, const StepMean& mean,
-                             Eigen::Ref<Matrix> Ke) const override {
-        stiffness(X, Ke);
-        Ke *= mean.end_weight + mean.viscosity;
-        return {};
-    }
-
-    Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                             Eigen::Ref<Matrix> stress) const override {
-        require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,
-                "nodal_stress: sizes do not match the element");
-        StrainPoints<E> points;
-        formulation_(this->table_, Positions(X), points);
-        const Positions displacement = u;
-        Eigen::Matrix<double, 6, E::points> sigma;
-        for (std::size_t q = 0; q < points.B.size(); ++q) {
-            sigma.col(static_cast<int>(q)) = D_ * (points.B[q] * displacement.reshaped());
-        }
-        stress.noalias() = sigma * this->extrapolation_.transpose();
-        return {};
-    }
-
-private:
-    Mat6 D_;
-    Formulation formulation_;
-};
+    throw InternalError("make_kernel: unknown cell type or formulation");
+}
 
 } // namespace
 
 std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
                                            const material::LinearElastic& material) {
     switch (type) {
-    case mesh::CellType::tet4: return std::make_unique<SmallStrainKernel<DisplacementStrain<Tet4>>>(material);
-    case mesh::CellType::wedge6: return std::make_unique<SmallStrainKernel<DisplacementStrain<Wedge6>>>(material);
-    case mesh::CellType::tet10: return std::make_unique<SmallStrainKernel<DisplacementStrain<Tet10>>>(material);
+    case mesh::CellType::tet4: return make_small_strain_kernel<DisplacementStrain<Tet4>>(material);
+    case mesh::CellType::wedge6: return make_small_strain_kernel<DisplacementStrain<Wedge6>>(material);
+    case mesh::CellType::tet10: return make_small_strain_kernel<DisplacementStrain<Tet10>>(material);
     case mesh::CellType::hex8:
         switch (formulation) {
-        case HexFormulation::full: return std::make_unique<SmallStrainKernel<DisplacementStrain<Hex8>>>(material);
-        case HexFormulation::b_bar: return std::make_unique<SmallStrainKernel<BBarHex>>(material);
-        case HexFormulation::incompatible_modes:
-            return std::make_unique<SmallStrainKernel<IncompatibleModesHex>>(material);
+        case HexFormulation::full: return make_small_strain_kernel<DisplacementStrain<Hex8>>(material);
+        case HexFormulation::b_bar: return make_small_strain_kernel<BBarHex>(material);
+        case HexFormulation::incompatible_modes: return make_small_strain_kernel<IncompatibleModesHex>(material);
         }
     }
     throw InternalError("make_kernel: unknown cell type or formulation");
+}
+
+std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                           const material::SaintVenantKirchhoff& material) {
+    return make(type, formulation, material);
+}
+
+std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                           const material::NeoHookean& material) {
+    return make(type, formulation, material);
 }
 
 } // namespace osculate::fe

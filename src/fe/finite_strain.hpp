@@ -1,6 +1,7 @@
 #pragma once
 /// Total Lagrangian kernels of hyperelastic elements at any strain and rotation.
 
+#include "fe/kernel_instances.hpp"
 #include "fe/solid_kernel.hpp"
 #include "osculate/material/voigt.hpp"
 
@@ -373,5 +374,10 @@ private:
 
     Material material_;
 };
+
+template <class E, class Material, bool mean_dilatation>
+std::unique_ptr<ElementKernel> make_finite_strain_kernel(const Material& material) {
+    return std::make_unique<FiniteStrainKernel<E, Material, mean_dilatation>>(material);
+}
 
 } // namespace osculate::fe

@@ -11,7 +11,7 @@ namespace osculate::scene {
 namespace {
 
 /// A scalar as YAML: plain where that cannot be misread, double-quoted otherwise.
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
     const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '/'; };
     std::string lower = text;
     std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -69,7 +69,7 @@ public:
     }
     void flag(const Key& key, bool& value) override { line(key, value ? "true" : "false"); }
     void text(const Key& key, std::string& value) override {
-        if (!value.empty()) line(key, quoted(value));
+        if (!value.empty()) line(key, in_quotes(value));
     }
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override { line(key, vocabulary[index]); }
     void words(const Key& key, const Words& /*vocabulary*/, std::vector<std::string>& value) override {
@@ -79,7 +79,7 @@ public:
         line(key, "[" + list(value.col(0)) + ", " + list(value.col(1)) + "]");
     }
     void group(const Key& key, const std::function<void()>& body) override {
-        text_ += std::string(2 * depth_, ' ') + quoted(key.name) + ":";
+        text_ += std::string(2 * depth_, ' ') + in_quotes(key.name) + ":";
         const std::size_t before = text_.size();
         text_ += '\n';
         ++depth_;
@@ -92,7 +92,7 @@ private:
     static std::string inline_course(const Course& course) {
         if (course.is_value()) return decimal(course.value());
         if (const auto* expression = std::get_if<Expression>(&course.form))
-            return "{expression: " + quoted(expression->text) + ", unit: " + quoted(expression->unit) + "}";
+            return "{expression: " + in_quotes(expression->text) + ", unit: " + in_quotes(expression->unit) + "}";
         std::string rows;
         for (const auto& [t, y] : std::get<Table>(course.form).rows)
             rows += (rows.empty() ? "[" : ", [") + decimal(t) + ", " + decimal(y) + "]";
@@ -102,7 +102,7 @@ private:
         return "[" + decimal(v.x()) + ", " + decimal(v.y()) + ", " + decimal(v.z()) + "]";
     }
     void line(const Key& key, const std::string& value) {
-        text_ += std::string(2 * depth_, ' ') + quoted(key.name) + ": " + value + "\n";
+        text_ += std::string(2 * depth_, ' ') + in_quotes(key.name) + ": " + value + "\n";
     }
 
     std::string text_;

@@ -3,6 +3,7 @@
 #include "osculate/app/estimate.hpp"
 
 #include "osculate/app/load.hpp"
+#include "support/source_tree.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -20,7 +21,7 @@ struct Measured {
 
 /// docs/data/estimates.csv: one processor; nothing is measured here.
 std::vector<Measured> measured() {
-    std::ifstream file(std::string(OSCULATE_SOURCE_DIR) + "/docs/data/estimates.csv");
+    std::ifstream file(support::source_tree() + "/docs/data/estimates.csv");
     std::vector<Measured> runs;
     std::string line;
     for (std::getline(file, line); std::getline(file, line);) {
@@ -41,7 +42,7 @@ TEST(Estimate, IsWithinItsFactorOfShippedScenes) {
     int far = 0;
     for (const Measured& run : runs) {
         if (known.contains(run.scene)) continue;
-        const LoadedScene loaded = load(std::string(OSCULATE_SOURCE_DIR) + "/" + run.scene, {}, 1, unused);
+        const LoadedScene loaded = load(support::source_tree() + "/" + run.scene, {}, 1, unused);
         const Estimate found = estimate(loaded.scene, loaded.plan);
         const double seconds = found.seconds / run.seconds, bytes = found.bytes / run.bytes;
         EXPECT_LT(std::max(bytes, 1 / bytes), Estimate::factor)
@@ -54,7 +55,7 @@ TEST(Estimate, IsWithinItsFactorOfShippedScenes) {
 }
 
 TEST(Estimate, GrowsWithStepsAndElements) {
-    const std::string press = std::string(OSCULATE_SOURCE_DIR) + "/tests/scenes/press.yaml";
+    const std::string press = support::source_tree() + "/tests/scenes/press.yaml";
     Timings unused;
     const auto of = [&](const std::vector<scene::Override>& changes) {
         const LoadedScene loaded = load(press, changes, 1, unused);

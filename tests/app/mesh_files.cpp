@@ -2,6 +2,7 @@
 #include "osculate/core/error.hpp"
 #include "osculate/scene/reader.hpp"
 #include "osculate/scene/writer.hpp"
+#include "support/source_tree.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -79,7 +80,7 @@ TEST_F(MeshFilesOfScenes, ShortFormsStandForAPathAndForAllRepairs) {
 
 TEST_F(MeshFilesOfScenes, GeometryIsMeshedAsTheSceneSays) {
     if (!OSCULATE_HAS_GMSH) GTEST_SKIP() << "built without Gmsh's library";
-    std::filesystem::copy_file(OSCULATE_SOURCE_DIR "/tests/mesh/data/quarter_cylinder.brep", "part.brep");
+    std::filesystem::copy_file(support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep", "part.brep");
     const scene::Scene scene = scene_with(
         "  b:\n    mesh: {cad: {path: part.brep, size: 0.3 m, smallest: 0.05 m, per_circle: 12, quadratic: true, part: "
         "volume_1, piece: 1}, scale: 0.1}\n"

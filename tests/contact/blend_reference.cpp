@@ -3,6 +3,7 @@
 #include "../../src/contact/vertex_patch.hpp"
 #include "blend_surfaces.hpp"
 #include "osculate/contact/projection.hpp"
+#include "support/source_tree.hpp"
 
 #include <fstream>
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ using nlohmann::json;
 
 const json& reference() {
     static const json data =
-        json::parse(std::ifstream(OSCULATE_SOURCE_DIR "/tests/contact/data/vertex_gap_blend.json"));
+        json::parse(std::ifstream(support::source_tree() + "/tests/contact/data/vertex_gap_blend.json"));
     return data;
 }
 

@@ -3,6 +3,7 @@
 #include "osculate/contact/projection.hpp"
 #include "osculate/contact/rpim_patch.hpp"
 #include "support/patch_checker.hpp"
+#include "support/source_tree.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -20,7 +21,8 @@ constexpr double projection_tolerance = 1e-10;
 constexpr double curvature_tolerance = 1e-9;
 
 const json& reference() {
-    static const json data = json::parse(std::ifstream(OSCULATE_SOURCE_DIR "/tests/contact/data/rpim_reference.json"));
+    static const json data =
+        json::parse(std::ifstream(support::source_tree() + "/tests/contact/data/rpim_reference.json"));
     return data;
 }
 

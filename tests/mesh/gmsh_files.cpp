@@ -1,6 +1,7 @@
 #include "mesh/file_tests.hpp"
 #include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/quality.hpp"
+#include "support/source_tree.hpp"
 
 #include <cfenv>
 #include <csignal>
@@ -192,7 +193,7 @@ TEST_F(GmshFiles, ModelsAndOptionsOfAHostThatUsesGmshStay) {
 }
 
 TEST_F(GmshFiles, GeometryIsMeshedTheSameEveryTime) {
-    const std::string brep = OSCULATE_SOURCE_DIR "/tests/mesh/data/quarter_cylinder.brep";
+    const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep";
     CadOptions options{brep, 0.25, 0, 12, false};
     const RawMesh first = mesh_cad(options), second = mesh_cad(options);
     ASSERT_EQ(first.points.size(), second.points.size());

@@ -1,6 +1,7 @@
 /// Every key of a scene is used by a shipped scene, template or study, or by a test, with a value that is not its default.
 
 #include "key_uses.hpp"
+#include "support/source_tree.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@ namespace {
 using testing::Contains;
 using testing::Not;
 
-const std::filesystem::path root = OSCULATE_SOURCE_DIR;
+const std::filesystem::path root = support::source_tree();
 
 TEST(KeyCoverage, LeavesNoKeyAndNoWordUntouched) {
     KeyUses uses;

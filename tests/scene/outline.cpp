@@ -2,6 +2,7 @@
 
 #include "osculate/scene/reader.hpp"
 #include "scene/scene_text.hpp"
+#include "support/source_tree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ TEST(Engineering, KeepsUnitsThatTakeNoPrefix) {
 }
 
 TEST(Outline, TellsASceneWithUnits) {
-    const Scene scene = read_scene(std::string(OSCULATE_SOURCE_DIR) + "/configs/paper/half_tube.yaml");
+    const Scene scene = read_scene(support::source_tree() + "/configs/paper/half_tube.yaml");
     const OutlineItem root = outline(scene);
     const OutlineItem& contactor = *root.find("bodies")->find("contactor");
     EXPECT_EQ(contactor.find("material")->find("linear_elastic")->find("E")->text, "10 MPa");
@@ -40,7 +41,7 @@ TEST(Outline, TellsASceneWithUnits) {
 }
 
 TEST(Outline, GivesVectorsOnePrefix) {
-    const Scene scene = read_scene(std::string(OSCULATE_SOURCE_DIR) + "/configs/tutorials/bouncing_ball.yaml");
+    const Scene scene = read_scene(support::source_tree() + "/configs/tutorials/bouncing_ball.yaml");
     const OutlineItem root = outline(scene);
     EXPECT_EQ(root.find("gravity")->text, "(0, 0, -9.81) m/s²");
     EXPECT_EQ(root.find("bodies")->find("plate")->find("mesh")->find("block")->find("size")->text, "(200, 200, 20) mm");

@@ -1,6 +1,7 @@
 #include "osculate/scene/keys.hpp"
 #include "osculate/scene/writer.hpp"
 #include "scene_text.hpp"
+#include "support/source_tree.hpp"
 
 #include <Eigen/Geometry>
 #include <cstdlib>
@@ -234,7 +235,7 @@ TEST(Reading, AnAllowedInterpenetrationIsAFractionOrALength) {
 /// Every scene that is shipped reads, and says the same after a round trip.
 TEST(ShippedScenes, AreValid) {
     int count = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(OSCULATE_SOURCE_DIR) / "configs")) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(support::source_tree()) / "configs")) {
         if (entry.path().extension() != ".yaml" || entry.path().parent_path().filename() == "studies") continue;
         ++count;
         Scene scene = read_scene(entry.path().string());

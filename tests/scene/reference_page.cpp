@@ -2,6 +2,7 @@
 
 #include "osculate/scene/keys.hpp"
 #include "osculate/scene/reader.hpp"
+#include "support/source_tree.hpp"
 
 #include <fstream>
 #include <gmock/gmock.h>
@@ -14,7 +15,7 @@ namespace osculate::scene {
 namespace {
 
 std::ifstream page(const std::string& name) {
-    return std::ifstream(std::string(OSCULATE_SOURCE_DIR) + "/" + name);
+    return std::ifstream(support::source_tree() + "/" + name);
 }
 
 /// The text as a cell of a Markdown table.

@@ -2,6 +2,7 @@
 /// Runs the program as a user would, in a folder of its own, and reads what it leaves there.
 
 #include "osculate/app/command_line.hpp"
+#include "support/source_tree.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -29,7 +30,7 @@ inline std::string content(const std::filesystem::path& path) {
 
 /// Path of a scene of the repository.
 inline std::string scene_file(const std::string& relative) {
-    return (std::filesystem::path(OSCULATE_SOURCE_DIR) / relative).string();
+    return (std::filesystem::path(support::source_tree()) / relative).string();
 }
 
 /// A CSV file of this program, whose tests hold no quoted fields.

@@ -2,6 +2,8 @@
 
 #include "osculate/study/formulas.hpp"
 
+#include "support/source_tree.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -32,7 +34,7 @@ void expect_digits(double value, double expected, double tolerance) {
 }
 
 TEST(Formulas, TheirPageListsThem) {
-    std::ifstream file(std::string(OSCULATE_SOURCE_DIR) + "/docs/studies.md");
+    std::ifstream file(support::source_tree() + "/docs/studies.md");
     std::stringstream page;
     page << file.rdbuf();
     for (const NamedSolution& f : formulas()) {

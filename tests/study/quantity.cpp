@@ -1,6 +1,7 @@
 #include "osculate/study/quantity.hpp"
 
 #include "osculate/study/formulas.hpp"
+#include "support/source_tree.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -84,7 +85,7 @@ TEST(ShippedStudies, CanBeRead) {
     scene::NamedFunctions functions;
     for (const NamedSolution& f : formulas()) functions.push_back({f.name, f.count, f.value});
     int runs = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(OSCULATE_SOURCE_DIR "/configs/studies")) {
+    for (const auto& entry : std::filesystem::directory_iterator(support::source_tree() + "/configs/studies")) {
         const std::string path = entry.path().string();
         if (entry.path().extension() != ".yaml" || !scene::is_run_study(path)) continue;
         const scene::Study study = scene::read_study(path, functions);

@@ -1,5 +1,6 @@
 #include "osculate/app/surface_study.hpp"
 #include "support/floating_point_traps.hpp"
+#include "support/source_tree.hpp"
 
 #include <cstdlib>
 #include <fstream>
@@ -15,8 +16,7 @@ namespace fs = std::filesystem;
 constexpr int threads = 2;
 
 scene::SurfaceStudy shipped(const std::string& name) {
-    return scene::read_surface_study(std::string(OSCULATE_SOURCE_DIR) + "/configs/studies/" + name,
-                                     study::method_names());
+    return scene::read_surface_study(support::source_tree() + "/configs/studies/" + name, study::method_names());
 }
 
 /// Means of a kind of error relative to those of the facets.

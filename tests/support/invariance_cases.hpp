@@ -2,6 +2,7 @@
 /// Which scenes are held against their transformations, how far each is run, and what is known of those that differ.
 
 #include "osculate/scene/reader.hpp"
+#include "support/source_tree.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -118,8 +119,7 @@ inline std::vector<std::string> invariance_scenes() {
                 "extreme/initial_gap", "extreme/nanometre",      "extreme/snap_through",  "extreme/sliver_tetrahedra"};
     std::vector<std::string> all;
     for (const std::string folder : {"paper", "tutorials", "extreme"}) {
-        for (const auto& entry :
-             std::filesystem::directory_iterator(std::string(OSCULATE_SOURCE_DIR) + "/configs/" + folder)) {
+        for (const auto& entry : std::filesystem::directory_iterator(support::source_tree() + "/configs/" + folder)) {
             const std::string name = folder + "/" + entry.path().stem().string();
             if (entry.path().extension() == ".yaml" && !left_out().contains(name)) all.push_back(name);
         }

@@ -4,6 +4,7 @@
 #include "osculate/app/compile.hpp"
 #include "osculate/scene/reader.hpp"
 #include "osculate/time/stepper.hpp"
+#include "support/source_tree.hpp"
 
 #include <string>
 #include <utility>
@@ -47,7 +48,7 @@ inline void run_scene(SceneRun& run, const std::string& path, const std::vector<
 
 /// Path of a shipped scene.
 inline std::string shipped(const std::string& name) {
-    return std::string(OSCULATE_SOURCE_DIR) + "/configs/" + name;
+    return support::source_tree() + "/configs/" + name;
 }
 
 namespace detail {

@@ -3,6 +3,7 @@
 #include "osculate/app/compile.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/reader.hpp"
+#include "support/source_tree.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ using testing::HasSubstr;
 
 /// The failure itself needs a scene of more than 100 000 nodes; here its outcome is given, and the words are looked at.
 TEST(PostMortem, NamesALinearSystemThatWasNotSolvedAndWhatToDo) {
-    const scene::Scene scene = scene::read_scene(std::string(OSCULATE_SOURCE_DIR) + "/tests/scenes/press.yaml",
+    const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml",
                                                  {{"supports.top", "{fix: [y, z]}"}}); // so that no body is loose
     Timings timings;
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);

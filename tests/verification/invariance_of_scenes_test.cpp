@@ -3,6 +3,7 @@
 
 #include "support/invariance_cases.hpp"
 #include "support/invariance_page.hpp"
+#include "support/source_tree.hpp"
 #include "support/trace.hpp"
 
 #include <cstdlib>
@@ -45,8 +46,7 @@ protected:
 TEST_P(InvarianceOfScenes, InUnitsPlaceAndNumbering) {
     const std::string& name = GetParam();
     const support::InvarianceCase how = support::invariance_case(name);
-    const scene::Scene scene =
-        scene::read_scene(std::string(OSCULATE_SOURCE_DIR) + "/configs/" + name + ".yaml", how.overrides);
+    const scene::Scene scene = scene::read_scene(support::source_tree() + "/configs/" + name + ".yaml", how.overrides);
     const auto meshes = app::build_meshes(scene);
     const auto begin = std::clock();
     support::Trace reference;

@@ -1,9 +1,8 @@
 #pragma once
 /// The way that stresses and strains take from the quadrature points to the nodes of an element.
 
+#include "osculate/core/dense_algebra.hpp"
 #include "osculate/fe/reference_element.hpp"
-
-#include <Eigen/QR>
 
 namespace osculate::fe {
 
@@ -22,7 +21,7 @@ template <ReferenceElement E> Eigen::Matrix<double, E::nodes, E::points> extrapo
     }
     Matrix at_nodes(E::nodes, Field::nodes);
     for (int a = 0; a < E::nodes; ++a) at_nodes.row(a) = Field::shape(E::node_positions().col(a)).transpose();
-    return at_nodes * at_points.completeOrthogonalDecomposition().pseudoInverse();
+    return at_nodes * pseudo_inverse(at_points);
 }
 
 } // namespace osculate::fe

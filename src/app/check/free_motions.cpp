@@ -1,7 +1,7 @@
 #include "app/check/free_motions.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "osculate/core/dense_algebra.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -61,10 +61,10 @@ Split split(const Eigen::MatrixXd& m) {
     result.range.resize(3, 0);
     result.kernel.resize(m.cols(), 0);
     if (m.cols() == 0) return result;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m.transpose() * m);
+    const SymmetricEigen eigen = symmetric_eigen(m.transpose() * m);
     for (Eigen::Index k = 0; k < m.cols(); ++k) {
-        const double value = eigen.eigenvalues()(k);
-        const Eigen::VectorXd combination = eigen.eigenvectors().col(k);
+        const double value = eigen.values(k);
+        const Eigen::VectorXd combination = eigen.vectors.col(k);
         if (value > pressed_tolerance && result.range.cols() < 3) {
             result.range.conservativeResize(3, result.range.cols() + 1);
             result.range.rightCols(1) = m * combination / std::sqrt(value);
@@ -178,10 +178,10 @@ namespace {
 Eigen::MatrixXd unseen(const Eigen::Matrix<double, 6, 6>& gram, const Eigen::MatrixXd& basis, double tolerance) {
     const double most = gram.trace();
     if (basis.cols() == 0 || !(most > 0)) return basis;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(basis.transpose() * gram * basis);
+    const SymmetricEigen eigen = symmetric_eigen(basis.transpose() * gram * basis);
     Eigen::Index free = 0;
-    while (free < basis.cols() && eigen.eigenvalues()(free) <= tolerance * most) ++free;
-    return basis * eigen.eigenvectors().leftCols(free);
+    while (free < basis.cols() && eigen.values(free) <= tolerance * most) ++free;
+    return basis * eigen.vectors.leftCols(free);
 }
 
 void add_row(const Vec3& arm, const Vec3& direction, Eigen::Matrix<double, 6, 6>& gram) {
@@ -210,8 +210,7 @@ std::vector<std::string> RigidFreedom::in_words(const Vec3& origin) const {
     std::vector<std::string> words;
     for (const Vec3& direction : nice_directions(sliding)) words.push_back("slides along " + along(direction));
     for (const Vec3& axis : nice_directions(turning.range)) {
-        const Eigen::VectorXd combination =
-            Eigen::MatrixXd(W).completeOrthogonalDecomposition().solve(Eigen::VectorXd(axis));
+        const Vector combination = least_squares(W, axis);
         Vec3 t = T * combination * size_; // of the centre, at one radian
         t -= sliding * (sliding.transpose() * t);
         const double pitch = axis.dot(t);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A word as a shell reads it; control characters do not break the line.
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
     const auto plain = [](unsigned char c) {
         return std::isalnum(c) != 0 || std::string("_-./=,:+@%").find(static_cast<char>(c)) != std::string::npos;
     };
@@ -36,7 +36,7 @@ std::string quoted(const std::string& word) {
 
 std::string line_of(const std::vector<std::string>& words) {
     std::string line;
-    for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+    for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
     return line;
 }
 
@@ -143,20 +143,20 @@ std::string emit_snakemake(const scene::Study& study, const std::vector<StudyCas
     for (const StudyCase* c : announced(cases, options, true)) {
         const std::string run = "runs/" + c->id, summary = literal(run + "/summary.json");
         inputs += fmt::format("        {},\n", summary);
-        const std::string line = line_of(*c, options.threads) + " > " + quoted(run + "/messages.txt") + " 2>&1";
+        const std::string line = line_of(*c, options.threads) + " > " + shell_word(run + "/messages.txt") + " 2>&1";
         rules +=
             fmt::format(snake_rule, fmt::arg("number", ++number), fmt::arg("id", c->id), fmt::arg("output", summary),
                         fmt::arg("threads", options.threads), fmt::arg("line", literal(unformatted(line))),
-                        fmt::arg("code", literal(unformatted(quoted(run + "/" + exit_code_file)))));
+                        fmt::arg("code", literal(unformatted(shell_word(run + "/" + exit_code_file)))));
     }
     if (!inputs.empty()) inputs.pop_back();
-    write_text(path, fmt::format(snakefile, fmt::arg("name", study.name), fmt::arg("file", quoted(path.string())),
+    write_text(path, fmt::format(snakefile, fmt::arg("name", study.name), fmt::arg("file", shell_word(path.string())),
                                  fmt::arg("directory", literal(fs::absolute(folder).lexically_normal().string())),
                                  fmt::arg("program", literal(program())), fmt::arg("inputs", inputs),
                                  fmt::arg("gather", literal(unformatted(line_of(gather))))) +
                          rules);
     return fmt::format("{}: {} runs; `snakemake -s {} --cores all` runs what is not finished and gathers the results\n",
-                       study.name, number, quoted(path.string()));
+                       study.name, number, shell_word(path.string()));
 }
 
 std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& cases, const StudyRunOptions& options,
@@ -172,13 +172,13 @@ std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& 
     }
     if (count == 0) return fmt::format("{}: every run is finished; `{}` gathers the results\n", study.name, gathering);
     write_text(folder / "cases.txt", table);
-    write_text(path, fmt::format(sbatch, fmt::arg("name", study.name), fmt::arg("file", quoted(path.string())),
-                                 fmt::arg("wrap", quoted(gathering)), fmt::arg("job", study.name),
+    write_text(path, fmt::format(sbatch, fmt::arg("name", study.name), fmt::arg("file", shell_word(path.string())),
+                                 fmt::arg("wrap", shell_word(gathering)), fmt::arg("job", study.name),
                                  fmt::arg("count", count), fmt::arg("threads", options.threads),
-                                 fmt::arg("directory", directory), fmt::arg("quoted_directory", quoted(directory)),
-                                 fmt::arg("program", quoted(program())), fmt::arg("code", exit_code_file)));
+                                 fmt::arg("directory", directory), fmt::arg("quoted_directory", shell_word(directory)),
+                                 fmt::arg("program", shell_word(program())), fmt::arg("code", exit_code_file)));
     return fmt::format("{}: {} runs; `sbatch {}` runs them, then `{}` gathers the results\n", study.name, count,
-                       quoted(path.string()), gathering);
+                       shell_word(path.string()), gathering);
 }
 
 } // namespace osculate::app

@@ -1,0 +1,19 @@
+#pragma once
+/// Kernels by element, formulation and material: each is compiled once, in src/fe/instances.
+
+#include "osculate/fe/element_block.hpp"
+
+#include <memory>
+
+namespace osculate::fe {
+
+/// @tparam Formulation  of fe/small_strain.hpp
+template <class Formulation>
+[[nodiscard]] std::unique_ptr<ElementKernel> make_small_strain_kernel(const material::LinearElastic& material);
+
+/// @tparam E               reference element
+/// @tparam mean_dilatation see FiniteStrainKernel
+template <class E, class Material, bool mean_dilatation>
+[[nodiscard]] std::unique_ptr<ElementKernel> make_finite_strain_kernel(const Material& material);
+
+} // namespace osculate::fe

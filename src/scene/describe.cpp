@@ -289,6 +289,15 @@ void describe(Visitor& v, Solver& solver) {
              "In statics, let bodies that nothing holds lean on springs until contact does; no step is accepted with "
              "springs in place."},
         solver.stabilisation);
+    v.flag({.name = "audit",
+            .meaning = "After every solved step, look for nodes and edges inside another body or their own, by geometry "
+                       "alone, whatever contact says; the summary says where it is off."},
+           solver.audit);
+    v.number({.name = "audited_depth",
+              .meaning = "Of the facet size: how deep a body may lie inside another, beyond what facets of smooth surfaces "
+                         "bulge by, before the audit has the step cut.",
+              .range = {.low = 0, .high = 1, .open_low = true}},
+             solver.audited_depth);
 }
 
 void describe(Visitor& v, Scene& scene) {

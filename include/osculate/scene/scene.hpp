@@ -313,6 +313,8 @@ struct Solver {
     bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
     LinearSolver linear_solver = LinearSolver::automatic;
     bool stabilisation = true; ///< springs under bodies that nothing holds yet, gone before a step is accepted
+    bool audit = true;         ///< look for bodies inside one another after every solved step
+    double audited_depth = 0.1; ///< how deep they may lie, beyond the sagitta of smooth surfaces, of the facet size
     bool operator==(const Solver&) const = default;
 };
 

@@ -75,7 +75,8 @@ public:
                          scene_.solver.predictor,
                          scene_.solver.stabilisation,
                          threads_,
-                         linear_solver(scene_.solver.linear_solver)};
+                         linear_solver(scene_.solver.linear_solver),
+                         audited()};
         plan_.items = plan_items(scene_, plan_);
         return std::move(plan_);
     }
@@ -83,6 +84,14 @@ public:
 private:
     void throw_faults() {
         if (!faults_.empty()) throw SceneError(std::move(faults_));
+    }
+
+    /// A body alone that is deformed little meets nothing, not even itself.
+    [[nodiscard]] bool audited() const {
+        const auto linear = [](const auto& body) {
+            return std::holds_alternative<scene::LinearElastic>(body.second.material);
+        };
+        return scene_.solver.audit && (scene_.bodies.size() > 1 || !std::ranges::all_of(scene_.bodies, linear));
     }
 
     /// Far from the scene's origin positions have few digits left for gaps: they are taken from the middle of all bodies.
@@ -223,6 +232,7 @@ private:
             if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
             if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
             stage.follow_paths = dynamic && !scene_.contact.empty();
+            if (audited()) stage.limits.audited_depth = scene_.solver.audited_depth;
             stage.limits.dt_max = spec.duration / spec.steps;
             stage.limits.dt_min = scene_.solver.smallest_step * stage.limits.dt_max;
             stage.limits.growth = spec.control.growth;

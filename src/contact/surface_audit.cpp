@@ -3,6 +3,7 @@
 #include "contact/box_tree.hpp"
 #include "contact/triangle.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -44,15 +45,21 @@ struct SurfaceAudit::Shell {
         Index a = -1, b = -1; ///< global nodes
     };
     std::vector<mesh::Facet> facets;
-    std::vector<double> size;                     ///< (facets) root of the reference area, m
-    std::vector<std::vector<Index>> neighbours;   ///< (facets) across their edges
-    std::vector<Edge> edges;                      ///< each once
-    std::vector<Index> nodes;                     ///< global
-    std::vector<std::vector<Index>> node_facets;  ///< (shell nodes)
-    std::vector<std::vector<Index>> node_nodes;   ///< (shell nodes) along edges; shell nodes
-    std::vector<std::vector<Index>> components;   ///< shell nodes of each connected part
+    std::vector<double> size;                    ///< (facets) root of the reference area, m
+    std::vector<std::vector<Index>> neighbours;  ///< (facets) across their edges
+    std::vector<Edge> edges;                     ///< each once
+    std::vector<Index> nodes;                    ///< global
+    std::vector<std::vector<Index>> node_facets; ///< (shell nodes)
+    std::vector<std::vector<Index>> node_nodes;  ///< (shell nodes) along edges; shell nodes
+    std::vector<std::vector<Index>> components;  ///< shell nodes of each connected part
+
+    std::vector<Vec3> drawn; ///< (shell nodes) reference positions from their centre, m
+    double finest = 0;       ///< smallest facet, m
+    bool sound = false;      ///< does not pass through itself as it is drawn
 
     Shell(const std::vector<mesh::Facet>& outer, const std::vector<Vec3>& X, std::vector<Index>& shell_node);
+    /// How far any node lies from where the rigid motion that fits all nodes best takes it, m.
+    [[nodiscard]] double change_of_shape(const std::vector<Vec3>& x) const;
 
 private:
     void find_components();
@@ -88,6 +95,25 @@ SurfaceAudit::Shell::Shell(const std::vector<mesh::Facet>& outer, const std::vec
                 if (f != g) neighbours[f].push_back(g);
     }
     find_components();
+    Vec3 centre = Vec3::Zero();
+    for (const Index node : nodes) centre += X[node] / static_cast<double>(nodes.size());
+    for (const Index node : nodes) drawn.push_back(X[node] - centre);
+    finest = size.empty() ? 0 : *std::ranges::min_element(size);
+}
+
+double SurfaceAudit::Shell::change_of_shape(const std::vector<Vec3>& x) const {
+    Vec3 centre = Vec3::Zero();
+    for (const Index node : nodes) centre += x[node] / static_cast<double>(nodes.size());
+    Mat3 A = Mat3::Zero(); // R maximises tr(R^T A): R = U V^T of A = U S V^T, a reflection undone     [Kabsch 1976]
+    for (std::size_t k = 0; k < nodes.size(); ++k) A += (x[nodes[k]] - centre) * drawn[k].transpose();
+    const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 U = svd.matrixU();
+    if (U.determinant() * svd.matrixV().determinant() < 0) U.col(2) *= -1;
+    const Mat3 R = U * svd.matrixV().transpose();
+    double farthest = 0;
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+        farthest = std::max(farthest, (x[nodes[k]] - centre - R * drawn[k]).squaredNorm());
+    return std::sqrt(farthest);
 }
 
 void SurfaceAudit::Shell::find_components() {
@@ -172,13 +198,14 @@ private:
         const Tree& boxes = tree(body);
         const Point at = to_point(p);
         const auto every = static_cast<unsigned>(shell.facets.size());
-        Side best{std::numeric_limits<double>::max(), -1};
+        constexpr double nowhere = std::numeric_limits<double>::infinity();
+        Side best{nowhere, -1};
         double steepest = -1; // |cosine| of the facet that tells the side
         for (unsigned k = 8;; k *= 2) {
             nearest_.clear();
             boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest_));
             double reached = 0;
-            best = {std::numeric_limits<double>::max(), -1};
+            best = {nowhere, -1};
             for (const auto& [box, f] : nearest_) {
                 const double away = bg::distance(at, box), reach = std::abs(best.distance) * (1 + tie);
                 reached = std::max(reached, away);
@@ -231,8 +258,17 @@ private:
         return excess;
     }
 
-    /// Where the edge goes through facets of a body that share no node with it.
-    void cross(Index body, const Shell::Edge& edge, std::vector<Crossing>& crossings) {
+    /// Of the facets of a body that meet a box.
+    [[nodiscard]] Tree tree_within(Index body, const Bounds& box) const {
+        std::vector<Leaf> leaves;
+        for (std::size_t f = 0; f < shells_[body].facets.size(); ++f)
+            if (const Bounds one = bounds(shells_[body].facets[f]); one.meets(box))
+                leaves.emplace_back(one.box(), static_cast<Index>(f));
+        return {leaves.begin(), leaves.end()};
+    }
+
+    /// Where the edge goes through those facets of a body in a tree that share no node with it.
+    void cross(Index body, const Tree& facets, const Shell::Edge& edge, std::vector<Crossing>& crossings) {
         crossings.clear();
         const Shell& shell = shells_[body];
         const Vec3 &p = x_[edge.a], &q = x_[edge.b];
@@ -240,7 +276,7 @@ private:
         box.extend(p);
         box.extend(q);
         near_.clear();
-        tree(body).query(bgi::intersects(box.box()), std::back_inserter(near_));
+        facets.query(bgi::intersects(box.box()), std::back_inserter(near_));
         for (const auto& [unused, f] : near_) {
             const mesh::Facet& facet = shell.facets[f];
             if (std::ranges::count(facet, edge.a) + std::ranges::count(facet, edge.b) > 0) continue;
@@ -258,10 +294,13 @@ private:
     }
 
     void pass_through_itself(Index body) {
+        // what has moved by less relative to the rest has not gone through it by more than twice that
+        constexpr double little = 0.02; // of the smallest facet
         const Shell& shell = shells_[body];
+        if (shell.sound && shell.change_of_shape(x_) <= little * shell.finest) return;
         std::vector<Crossing> crossings;
         for (const Shell::Edge& edge : shell.edges) {
-            cross(body, edge, crossings);
+            cross(body, tree(body), edge, crossings);
             for (const Crossing& c : crossings)
                 note(body, body, edge.a, true, x_[edge.a] + c.at * (x_[edge.b] - x_[edge.a]), c.facet, c.least);
         }
@@ -286,12 +325,17 @@ private:
             return true;
         };
         std::vector<Crossing> crossings;
+        Bounds common; // of both bodies
+        common.low = bounds_[body].low.cwiseMax(bounds_[other].low);
+        common.high = bounds_[body].high.cwiseMin(bounds_[other].high);
+        const Tree facets = tree_within(other, common);
         for (const Shell::Edge& edge : shell.edges) {
+            if (facets.empty()) break;
             Bounds box;
             box.extend(x_[edge.a]);
             box.extend(x_[edge.b]);
-            if (!box.meets(bounds_[other])) continue;
-            cross(other, edge, crossings);
+            if (!box.meets(common)) continue;
+            cross(other, facets, edge, crossings);
             if (crossings.empty()) continue;
             const bool a = look(edge.a), b = look(edge.b);
             if (a || b) continue;
@@ -338,6 +382,11 @@ double AuditResult::between(Index body, Index other) const {
 SurfaceAudit::SurfaceAudit(const std::vector<std::vector<mesh::Facet>>& bodies, const std::vector<Vec3>& X)
     : shell_node_(X.size(), -1) {
     for (const std::vector<mesh::Facet>& facets : bodies) shells_.emplace_back(facets, X, shell_node_);
+    const AuditResult drawn = examine(X);
+    for (std::size_t b = 0; b < shells_.size(); ++b)
+        shells_[b].sound = std::ranges::none_of(drawn.intrusions, [&](const Intrusion& one) {
+            return one.body == one.other && one.body == static_cast<Index>(b);
+        });
 }
 
 SurfaceAudit::~SurfaceAudit() = default;

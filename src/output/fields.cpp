@@ -266,7 +266,7 @@ constexpr Field table[] = {
     {"energy_density", FieldPlace::body, 1, "J/m^3", false, energy_density},
     {"reaction", FieldPlace::body, 3, "N", false, reaction},
     {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance}, // of a failed iterate; 0 otherwise
-    {"penetration", FieldPlace::body, 1, "m", false, penetration}, // in another body, by the audit; 0 outside
+    {"penetration", FieldPlace::body, 1, "m", false, penetration},       // in another body, by the audit; 0 outside
     {"gap", FieldPlace::slave, 1, "m", false, gap},                      // NaN without a partner
     {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
     {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress},             // > 0 in compression

@@ -30,10 +30,11 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["factorisations"] = summary.factorisations;
     json["gmres_iterations"] = summary.gmres_iterations;
     const Timings& timings = summary.timings;
-    json["seconds"] = {
-        {"total", summary.total_seconds},    {"cpu", summary.cpu_seconds},        {"search", timings[Part::search]},
-        {"patches", timings[Part::patches]}, {"contact", timings[Part::contact]}, {"assembly", timings[Part::assembly]},
-        {"factor", timings[Part::factor]},   {"solve", timings[Part::solve]},     {"output", timings[Part::output]},   {"audit", timings[Part::audit]}};
+    json["seconds"] = {{"total", summary.total_seconds},    {"cpu", summary.cpu_seconds},
+                       {"search", timings[Part::search]},   {"patches", timings[Part::patches]},
+                       {"contact", timings[Part::contact]}, {"assembly", timings[Part::assembly]},
+                       {"factor", timings[Part::factor]},   {"solve", timings[Part::solve]},
+                       {"output", timings[Part::output]},   {"audit", timings[Part::audit]}};
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["threads"] = summary.threads;
     json["plan"] = summary.plan;

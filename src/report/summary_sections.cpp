@@ -94,11 +94,11 @@ std::string checks_section(const RunFiles& files) {
     if (audit.contains("on") && audit["on"] == false)
         text += element("p", "The audit of geometry was off: nobody looked for bodies inside one another.");
     else if (audit.contains("depth_m"))
-        text += element("p", escaped("Deepest: node " + count(member(audit, "node")) + " of body '" + word(audit, "body") +
-                                     "', " + measure(member(audit, "depth_m"), "m") + " inside the facets of '" +
-                                     word(audit, "inside") + "' at " + scene::engineering(member(audit, "time"), "s") +
-                                     "; " + measure(member(audit, "excess_m"), "m") +
-                                     " more than facets of smooth surfaces bulge by."));
+        text += element(
+            "p", escaped("Deepest: node " + count(member(audit, "node")) + " of body '" + word(audit, "body") + "', " +
+                         measure(member(audit, "depth_m"), "m") + " inside the facets of '" + word(audit, "inside") +
+                         "' at " + scene::engineering(member(audit, "time"), "s") + "; " +
+                         measure(member(audit, "excess_m"), "m") + " more than facets of smooth surfaces bulge by."));
     if (!expectation.empty()) {
         std::string misses;
         for (const json& miss : list(expectation, "misses"))

@@ -9,7 +9,7 @@ namespace osculate::scene {
 
 namespace {
 
-const Words body_fields{"displacement", "velocity",   "acceleration", "stress",   "strain",        "von_mises",
+const Words body_fields{"displacement", "velocity",   "acceleration", "stress",   "strain",         "von_mises",
                         "stress_max",   "stress_mid", "stress_min",   "reaction", "energy_density", "penetration"};
 const Words slave_fields{"gap",       "contact_force", "normal_stress",       "slip",         "status",      "normal",
                          "slip_rate", "area",          "tangential_traction", "friction_use", "master_facet"};

@@ -35,7 +35,8 @@ Audit::Audit(const model::Model& model) : model_(model), surfaces_(outer_facets(
     const contact::AuditResult first = surfaces_.examine(model.X);
     for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
     for (const auto& pair : model.pairs) // contact lifts what overlaps
-        drawn_.erase(ordered(body_of(model, pair->slaves().node.front()), body_of(model, pair->master_nodes().front())));
+        drawn_.erase(
+            ordered(body_of(model, pair->slaves().node.front()), body_of(model, pair->master_nodes().front())));
 }
 
 const contact::AuditResult& Audit::examine(const std::vector<Vec3>& u) {

@@ -232,8 +232,9 @@ private:
         };
         const auto pair = std::ranges::find_if(model.pairs, joins);
         if (intrusion.body == intrusion.other) {
-            add("contact", "body '" + body + "' meets itself, and no contact of a body with itself is modelled: loads and "
-                           "motions must stop before");
+            add("contact", "body '" + body +
+                               "' meets itself, and no contact of a body with itself is modelled: loads and "
+                               "motions must stop before");
         } else if (pair == model.pairs.end()) {
             add("contact", "a pair of surfaces of '" + body + "' and '" + other +
                                "' that hold the place: no pair keeps these bodies apart");
@@ -246,11 +247,12 @@ private:
                     "node: averages over facets know neither edges against edges nor vertices");
             if (!known)
                 add("contact." + one.name() + ".slave",
-                    "the other side, or surfaces that hold node " + std::to_string(found_.node) + " of body '" + found_.body +
-                        "', which is no slave node: only slave nodes are kept out of the other body");
+                    "the other side, or surfaces that hold node " + std::to_string(found_.node) + " of body '" +
+                        found_.body + "', which is no slave node: only slave nodes are kept out of the other body");
             if (intrusion.edge)
-                add("bodies." + body + ".mesh", "nodes where the edges meet: contact knows nodes against facets, not edges "
-                                                "against edges between their nodes");
+                add("bodies." + body + ".mesh",
+                    "nodes where the edges meet: contact knows nodes against facets, not edges "
+                    "against edges between their nodes");
             if (failed_.stage.limits.allowed_interpenetration > 0.05)
                 add(in_stage("control.allowed_interpenetration"), "0.05, so that no node is carried past a surface");
         }

@@ -353,8 +353,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
             stabilised_steps_ += result.stabilised_solves > 0 ? 1 : 0;
             if (dynamics != nullptr) ledger_ = ledger;
             observer.attempted(attempt, equilibrium.records());
-            observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr,
-                               found});
+            observer.accepted(
+                {state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr, found});
             refresh_patches();
             attempts.clear();
             repeats = 0;

@@ -46,8 +46,8 @@ private:
 
     const model::Model& model_;
     const std::optional<scene::Expectation> expect_;
-    contact::Intrusion deepest_; ///< in body -1: none
-    double deepest_time_ = 0;    ///< s
+    contact::Intrusion deepest_;                    ///< in body -1: none
+    double deepest_time_ = 0;                       ///< s
     double left_over_ = 0, acting_ = 0;             ///< N
     double penetration_ = 0, penetration_m_ = 0;    ///< facet sizes, m
     double excess_ = 0, excessive_ = 0, bound_ = 0; ///< largest penetration over its bound; both, in facet sizes

@@ -35,7 +35,7 @@ struct Summary {
     };
     /// The deepest place at which a body lay inside another in an accepted step, see contact::SurfaceAudit.
     struct Audit {
-        bool on = true; ///< false: nobody looked
+        bool on = true;                             ///< false: nobody looked
         double depth = 0, excess = 0, relative = 0; ///< m; m; of the facet size
         std::string body, other;                    ///< empty: none lay inside another
         long node = -1;                             ///< of `body`
@@ -63,7 +63,7 @@ struct Summary {
     int threads = 1;
     std::vector<std::string> plan;
     std::optional<Checks> checks;
-    std::optional<Audit> audit; ///< none: one body that meets nothing
+    std::optional<Audit> audit;             ///< none: one body that meets nothing
     std::optional<Expectation> expectation; ///< where the scene has one, when the run has ended
 };
 

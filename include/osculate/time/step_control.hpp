@@ -76,8 +76,8 @@ struct Decision {
     double dt = 0;     ///< of the next step after accept, of the same step after retry, s
     double lambda = 1; ///< fraction of a rejected attempt's dt that was called for, floor included, dt_min not
     double value = 0;  ///< what decided: gap g1, residual, local error, energy jump or fraction; accepted: the residual
-    Index pair = -1, slave = -1; ///< governing point of an interpenetration or a collision
-    bool unseen = false;         ///< an interpenetration that no average sees
+    Index pair = -1, slave = -1;                 ///< governing point of an interpenetration or a collision
+    bool unseen = false;                         ///< an interpenetration that no average sees
     std::optional<contact::Intrusion> intrusion; ///< what the audit found
     std::string cause;                           ///< in words; empty when accepted
 };

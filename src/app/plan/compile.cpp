@@ -224,9 +224,9 @@ private:
                                                 analysis->mass_damping, analysis->stiffness_damping};
             }
             const bool dynamic = stage.dynamics.has_value();
-            constexpr double in_dynamics = 0.05; // of the facet size
+            constexpr double in_dynamics = 0.05, in_statics = 0.5; // of the facet size
             const scene::RelativeLength g_p = spec.control.allowed_interpenetration.value_or(
-                scene::RelativeLength{dynamic ? in_dynamics : std::numeric_limits<double>::infinity(), false});
+                scene::RelativeLength{dynamic ? in_dynamics : in_statics, false});
             stage.limits.allowed_interpenetration = g_p.value;
             stage.limits.in_metres = g_p.metres;
             if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;

@@ -45,7 +45,7 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             penetration_m_ = std::max(penetration_m_, -gap);
             const double allowed = limits.allowed_interpenetration / (limits.in_metres ? size : 1);
             const double bound = expect_ && expect_->penetration ? *expect_->penetration
-                                 : std::isfinite(allowed)        ? allowed
+                                 : step.ledger != nullptr        ? allowed
                                                                  : scene::Expectation::exact;
             if (depth / bound <= excess_) continue;
             excess_ = depth / bound;
@@ -126,10 +126,10 @@ std::vector<double> RunChecks::memory() const {
 void RunChecks::recall(const std::vector<double>& memory) {
     double dynamic = 0, body = -1, other = -1, node = -1;
     contact::Intrusion& d = deepest_;
-    double* const members[] = {&left_over_, &acting_,   &penetration_, &penetration_m_, &excess_,     &excessive_, &bound_,
-                               &dynamic,    &energy_,   &balance_,     &growth_,        &body,        &other,      &node,
-                               &d.depth,    &d.excess,  &d.length,     &d.place.x(),    &d.place.y(), &d.place.z(),
-                               &deepest_time_};
+    double* const members[] = {&left_over_,  &acting_,     &penetration_, &penetration_m_, &excess_,  &excessive_,
+                               &bound_,      &dynamic,     &energy_,      &balance_,       &growth_,  &body,
+                               &other,       &node,        &d.depth,      &d.excess,       &d.length, &d.place.x(),
+                               &d.place.y(), &d.place.z(), &deepest_time_};
     if (memory.size() != std::size(members)) throw std::runtime_error("the checkpoint holds no checks of the run");
     for (std::size_t i = 0; i < memory.size(); ++i) *members[i] = memory[i];
     dynamic_ = dynamic != 0;

@@ -20,7 +20,8 @@ ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
                                                     body_of(snapshot.model(), term.master_nodes().front()));
     for (Index j = 0; j < term.size(); ++j) {
         const contact::ContactState contact = snapshot.contact(pair, j);
-        if (snapshot.has_partner(pair, j)) sum.penetration = std::max(sum.penetration, -contact.gap);
+        const bool partner = snapshot.audit() == nullptr ? snapshot.has_partner(pair, j) : term.point(j).found;
+        if (partner) sum.penetration = std::max(sum.penetration, -contact.gap);
         if (!contact::is_closed(status[j])) {
             ++sum.open;
             continue;

@@ -93,7 +93,7 @@ TEST(SurfaceAudit, MeasuresTheDepthOfAFaceBelowAFace) {
         ASSERT_NE(found.worst(), nullptr) << depth;
         EXPECT_NEAR(found.worst()->depth, depth, round_off);
         EXPECT_NEAR(found.worst()->excess, depth, round_off) << "flat faces have no sagitta";
-        EXPECT_EQ(found.nodes.size(), 16u) << "all nodes of the lower face";
+        EXPECT_EQ(found.nodes.size(), 17u) << "all nodes of the lower face, and the one in the middle of the upper";
         EXPECT_DOUBLE_EQ(found.between(0, 1), found.worst()->excess);
     }
 }

@@ -35,7 +35,8 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             for (std::size_t i = 0; i < model_.X.size(); ++i) x.push_back(model_.X[i] + step.state.u[i]);
         for (Index j = 0; j < pair->size(); ++j) {
             const contact::ContactPoint& point = pair->point(j);
-            const bool seen = point.found || point.behind;
+            // what has no partner and only seems to be behind a surface is for the audit to judge
+            const bool seen = point.found || (point.behind && step.audit == nullptr);
             if (!seen && !mortar) continue;
             const double gap = seen ? point.gap : pair->unseen_gap(j, x);
             const Index facet = seen ? point.facet : pair->facets()[j];

@@ -4,13 +4,24 @@
 
 namespace osculate::output {
 
+namespace {
+Index body_of(const model::Model& model, Index node) {
+    const auto after = std::ranges::find_if(model.bodies, [&](const model::Body& b) { return b.first_node > node; });
+    return static_cast<Index>(after - model.bodies.begin()) - 1;
+}
+} // namespace
+
 ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
     const model::ContactTerm& term = *snapshot.model().pairs[pair];
     const std::vector<contact::Status>& status = snapshot.state().contact[pair].status;
     ContactResultants sum;
+    if (snapshot.audit() != nullptr)
+        sum.penetration = snapshot.audit()->between(body_of(snapshot.model(), term.slaves().node.front()),
+                                                    body_of(snapshot.model(), term.master_nodes().front()));
     for (Index j = 0; j < term.size(); ++j) {
         const contact::ContactState contact = snapshot.contact(pair, j);
-        if (snapshot.has_partner(pair, j)) sum.penetration = std::max(sum.penetration, -contact.gap);
+        const bool partner = snapshot.audit() == nullptr ? snapshot.has_partner(pair, j) : term.point(j).found;
+        if (partner) sum.penetration = std::max(sum.penetration, -contact.gap);
         if (!contact::is_closed(status[j])) {
             ++sum.open;
             continue;

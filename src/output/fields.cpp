@@ -60,6 +60,16 @@ Values out_of_balance(const Snapshot& snapshot, Index body) {
     return of_body_if_any(snapshot, body, snapshot.out_of_balance());
 }
 
+Values penetration(const Snapshot& snapshot, Index body) {
+    const model::Body& part = snapshot.model().bodies[body];
+    Values values(static_cast<std::size_t>(part.nodes()), 0.0);
+    if (snapshot.audit() == nullptr) return values;
+    for (const auto& [node, excess] : snapshot.audit()->nodes)
+        if (node >= part.first_node && node < part.first_node + part.nodes())
+            values[static_cast<std::size_t>(node - part.first_node)] = excess;
+    return values;
+}
+
 Values stress(const Snapshot& snapshot, Index body) {
     const Snapshot::Stress& sigma = snapshot.stress(body);
     Values values;
@@ -256,6 +266,7 @@ constexpr Field table[] = {
     {"energy_density", FieldPlace::body, 1, "J/m^3", false, energy_density},
     {"reaction", FieldPlace::body, 3, "N", false, reaction},
     {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance}, // of a failed iterate; 0 otherwise
+    {"penetration", FieldPlace::body, 1, "m", false, penetration},       // in another body, by the audit; 0 outside
     {"gap", FieldPlace::slave, 1, "m", false, gap},                      // NaN without a partner
     {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
     {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress},             // > 0 in compression

@@ -5,9 +5,9 @@
 namespace osculate::output {
 
 Snapshot::Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
-                   std::vector<Vec3> out_of_balance, double dt)
+                   std::vector<Vec3> out_of_balance, double dt, const contact::AuditResult* audit)
     : model_(model), state_(state), reactions_(std::move(reactions)), out_of_balance_(std::move(out_of_balance)),
-      dt_(dt) {}
+      dt_(dt), audit_(audit) {}
 
 const std::vector<Vec3>& Snapshot::x() const {
     if (x_.empty()) {

@@ -30,10 +30,11 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["factorisations"] = summary.factorisations;
     json["gmres_iterations"] = summary.gmres_iterations;
     const Timings& timings = summary.timings;
-    json["seconds"] = {
-        {"total", summary.total_seconds},    {"cpu", summary.cpu_seconds},        {"search", timings[Part::search]},
-        {"patches", timings[Part::patches]}, {"contact", timings[Part::contact]}, {"assembly", timings[Part::assembly]},
-        {"factor", timings[Part::factor]},   {"solve", timings[Part::solve]},     {"output", timings[Part::output]}};
+    json["seconds"] = {{"total", summary.total_seconds},    {"cpu", summary.cpu_seconds},
+                       {"search", timings[Part::search]},   {"patches", timings[Part::patches]},
+                       {"contact", timings[Part::contact]}, {"assembly", timings[Part::assembly]},
+                       {"factor", timings[Part::factor]},   {"solve", timings[Part::solve]},
+                       {"output", timings[Part::output]},   {"audit", timings[Part::audit]}};
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["threads"] = summary.threads;
     json["plan"] = summary.plan;
@@ -45,6 +46,19 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
         if (checks.energy_growth) list["energy_growth"] = *checks.energy_growth;
         list["penetration"] = checks.penetration;
         list["penetration_m"] = checks.penetration_m;
+    }
+    if (summary.audit) {
+        const Summary::Audit& audit = *summary.audit;
+        Json& found = json["audit"] = {{"on", audit.on}};
+        if (!audit.body.empty())
+            found.update({{"depth_m", audit.depth},
+                          {"excess_m", audit.excess},
+                          {"excess", audit.relative},
+                          {"body", audit.body},
+                          {"node", audit.node},
+                          {"inside", audit.other},
+                          {"time", audit.time},
+                          {"place", audit.place}});
     }
     if (summary.expectation)
         json["expectation"] = {{"met", summary.expectation->met()}, {"misses", summary.expectation->misses}};

@@ -79,7 +79,7 @@ std::string checks_section(const RunFiles& files) {
         {"force_balance", "Force left over in the worst step, of the forces that act"},
         {"energy_balance", "What the energies do not add up to, of the largest energy"},
         {"energy_growth", "Kinetic plus strain energy beyond external work, of the largest energy"},
-        {"penetration", "Deepest slave node below its master, in facet sizes"},
+        {"penetration", "Deepest place of a body inside another, in facet sizes"},
         {"penetration_m", "The same as a length"}};
     const json checks = object(files.summary, "checks"), expectation = object(files.summary, "expectation");
     std::vector<std::vector<std::string>> rows;
@@ -90,6 +90,15 @@ std::string checks_section(const RunFiles& files) {
     }
     std::string text = rows.empty() ? element("p", "The run has been checked for nothing yet.")
                                     : table({"Worst over all accepted steps", "Value"}, rows, {1});
+    const json audit = object(files.summary, "audit");
+    if (audit.contains("on") && audit["on"] == false)
+        text += element("p", "The audit of geometry was off: nobody looked for bodies inside one another.");
+    else if (audit.contains("depth_m"))
+        text += element(
+            "p", escaped("Deepest: node " + count(member(audit, "node")) + " of body '" + word(audit, "body") + "', " +
+                         measure(member(audit, "depth_m"), "m") + " inside the facets of '" + word(audit, "inside") +
+                         "' at " + scene::engineering(member(audit, "time"), "s") + "; " +
+                         measure(member(audit, "excess_m"), "m") + " more than facets of smooth surfaces bulge by."));
     if (!expectation.empty()) {
         std::string misses;
         for (const json& miss : list(expectation, "misses"))

@@ -159,10 +159,9 @@ void describe(Visitor& v, StepControl& s) {
     v.optional_relative_length(
         {.name = "allowed_interpenetration",
          .meaning = "A number is one of facet sizes: a step that takes an open slave node deeper in its trial is "
-                    "cut. In dynamics never more than a quarter of the thickness of the master's body; in statics "
-                    "no bound where it is not given.",
+                    "cut. In dynamics never more than a quarter of the thickness of the master's body.",
          .range = {.low = 0, .high = 1, .open_low = true},
-         .default_text = "0.05 in dynamics"},
+         .default_text = "0.05 in dynamics, 0.5 in statics"},
         s.allowed_interpenetration);
     v.optional_number({.name = "error_tolerance",
                        .meaning = "Estimated error of the displacement of any node that a dynamic step may make by "
@@ -289,6 +288,17 @@ void describe(Visitor& v, Solver& solver) {
              "In statics, let bodies that nothing holds lean on springs until contact does; no step is accepted with "
              "springs in place."},
         solver.stabilisation);
+    v.flag({.name = "audit",
+            .meaning =
+                "After every solved step, look for nodes and edges inside another body or their own, by geometry "
+                "alone, whatever contact says; the summary says where it is off."},
+           solver.audit);
+    v.number({.name = "audited_depth",
+              .meaning =
+                  "Of the facet size: how deep a body may lie inside another, beyond what facets of smooth surfaces "
+                  "bulge by, before the audit has the step cut.",
+              .range = {.low = 0, .high = 1, .open_low = true}},
+             solver.audited_depth);
 }
 
 void describe(Visitor& v, Scene& scene) {

@@ -4,7 +4,7 @@ namespace osculate::scene {
 
 void describe(Visitor& v, Expectation& expect) {
     static const std::string bound =
-        "allowed_interpenetration of the stage, " + number_text(Expectation::exact) + " where it has none";
+        "allowed_interpenetration of the stage in dynamics, " + number_text(Expectation::exact) + " in statics";
     static const Words outcomes{"completed", "gives_up"};
     word(v, {.name = "outcome", .meaning = "How the run ends."}, outcomes, expect.outcome);
     v.text({.name = "cause", .meaning = "Words that the message of a run that gives up holds."}, expect.cause);
@@ -17,11 +17,14 @@ void describe(Visitor& v, Expectation& expect) {
                          "largest energy.",
               .range = range::positive},
              expect.energy_growth);
-    v.optional_number({.name = "penetration",
-                       .meaning = "Deepest interpenetration of any slave node in an accepted state, in facet sizes.",
-                       .range = range::positive,
-                       .default_text = bound.c_str()},
-                      expect.penetration);
+    v.optional_number(
+        {.name = "penetration",
+         .meaning =
+             "Deepest interpenetration of any slave node in an accepted state, in facet sizes; given, also of any "
+             "body inside another that the audit finds.",
+         .range = range::positive,
+         .default_text = bound.c_str()},
+        expect.penetration);
 }
 
 } // namespace osculate::scene

@@ -1,6 +1,7 @@
 /// What to change after a failure. Every piece names a key of the scene.
 
 #include "osculate/time/post_mortem.hpp"
+#include "time/body_hold.hpp"
 #include "time/number.hpp"
 
 #include <algorithm>
@@ -211,11 +212,51 @@ private:
     }
 
     void unseen() {
+        if (failed_.decision.intrusion) return inside(*failed_.decision.intrusion);
         const model::ContactTerm& one = *failed_.model.pairs[static_cast<std::size_t>(failed_.decision.pair)];
         add("contact." + one.name() + ".discretisation",
             "node: averages over facets know neither edges against edges nor vertices");
         add("contact." + one.name() + ".slave",
             "the side with the finer mesh, if only an edge of the coarser one is unseen");
+    }
+
+    /// What the audit found.
+    void inside(const contact::Intrusion& intrusion) {
+        const model::Model& model = failed_.model;
+        const auto name = [&](Index body) { return model.bodies[static_cast<std::size_t>(body)].name; };
+        const std::string &body = name(intrusion.body), &other = name(intrusion.other);
+        const auto joins = [&](const auto& pair) {
+            const std::string &slave = body_of(model, pair->slaves().node.front())->name,
+                              &master = body_of(model, pair->master_nodes().front())->name;
+            return (slave == body && master == other) || (slave == other && master == body);
+        };
+        const auto pair = std::ranges::find_if(model.pairs, joins);
+        if (intrusion.body == intrusion.other) {
+            add("contact", "body '" + body +
+                               "' meets itself, and no contact of a body with itself is modelled: loads and "
+                               "motions must stop before");
+        } else if (pair == model.pairs.end()) {
+            add("contact", "a pair of surfaces of '" + body + "' and '" + other +
+                               "' that hold the place: no pair keeps these bodies apart");
+        } else {
+            const model::ContactTerm& one = **pair;
+            const std::vector<Index>& slaves = one.slaves().node;
+            const bool known = std::ranges::count(slaves, intrusion.node) > 0;
+            if (one.options().discretisation == model::Discretisation::mortar)
+                add("contact." + one.name() + ".discretisation",
+                    "node: averages over facets know neither edges against edges nor vertices");
+            if (!known)
+                add("contact." + one.name() + ".slave",
+                    "the other side, or surfaces that hold node " + std::to_string(found_.node) + " of body '" +
+                        found_.body + "', which is no slave node: only slave nodes are kept out of the other body");
+            if (intrusion.edge)
+                add("bodies." + body + ".mesh",
+                    "nodes where the edges meet: contact knows nodes against facets, not edges "
+                    "against edges between their nodes");
+            if (failed_.stage.limits.allowed_interpenetration > 0.05)
+                add(in_stage("control.allowed_interpenetration"), "0.05, so that no node is carried past a surface");
+        }
+        add("solver.audit", "off, if the bodies may lie inside one another there: the summary says that nobody looked");
     }
 
     void time_error() {

@@ -33,8 +33,9 @@ constexpr std::array<CauseWords, 17> causes{{
     {Cause::inside_out, "inside_out", "an element is turned inside out"},
     {Cause::interpenetration, "interpenetration", "the step takes a node deeper into a surface than is allowed"},
     {Cause::unseen_contact, "unseen_contact",
-     "a node goes into a surface where the slave facets around it overlap none of the master's, so that mortar puts no "
-     "force on it"},
+     "a body goes into another, or into itself, where no contact puts a force on it: where no pair has both surfaces, "
+     "at "
+     "edges between nodes, at nodes of a master, or where averages over facets see nothing"},
     {Cause::collision, "collision", "the step takes a node through a surface"},
     {Cause::time_error, "time_error", "the step makes a larger error in time than is allowed"},
     {Cause::energy, "energy", "contact adds more energy in the step than is allowed"},

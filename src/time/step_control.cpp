@@ -37,6 +37,8 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits) {
         consider(governing, {Reason::interpenetration, limits.failure_lambda, unseen.g1, &unseen});
     if (!(evidence.collision >= 1))
         consider(governing, {Reason::collision, evidence.collision, evidence.collision, nullptr});
+    if (evidence.intrusion && !(evidence.intrusion->relative() <= limits.audited_depth))
+        consider(governing, {Reason::audit, limits.failure_lambda, evidence.intrusion->excess, nullptr});
     if (!(evidence.local_error <= limits.error_tolerance)) {
         const double lambda =
             limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error); // of order dt^3
@@ -62,6 +64,11 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
              << -limits.allowed_interpenetration * objection.point->length << " m";
         break;
     case Reason::collision: text << "a surface is passed through at " << objection.value << " of the step"; break;
+    case Reason::audit:
+        text << "bodies lie inside one another: " << objection.value
+             << " m beyond what facets of a smooth surface may, allowed is "
+             << limits.audited_depth * evidence.intrusion->length << " m";
+        break;
     case Reason::error:
         text << "the local time error is " << objection.value << " m, allowed is " << limits.error_tolerance << " m";
         break;
@@ -123,6 +130,8 @@ Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt
     } else if (objection.reason == Reason::collision) {
         decision.pair = evidence.collision_pair;
         decision.slave = evidence.collision_slave;
+    } else if (objection.reason == Reason::audit) {
+        decision.intrusion = evidence.intrusion;
     }
     std::ostringstream cause;
     describe(cause, objection, evidence, limits);

@@ -77,6 +77,9 @@ Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions 
     }
     characteristic_length_ = (high - low).norm();
     largest_stiffness_ = model::largest_stiffness(model);
+    if (!options_.audit) return;
+    const ScopedTimer timer(timings_, Part::audit);
+    audit_ = std::make_unique<Audit>(model);
 }
 
 double Stepper::end_time() const {
@@ -177,6 +180,10 @@ Attempt Stepper::diary(const Decision& decision, const LadderResult& result, con
     attempt.cause = decision.cause;
     if (decision.reason == Reason::solver) attempt.cause = explain(model_, result, equilibrium, attempt);
     if (decision.pair >= 0) name_node(model_, model_.pairs[decision.pair]->slaves().node[decision.slave], attempt);
+    if (decision.intrusion) {
+        name_node(model_, decision.intrusion->node, attempt);
+        attempt.cause = in_words(*decision.intrusion, model_) + "; " + attempt.cause;
+    }
     return attempt;
 }
 
@@ -282,6 +289,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
         std::optional<NotFinite> not_finite;
         int iterations = 0;
         Index worst_in_time = -1;
+        const contact::AuditResult* found = nullptr;
         if (controlled && !forced) {
             Vector trial = z;
             result = solve_trial(equilibrium, solver, trial, statuses, ladder);
@@ -318,6 +326,11 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
                 }
                 if (controlled) collisions.add_solution(next.u, evidence);
                 evidence.unseen = deepest_unseen(model_, next.u);
+                if (audit_ && !not_finite) {
+                    const ScopedTimer timer(timings_, Part::audit);
+                    found = &audit_->examine(next.u);
+                    evidence.intrusion = audit_->deepest();
+                }
                 if (dynamics != nullptr) {
                     if (std::isfinite(stage.limits.error_tolerance))
                         evidence.local_error = local_error(*dynamics, constraints, next.a, dt, worst_in_time);
@@ -340,7 +353,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
             stabilised_steps_ += result.stabilised_solves > 0 ? 1 : 0;
             if (dynamics != nullptr) ledger_ = ledger;
             observer.attempted(attempt, equilibrium.records());
-            observer.accepted({state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr});
+            observer.accepted(
+                {state_, equilibrium, dt, iterations, stage, dynamics != nullptr ? &ledger_ : nullptr, found});
             refresh_patches();
             attempts.clear();
             repeats = 0;

@@ -17,7 +17,8 @@ namespace osculate::app {
 ///   force_balance   largest force left over (time::ForceBalance) over the largest sum of forces that act
 ///   energy_balance  largest balance of the ledger, what the solver left unsolved
 ///   energy_growth   largest rise of kinetic plus strain energy beyond external work since the dynamic stage began
-///   penetration     deepest slave node below its master, open or closed, in sizes of the facet concerned
+///   penetration     deepest slave node below its master, open or closed, in sizes of the facet concerned; or of any node
+///                   or edge inside another body or its own that the audit of geometry finds
 /// Both energies are shares of the largest energy there was: kinetic plus strain, or the work of external forces.
 class RunChecks {
 public:
@@ -32,16 +33,21 @@ public:
     void recall(const std::vector<double>& memory);
 
     [[nodiscard]] output::Summary::Checks checks() const;
+    /// What the audit found deepest; `on` as the step says.
+    [[nodiscard]] output::Summary::Audit audit() const;
     /// What a run that has ended did not come to; nothing where nothing is expected.
     /// @param failure  why the run gave up; empty: it completed
     [[nodiscard]] std::optional<output::Summary::Expectation> judge(const std::string& failure) const;
 
 private:
     void add_penetration(const time::AcceptedStep& step);
+    void add_audit(const time::AcceptedStep& step);
     void add_energies(const time::Ledger& ledger);
 
     const model::Model& model_;
     const std::optional<scene::Expectation> expect_;
+    contact::Intrusion deepest_;                    ///< in body -1: none
+    double deepest_time_ = 0;                       ///< s
     double left_over_ = 0, acting_ = 0;             ///< N
     double penetration_ = 0, penetration_m_ = 0;    ///< facet sizes, m
     double excess_ = 0, excessive_ = 0, bound_ = 0; ///< largest penetration over its bound; both, in facet sizes

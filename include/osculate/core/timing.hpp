@@ -7,7 +7,7 @@
 
 namespace osculate {
 
-enum class Part : std::size_t { search, patches, contact, assembly, factor, solve, output, count };
+enum class Part : std::size_t { search, patches, contact, assembly, factor, solve, output, audit, count };
 
 /// Seconds accumulated per part. One object per run, owned by the plan; not shared between threads.
 class Timings {

@@ -1,6 +1,7 @@
 #pragma once
 /// One state, as fields and tables look at it.
 
+#include "osculate/contact/surface_audit.hpp"
 #include "osculate/model/model.hpp"
 
 #include <map>
@@ -16,8 +17,9 @@ public:
     /// @param reactions       (nodes) what supports and driven motions exert on each node, N; empty: nobody asks for them
     /// @param out_of_balance  (nodes) forces that nothing balances, N, of an iterate that is no equilibrium; empty: none
     /// @param dt              of the step that ended in the state, s; 0: none has
+    /// @param audit           of the state; null: there was none
     Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
-             std::vector<Vec3> out_of_balance = {}, double dt = 0);
+             std::vector<Vec3> out_of_balance = {}, double dt = 0, const contact::AuditResult* audit = nullptr);
 
     [[nodiscard]] const model::Model& model() const { return model_; }
     [[nodiscard]] const model::State& state() const { return state_; }
@@ -25,6 +27,7 @@ public:
     /// Empty where the state is an equilibrium.
     [[nodiscard]] const std::vector<Vec3>& out_of_balance() const { return out_of_balance_; }
     [[nodiscard]] double dt() const { return dt_; }
+    [[nodiscard]] const contact::AuditResult* audit() const { return audit_; }
     /// Current positions x = X + u of all nodes, m; computed when first asked for.
     [[nodiscard]] const std::vector<Vec3>& x() const;
     /// Nodal stress of a body (nodes x 6), Pa; computed when first asked for.
@@ -41,6 +44,7 @@ private:
     const model::State& state_;
     std::vector<Vec3> reactions_, out_of_balance_;
     double dt_;
+    const contact::AuditResult* audit_;
     mutable std::vector<Vec3> x_;
     mutable std::map<Index, Stress> stress_;
 };

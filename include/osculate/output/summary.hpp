@@ -3,6 +3,7 @@
 
 #include "osculate/core/timing.hpp"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,6 +33,15 @@ struct Summary {
         double penetration = 0, penetration_m = 0;           ///< in facet sizes; m
         std::optional<double> energy_balance, energy_growth; ///< of the largest energy; without a dynamic step none
     };
+    /// The deepest place at which a body lay inside another in an accepted step, see contact::SurfaceAudit.
+    struct Audit {
+        bool on = true;                             ///< false: nobody looked
+        double depth = 0, excess = 0, relative = 0; ///< m; m; of the facet size
+        std::string body, other;                    ///< empty: none lay inside another
+        long node = -1;                             ///< of `body`
+        double time = 0;
+        std::array<double, 3> place{};
+    };
     /// Whether the run came to what its scene expects.
     struct Expectation {
         std::vector<std::string> misses; ///< in words; none: met
@@ -53,6 +63,7 @@ struct Summary {
     int threads = 1;
     std::vector<std::string> plan;
     std::optional<Checks> checks;
+    std::optional<Audit> audit;             ///< none: one body that meets nothing
     std::optional<Expectation> expectation; ///< where the scene has one, when the run has ended
 };
 

@@ -281,7 +281,7 @@ struct RelativeLength {
 
 /// What an attempted step must keep to; one that does not is repeated with a smaller dt.
 struct StepControl {
-    /// A fraction is one of the facet size. Not given: 0.05 in dynamics, no bound in statics.
+    /// A fraction is one of the facet size. Not given: 0.05 in dynamics, 0.5 in statics.
     std::optional<RelativeLength> allowed_interpenetration;
     std::optional<double> error_tolerance; ///< of the displacement, in one dynamic step, m; not given: no bound
     double energy_tolerance = 0.01; ///< rise beyond external work in one dynamic step, of kinetic plus strain energy
@@ -312,7 +312,9 @@ struct Solver {
     double smallest_step = 1e-3; ///< of the stage's step: a smaller one is given up
     bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
     LinearSolver linear_solver = LinearSolver::automatic;
-    bool stabilisation = true; ///< springs under bodies that nothing holds yet, gone before a step is accepted
+    bool stabilisation = true;  ///< springs under bodies that nothing holds yet, gone before a step is accepted
+    bool audit = true;          ///< look for bodies inside one another after every solved step
+    double audited_depth = 0.1; ///< how deep they may lie, beyond the sagitta of smooth surfaces, of the facet size
     bool operator==(const Solver&) const = default;
 };
 
@@ -322,7 +324,7 @@ enum class Outcome { completed, gives_up };
 
 /// What a run is expected to come to, held against the checks of a run.
 struct Expectation {
-    /// Penetration, of the facet size, where a stage has no bound. Contact is exact: on a closed node the solver leaves a gap
+    /// Penetration, of the facet size, in statics. Contact is exact: on a closed node the solver leaves a gap
     /// of the order of tolerance * force / c, with c ~ E A / h some 1e-9 of the elastic strain. A thousand times that.
     static constexpr double exact = 1e-6;
 
@@ -333,7 +335,8 @@ struct Expectation {
     double force_balance = 1e-6;
     /// Of the largest energy, over the whole run: what one step may do by itself, see StepControl.
     double energy_growth = StepControl{}.energy_tolerance;
-    std::optional<double> penetration; ///< of the facet size; not given: the stage's bound or `exact`
+    std::optional<double>
+        penetration; ///< of the facet size; not given: the stage's bound in dynamics, `exact` in statics
     bool operator==(const Expectation&) const = default;
 };
 

@@ -25,7 +25,7 @@ enum class Cause {
     not_finite,           ///< residual or step held NaN or infinity
     inside_out,           ///< an element has no volume left
     interpenetration,
-    unseen_contact, ///< a node inside the master where mortar averages over nothing
+    unseen_contact, ///< bodies inside one another where no contact node sees it
     collision,
     time_error,
     energy,

@@ -1,10 +1,12 @@
 #pragma once
 /// What becomes of an attempted step: pure decisions over evidence.
 
+#include "osculate/contact/surface_audit.hpp"
 #include "osculate/core/types.hpp"
 #include "osculate/time/attempt.hpp"
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +47,8 @@ struct StepEvidence {
     /// Deepest slave node of a mortar pair that lies inside the master where its facets overlap nothing, so that no
     /// average sees it; pair -1: there is none. In the solution, not in the trial.
     GapEvidence unseen;
+    /// Deepest place at which a body lies inside another in the solution, by geometry alone.
+    std::optional<contact::Intrusion> intrusion;
     bool forced = false; ///< repeat the step as it is, for tests of repetition
 };
 
@@ -61,6 +65,7 @@ struct StepLimits {
     double growth = 1.5;                                                 ///< of dt after an easy step
     int easy_iterations = 5;               ///< an easy step takes no more, and is accepted at first go
     double unseen_interpenetration = 0.01; ///< of GapEvidence::length, for StepEvidence::unseen
+    double audited_depth = std::numeric_limits<double>::infinity();   ///< of Intrusion::relative()
     double error_tolerance = std::numeric_limits<double>::infinity(); ///< m
     double energy_tolerance = std::numeric_limits<double>::infinity();
 };
@@ -71,16 +76,17 @@ struct Decision {
     double dt = 0;     ///< of the next step after accept, of the same step after retry, s
     double lambda = 1; ///< fraction of a rejected attempt's dt that was called for, floor included, dt_min not
     double value = 0;  ///< what decided: gap g1, residual, local error, energy jump or fraction; accepted: the residual
-    Index pair = -1, slave = -1; ///< governing point of an interpenetration or a collision
-    bool unseen = false;         ///< an interpenetration that no average sees
-    std::string cause;           ///< in words; empty when accepted
+    Index pair = -1, slave = -1;                 ///< governing point of an interpenetration or a collision
+    bool unseen = false;                         ///< an interpenetration that no average sees
+    std::optional<contact::Intrusion> intrusion; ///< what the audit found
+    std::string cause;                           ///< in words; empty when accepted
 };
 
 /// Whether judge() gives up where it would cut the step.
 [[nodiscard]] bool cannot_be_cut(const StepLimits& limits, double dt, int repeats);
 
-/// The smallest lambda of all objections governs, among equals the first of: solver, interpenetration, collision, error,
-/// energy. A cut never goes below dt_min, which is tried before giving up.
+/// The smallest lambda of all objections governs, among equals the first of: solver, interpenetration, collision, audit,
+/// error, energy. A cut never goes below dt_min, which is tried before giving up.
 /// @param dt       of the attempt, s
 /// @param repeats  of this step so far, forced ones not counted
 [[nodiscard]] Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats);

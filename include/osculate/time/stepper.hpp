@@ -2,6 +2,7 @@
 /// Takes the stages of a run step by step. A step is a transaction: it is accepted whole or leaves no trace.
 
 #include "osculate/time/attempt.hpp"
+#include "osculate/time/audit.hpp"
 #include "osculate/time/checkpoint.hpp"
 #include "osculate/time/equilibrium.hpp"
 #include "osculate/time/ledger.hpp"
@@ -24,6 +25,7 @@ struct StepperOptions {
     bool stabilisation = true; ///< see StabilisationOptions
     int threads = 1;
     LinearSolver linear_solver = LinearSolver::automatic;
+    bool audit = false; ///< of every solved step, see Audit
 };
 
 /// An accepted step, valid during StepObserver::accepted only.
@@ -33,7 +35,8 @@ struct AcceptedStep {
     double dt = 0;
     int iterations = 0;
     const Stage& stage;
-    const Ledger* ledger = nullptr; ///< null in statics
+    const Ledger* ledger = nullptr;              ///< null in statics
+    const contact::AuditResult* audit = nullptr; ///< null: there was none
 };
 
 /// The last iterate of the attempt at which a run gave up, valid during StepObserver::gave_up only.
@@ -124,6 +127,7 @@ private:
     bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
     int stabilised_steps_ = 0;
+    std::unique_ptr<Audit> audit_;        ///< null: not wanted
     std::unique_ptr<Checkpoint> resumed_; ///< until run() has gone on from it
     long factorisations_ = 0, gmres_iterations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
     double characteristic_length_ = 1;

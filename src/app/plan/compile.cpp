@@ -75,7 +75,8 @@ public:
                          scene_.solver.predictor,
                          scene_.solver.stabilisation,
                          threads_,
-                         linear_solver(scene_.solver.linear_solver)};
+                         linear_solver(scene_.solver.linear_solver),
+                         audited()};
         plan_.items = plan_items(scene_, plan_);
         return std::move(plan_);
     }
@@ -83,6 +84,14 @@ public:
 private:
     void throw_faults() {
         if (!faults_.empty()) throw SceneError(std::move(faults_));
+    }
+
+    /// A body alone that is deformed little meets nothing, not even itself.
+    [[nodiscard]] bool audited() const {
+        const auto linear = [](const auto& body) {
+            return std::holds_alternative<scene::LinearElastic>(body.second.material);
+        };
+        return scene_.solver.audit && (scene_.bodies.size() > 1 || !std::ranges::all_of(scene_.bodies, linear));
     }
 
     /// Far from the scene's origin positions have few digits left for gaps: they are taken from the middle of all bodies.
@@ -215,14 +224,15 @@ private:
                                                 analysis->mass_damping, analysis->stiffness_damping};
             }
             const bool dynamic = stage.dynamics.has_value();
-            constexpr double in_dynamics = 0.05; // of the facet size
+            constexpr double in_dynamics = 0.05, in_statics = 0.5; // of the facet size
             const scene::RelativeLength g_p = spec.control.allowed_interpenetration.value_or(
-                scene::RelativeLength{dynamic ? in_dynamics : std::numeric_limits<double>::infinity(), false});
+                scene::RelativeLength{dynamic ? in_dynamics : in_statics, false});
             stage.limits.allowed_interpenetration = g_p.value;
             stage.limits.in_metres = g_p.metres;
             if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
             if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
             stage.follow_paths = dynamic && !scene_.contact.empty();
+            if (audited()) stage.limits.audited_depth = scene_.solver.audited_depth;
             stage.limits.dt_max = spec.duration / spec.steps;
             stage.limits.dt_min = scene_.solver.smallest_step * stage.limits.dt_max;
             stage.limits.growth = spec.control.growth;

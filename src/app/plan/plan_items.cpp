@@ -83,6 +83,12 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         statics == 0                  ? "inertia holds every body"
         : !plan.stepper.stabilisation ? "solver.stabilisation is off"
                                       : "only where a tangent is singular, or as a last resort");
+    const bool audit = plan.stepper.audit;
+    list.say("audit of geometry", audit,
+             audit                ? "bodies inside one another, by the boxes of their facets, after every solved step"
+             : scene.solver.audit ? "one body, deformed little, meets nothing"
+                                  : "solver.audit is off: nobody looks for bodies inside one another",
+             {0, 0, {}});
     list.say("threads", plan.stepper.threads > 1,
              plan.stepper.threads > 1 ? "share out slave nodes and rows of matrices" : "one does all",
              {0, static_cast<double>(plan.stepper.threads), "threads"});

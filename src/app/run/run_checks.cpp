@@ -22,6 +22,7 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
     left_over_ = std::max(left_over_, forces.left_over);
     acting_ = std::max(acting_, forces.acting);
     add_penetration(step);
+    add_audit(step);
     if (step.ledger != nullptr) add_energies(*step.ledger);
 }
 
@@ -34,7 +35,8 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             for (std::size_t i = 0; i < model_.X.size(); ++i) x.push_back(model_.X[i] + step.state.u[i]);
         for (Index j = 0; j < pair->size(); ++j) {
             const contact::ContactPoint& point = pair->point(j);
-            const bool seen = point.found || point.behind;
+            // what has no partner and only seems to be behind a surface is for the audit to judge
+            const bool seen = point.found || (point.behind && step.audit == nullptr);
             if (!seen && !mortar) continue;
             const double gap = seen ? point.gap : pair->unseen_gap(j, x);
             const Index facet = seen ? point.facet : pair->facets()[j];
@@ -44,7 +46,7 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             penetration_m_ = std::max(penetration_m_, -gap);
             const double allowed = limits.allowed_interpenetration / (limits.in_metres ? size : 1);
             const double bound = expect_ && expect_->penetration ? *expect_->penetration
-                                 : std::isfinite(allowed)        ? allowed
+                                 : step.ledger != nullptr        ? allowed
                                                                  : scene::Expectation::exact;
             if (depth / bound <= excess_) continue;
             excess_ = depth / bound;
@@ -52,6 +54,39 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             bound_ = bound;
         }
     }
+}
+
+void RunChecks::add_audit(const time::AcceptedStep& step) {
+    if (step.audit == nullptr) return;
+    const contact::Intrusion* worst = step.audit->worst();
+    if (worst == nullptr || !(worst->excess > 0)) return;
+    if (deepest_.body < 0 || worst->relative() > deepest_.relative()) {
+        deepest_ = *worst;
+        deepest_time_ = step.state.time;
+    }
+    penetration_ = std::max(penetration_, worst->relative());
+    penetration_m_ = std::max(penetration_m_, worst->excess);
+    // what no scene bounds by itself has the audit's own bound
+    if (!expect_ || !expect_->penetration || worst->relative() / *expect_->penetration <= excess_) return;
+    bound_ = *expect_->penetration;
+    excessive_ = worst->relative();
+    excess_ = excessive_ / bound_;
+}
+
+output::Summary::Audit RunChecks::audit() const {
+    output::Summary::Audit found;
+    if (deepest_.body < 0) return found;
+    const auto name = [&](Index body) { return model_.bodies[static_cast<std::size_t>(body)].name; };
+    found.depth = deepest_.depth;
+    found.excess = deepest_.excess;
+    found.relative = deepest_.relative();
+    found.body = name(deepest_.body);
+    found.other = name(deepest_.other);
+    found.node = deepest_.node - model_.bodies[static_cast<std::size_t>(deepest_.body)].first_node;
+    found.time = deepest_time_;
+    const Vec3 place = deepest_.place + model_.origin;
+    found.place = {place.x(), place.y(), place.z()};
+    return found;
 }
 
 void RunChecks::add_energies(const time::Ledger& ledger) {
@@ -65,17 +100,43 @@ void RunChecks::add_energies(const time::Ledger& ledger) {
 }
 
 std::vector<double> RunChecks::memory() const {
-    return {left_over_,           acting_, penetration_, penetration_m_, excess_, excessive_, bound_,
-            dynamic_ ? 1.0 : 0.0, energy_, balance_,     growth_};
+    const contact::Intrusion& d = deepest_;
+    return {left_over_,
+            acting_,
+            penetration_,
+            penetration_m_,
+            excess_,
+            excessive_,
+            bound_,
+            dynamic_ ? 1.0 : 0.0,
+            energy_,
+            balance_,
+            growth_,
+            static_cast<double>(d.body),
+            static_cast<double>(d.other),
+            static_cast<double>(d.node),
+            d.depth,
+            d.excess,
+            d.length,
+            d.place.x(),
+            d.place.y(),
+            d.place.z(),
+            deepest_time_};
 }
 
 void RunChecks::recall(const std::vector<double>& memory) {
-    double dynamic = 0;
-    double* const members[] = {&left_over_, &acting_, &penetration_, &penetration_m_, &excess_, &excessive_,
-                               &bound_,     &dynamic, &energy_,      &balance_,       &growth_};
+    double dynamic = 0, body = -1, other = -1, node = -1;
+    contact::Intrusion& d = deepest_;
+    double* const members[] = {&left_over_,  &acting_,     &penetration_, &penetration_m_, &excess_,  &excessive_,
+                               &bound_,      &dynamic,     &energy_,      &balance_,       &growth_,  &body,
+                               &other,       &node,        &d.depth,      &d.excess,       &d.length, &d.place.x(),
+                               &d.place.y(), &d.place.z(), &deepest_time_};
     if (memory.size() != std::size(members)) throw std::runtime_error("the checkpoint holds no checks of the run");
     for (std::size_t i = 0; i < memory.size(); ++i) *members[i] = memory[i];
     dynamic_ = dynamic != 0;
+    d.body = static_cast<Index>(body);
+    d.other = static_cast<Index>(other);
+    d.node = static_cast<Index>(node);
 }
 
 output::Summary::Checks RunChecks::checks() const {

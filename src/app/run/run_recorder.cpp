@@ -164,7 +164,7 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
         std::vector<Vec3> reactions;
         if (history_reactions_ || probe_reactions_ || (frame && frame_reactions_))
             reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
-        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions), {}, step.dt);
+        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions), {}, step.dt, step.audit);
         history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
         if (frame) frames_->write(snapshot, summary_.steps.accepted);
         write_probes(snapshot, last);
@@ -320,6 +320,10 @@ void RunRecorder::write_summary() {
     summary_.steps.stabilised = stepper_.stabilised_steps();
     summary_.timings = timings_;
     summary_.checks = checks_.checks();
+    if (plan_.stepper.audit || !scene_.solver.audit) {
+        summary_.audit = checks_.audit();
+        summary_.audit->on = plan_.stepper.audit;
+    }
     on_disk(timings_, [&] { output::write_summary(settings_.directory / "summary.json", summary_); });
 }
 

@@ -1,0 +1,398 @@
+#include "osculate/contact/surface_audit.hpp"
+
+#include "contact/box_tree.hpp"
+#include "contact/triangle.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+
+namespace osculate::contact {
+
+namespace {
+/// Of the facet size. Less deep is touching.
+constexpr double touching = 1e-9;
+/// What facets of a smooth surface turn by at most.
+constexpr double crease = 40 * std::numbers::pi / 180;
+
+struct Bounds {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+
+    void extend(const Vec3& p) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    [[nodiscard]] bool meets(const Bounds& other) const {
+        return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+    }
+    [[nodiscard]] bool within(const Bounds& other) const {
+        return (other.low.array() <= low.array()).all() && (high.array() <= other.high.array()).all();
+    }
+    [[nodiscard]] Box box() const { return {to_point(low), to_point(high)}; }
+};
+
+using Tree = bgi::rtree<Leaf, bgi::rstar<16>>;
+} // namespace
+
+/// The outer surface of a body.
+struct SurfaceAudit::Shell {
+    struct Edge {
+        Index a = -1, b = -1; ///< global nodes
+    };
+    std::vector<mesh::Facet> facets;
+    std::vector<double> size;                    ///< (facets) root of the reference area, m
+    std::vector<std::vector<Index>> neighbours;  ///< (facets) across their edges
+    std::vector<Edge> edges;                     ///< each once
+    std::vector<Index> nodes;                    ///< global
+    std::vector<std::vector<Index>> node_facets; ///< (shell nodes)
+    std::vector<std::vector<Index>> node_nodes;  ///< (shell nodes) along edges; shell nodes
+    std::vector<std::vector<Index>> components;  ///< shell nodes of each connected part
+
+    std::vector<Vec3> drawn; ///< (shell nodes) reference positions from their centre, m
+    double finest = 0;       ///< smallest facet, m
+    bool sound = false;      ///< does not pass through itself as it is drawn
+
+    Shell(const std::vector<mesh::Facet>& outer, const std::vector<Vec3>& X, std::vector<Index>& shell_node);
+    /// How far any node lies from where the rigid motion that fits all nodes best takes it, m.
+    [[nodiscard]] double change_of_shape(const std::vector<Vec3>& x) const;
+
+private:
+    void find_components();
+};
+
+SurfaceAudit::Shell::Shell(const std::vector<mesh::Facet>& outer, const std::vector<Vec3>& X,
+                           std::vector<Index>& shell_node)
+    : facets(outer), neighbours(outer.size()) {
+    std::map<std::pair<Index, Index>, std::vector<Index>> around; // facets of each edge
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        const mesh::Facet& facet = facets[f];
+        size.push_back(std::sqrt(mesh::facet_area_vector(facet, X).norm()));
+        for (int c = 0; c < facet.count; ++c) {
+            const Index a = facet.nodes[c], b = facet.nodes[(c + 1) % facet.count];
+            around[std::minmax(a, b)].push_back(static_cast<Index>(f));
+            if (shell_node[a] < 0) {
+                shell_node[a] = static_cast<Index>(nodes.size());
+                nodes.push_back(a);
+            }
+        }
+    }
+    node_facets.resize(nodes.size());
+    node_nodes.resize(nodes.size());
+    for (std::size_t f = 0; f < facets.size(); ++f)
+        for (const Index node : facets[f]) node_facets[shell_node[node]].push_back(static_cast<Index>(f));
+    for (const auto& [ends, list] : around) {
+        edges.push_back({ends.first, ends.second});
+        const Index a = shell_node[ends.first], b = shell_node[ends.second];
+        node_nodes[a].push_back(b);
+        node_nodes[b].push_back(a);
+        for (const Index f : list)
+            for (const Index g : list)
+                if (f != g) neighbours[f].push_back(g);
+    }
+    find_components();
+    Vec3 centre = Vec3::Zero();
+    for (const Index node : nodes) centre += X[node] / static_cast<double>(nodes.size());
+    for (const Index node : nodes) drawn.push_back(X[node] - centre);
+    finest = size.empty() ? 0 : *std::ranges::min_element(size);
+}
+
+double SurfaceAudit::Shell::change_of_shape(const std::vector<Vec3>& x) const {
+    Vec3 centre = Vec3::Zero();
+    for (const Index node : nodes) centre += x[node] / static_cast<double>(nodes.size());
+    Mat3 A = Mat3::Zero(); // R maximises tr(R^T A): R = U V^T of A = U S V^T, a reflection undone     [Kabsch 1976]
+    for (std::size_t k = 0; k < nodes.size(); ++k) A += (x[nodes[k]] - centre) * drawn[k].transpose();
+    const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 U = svd.matrixU();
+    if (U.determinant() * svd.matrixV().determinant() < 0) U.col(2) *= -1;
+    const Mat3 R = U * svd.matrixV().transpose();
+    double farthest = 0;
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+        farthest = std::max(farthest, (x[nodes[k]] - centre - R * drawn[k]).squaredNorm());
+    return std::sqrt(farthest);
+}
+
+void SurfaceAudit::Shell::find_components() {
+    std::vector<char> seen(nodes.size(), 0);
+    for (std::size_t first = 0; first < nodes.size(); ++first) {
+        if (seen[first]) continue;
+        std::vector<Index>& part = components.emplace_back(1, static_cast<Index>(first));
+        seen[first] = 1;
+        for (std::size_t k = 0; k < part.size(); ++k)
+            for (const Index next : node_nodes[part[k]])
+                if (!seen[next]) {
+                    seen[next] = 1;
+                    part.push_back(next);
+                }
+    }
+}
+
+/// One audit: trees and boxes of the bodies at the current positions, made where they are needed.
+class SurfaceAudit::Examination {
+public:
+    Examination(const SurfaceAudit& audit, const std::vector<Vec3>& x)
+        : audit_(audit), shells_(audit.shells_), x_(x), trees_(shells_.size()), bounds_(shells_.size()) {
+        for (std::size_t b = 0; b < shells_.size(); ++b)
+            for (const Index node : shells_[b].nodes) bounds_[b].extend(x[node]);
+    }
+
+    AuditResult run() {
+        const auto bodies = static_cast<Index>(shells_.size());
+        for (Index a = 0; a < bodies; ++a)
+            for (Index b = a; b < bodies; ++b) {
+                deepest_ = {};
+                if (a == b) {
+                    pass_through_itself(a);
+                } else if (bounds_[a].meets(bounds_[b])) {
+                    enter(a, b);
+                    enter(b, a);
+                }
+                if (deepest_.body >= 0) result_.intrusions.push_back(deepest_);
+            }
+        for (const auto& [node, excess] : inside_) result_.nodes.emplace_back(node, excess);
+        return std::move(result_);
+    }
+
+private:
+    struct Side {
+        double distance = 0; ///< < 0 inside
+        Index facet = -1;
+    };
+    struct Crossing {
+        double at = 0; ///< fraction of the edge
+        Index facet = -1;
+        double least = 0; ///< of the distances of both ends from the plane of the facet, m
+    };
+
+    [[nodiscard]] Bounds bounds(const mesh::Facet& facet) const {
+        Bounds box;
+        for (const Index node : facet) box.extend(x_[node]);
+        return box;
+    }
+
+    const Tree& tree(Index body) {
+        if (!trees_[body]) {
+            std::vector<Leaf> leaves;
+            leaves.reserve(shells_[body].facets.size());
+            for (std::size_t f = 0; f < shells_[body].facets.size(); ++f)
+                leaves.emplace_back(bounds(shells_[body].facets[f]).box(), static_cast<Index>(f));
+            trees_[body].emplace(leaves.begin(), leaves.end());
+        }
+        return *trees_[body];
+    }
+
+    template <class Visit> void for_triangles(const mesh::Facet& facet, const Visit& visit) const {
+        for (int c = 2; c < facet.count; ++c)
+            visit(Triangle{x_[facet.nodes[0]], x_[facet.nodes[c - 1]], x_[facet.nodes[c]]});
+    }
+
+    /// Signed distance from the surface of a body. Where several facets are equally near, at an edge or a vertex, the one
+    /// whose normal is nearest to the way there tells the side.
+    Side side(Index body, const Vec3& p) {
+        constexpr double tie = 1e-7; // relative, of distances
+        const Shell& shell = shells_[body];
+        const Tree& boxes = tree(body);
+        const Point at = to_point(p);
+        const auto every = static_cast<unsigned>(shell.facets.size());
+        constexpr double nowhere = std::numeric_limits<double>::infinity();
+        Side best{nowhere, -1};
+        double steepest = -1; // |cosine| of the facet that tells the side
+        for (unsigned k = 8;; k *= 2) {
+            nearest_.clear();
+            boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest_));
+            double reached = 0;
+            best = {nowhere, -1};
+            for (const auto& [box, f] : nearest_) {
+                const double away = bg::distance(at, box), reach = std::abs(best.distance) * (1 + tie);
+                reached = std::max(reached, away);
+                if (away > reach) continue;
+                for_triangles(shell.facets[f], [&](const Triangle& triangle) {
+                    const Vec3 way = p - triangle.closest(p), normal = triangle.normal();
+                    const double distance = way.norm(), length = normal.norm();
+                    if (distance > std::abs(best.distance) * (1 + tie) || length == 0) return;
+                    const double cosine = distance > 0 ? way.dot(normal) / (distance * length) : 0;
+                    const bool nearer = distance < std::abs(best.distance) * (1 - tie);
+                    if (!nearer && std::abs(cosine) <= steepest) return;
+                    steepest = std::abs(cosine);
+                    best = {cosine < 0 ? -distance : distance, f};
+                });
+            }
+            if (k >= every || reached > std::abs(best.distance)) return best;
+        }
+    }
+
+    /// Largest turn of the normal from a facet to those around it that are no crease, over its size, 1/m.
+    double curvature(const Shell& shell, Index f) const {
+        const Vec3 n = mesh::facet_area_vector(shell.facets[f], x_);
+        double largest = 0;
+        for (const Index g : shell.neighbours[f]) {
+            const Vec3 m = mesh::facet_area_vector(shell.facets[g], x_);
+            const double turn = std::atan2(n.cross(m).norm(), n.dot(m));
+            if (turn <= crease) largest = std::max(largest, turn / (0.5 * (shell.size[f] + shell.size[g])));
+        }
+        return largest;
+    }
+
+    double warp(const mesh::Facet& f) const {
+        return f.count < 4 ? 0 : 0.25 * (x_[f.nodes[0]] - x_[f.nodes[1]] + x_[f.nodes[2]] - x_[f.nodes[3]]).norm();
+    }
+
+    /// Takes down what lies `depth` deep at a facet of `other`; `node` is the node or an end of the edge.
+    /// @returns excess, m
+    double note(Index body, Index other, Index node, bool edge, const Vec3& place, Index facet, double depth) {
+        const Shell &own = shells_[body], &host = shells_[other];
+        double h = host.size[facet], bend = 0;
+        for (const Index f : own.node_facets[audit_.shell_node_[node]]) {
+            h = std::max(h, own.size[f]);
+            bend = std::max(bend, curvature(own, f));
+        }
+        bend += curvature(host, facet);
+        const double sagitta = h * h / 8 * bend + warp(host.facets[facet]);
+        const double excess = std::max(0.0, depth - sagitta);
+        if (deepest_.body < 0 || excess / h > deepest_.relative())
+            deepest_ = {body, other, node, edge, place, depth, excess, h};
+        return excess;
+    }
+
+    /// Of the facets of a body that meet a box.
+    [[nodiscard]] Tree tree_within(Index body, const Bounds& box) const {
+        std::vector<Leaf> leaves;
+        for (std::size_t f = 0; f < shells_[body].facets.size(); ++f)
+            if (const Bounds one = bounds(shells_[body].facets[f]); one.meets(box))
+                leaves.emplace_back(one.box(), static_cast<Index>(f));
+        return {leaves.begin(), leaves.end()};
+    }
+
+    /// Where the edge goes through those facets of a body in a tree that share no node with it.
+    void cross(Index body, const Tree& facets, const Shell::Edge& edge, std::vector<Crossing>& crossings) {
+        crossings.clear();
+        const Shell& shell = shells_[body];
+        const Vec3 &p = x_[edge.a], &q = x_[edge.b];
+        Bounds box;
+        box.extend(p);
+        box.extend(q);
+        near_.clear();
+        facets.query(bgi::intersects(box.box()), std::back_inserter(near_));
+        for (const auto& [unused, f] : near_) {
+            const mesh::Facet& facet = shell.facets[f];
+            if (std::ranges::count(facet, edge.a) + std::ranges::count(facet, edge.b) > 0) continue;
+            for_triangles(facet, [&](const Triangle& triangle) {
+                const Vec3 n = triangle.normal();
+                const double dp = n.dot(p - triangle.a), dq = n.dot(q - triangle.a);
+                if ((dp > 0) == (dq > 0)) return;
+                const double least = std::min(std::abs(dp), std::abs(dq)) / n.norm();
+                if (!(least > touching * shell.size[f])) return;
+                const double at = dp / (dp - dq);
+                if (triangle.holds(p + at * (q - p))) crossings.push_back({at, f, least});
+            });
+        }
+        std::ranges::sort(crossings, {}, [](const Crossing& c) { return std::pair(c.at, c.facet); });
+    }
+
+    void pass_through_itself(Index body) {
+        // what has moved by less relative to the rest has not gone through it by more than twice that
+        constexpr double little = 0.02; // of the smallest facet
+        const Shell& shell = shells_[body];
+        if (shell.sound && shell.change_of_shape(x_) <= little * shell.finest) return;
+        std::vector<Crossing> crossings;
+        for (const Shell::Edge& edge : shell.edges) {
+            cross(body, tree(body), edge, crossings);
+            for (const Crossing& c : crossings)
+                note(body, body, edge.a, true, x_[edge.a] + c.at * (x_[edge.b] - x_[edge.a]), c.facet, c.least);
+        }
+    }
+
+    /// Nodes and edges of `body` in `other`.
+    void enter(Index body, Index other) {
+        const Shell& shell = shells_[body];
+        std::vector<char> seen(shell.nodes.size(), 0);
+        std::vector<Index> queue; // nodes inside
+        const auto look = [&](Index node) {
+            const Index own = audit_.shell_node_[node];
+            if (seen[own]) return seen[own] == 2;
+            const Side where = side(other, x_[node]);
+            const bool in = where.distance < -touching * shells_[other].size[where.facet];
+            seen[own] = in ? 2 : 1;
+            if (!in) return false;
+            const double excess = note(body, other, node, false, x_[node], where.facet, -where.distance);
+            double& most = inside_[node];
+            most = std::max(most, excess);
+            queue.push_back(own);
+            return true;
+        };
+        std::vector<Crossing> crossings;
+        Bounds common; // of both bodies
+        common.low = bounds_[body].low.cwiseMax(bounds_[other].low);
+        common.high = bounds_[body].high.cwiseMin(bounds_[other].high);
+        const Tree facets = tree_within(other, common);
+        for (const Shell::Edge& edge : shell.edges) {
+            if (facets.empty()) break;
+            Bounds box;
+            box.extend(x_[edge.a]);
+            box.extend(x_[edge.b]);
+            if (!box.meets(common)) continue;
+            cross(other, facets, edge, crossings);
+            if (crossings.empty()) continue;
+            const bool a = look(edge.a), b = look(edge.b);
+            if (a || b) continue;
+            for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {
+                const double at = 0.5 * (crossings[k].at + crossings[k + 1].at);
+                const Vec3 middle = x_[edge.a] + at * (x_[edge.b] - x_[edge.a]);
+                const Side where = side(other, middle);
+                if (where.distance < -touching * shells_[other].size[where.facet])
+                    note(body, other, edge.a, true, middle, where.facet, -where.distance);
+            }
+        }
+        for (const std::vector<Index>& part : shell.components) {
+            if (std::ranges::any_of(part, [&](Index own) { return seen[own] != 0; })) continue;
+            Bounds box;
+            for (const Index own : part) box.extend(x_[shell.nodes[own]]);
+            if (box.within(bounds_[other])) look(shell.nodes[part.front()]);
+        }
+        for (std::size_t k = 0; k < queue.size(); ++k)
+            for (const Index next : shell.node_nodes[queue[k]]) look(shell.nodes[next]);
+    }
+
+    const SurfaceAudit& audit_;
+    const std::vector<Shell>& shells_;
+    const std::vector<Vec3>& x_;
+    std::vector<std::optional<Tree>> trees_;
+    std::vector<Bounds> bounds_;
+    std::map<Index, double> inside_;
+    Intrusion deepest_; ///< of the two bodies looked at
+    AuditResult result_;
+    std::vector<Leaf> near_, nearest_;
+};
+
+const Intrusion* AuditResult::worst() const {
+    const auto at = std::ranges::max_element(intrusions, {}, &Intrusion::relative);
+    return at == intrusions.end() ? nullptr : &*at;
+}
+
+double AuditResult::between(Index body, Index other) const {
+    for (const Intrusion& one : intrusions)
+        if (std::minmax(one.body, one.other) == std::minmax(body, other)) return one.excess;
+    return 0;
+}
+
+SurfaceAudit::SurfaceAudit(const std::vector<std::vector<mesh::Facet>>& bodies, const std::vector<Vec3>& X)
+    : shell_node_(X.size(), -1) {
+    for (const std::vector<mesh::Facet>& facets : bodies) shells_.emplace_back(facets, X, shell_node_);
+    const AuditResult drawn = examine(X);
+    for (std::size_t b = 0; b < shells_.size(); ++b)
+        shells_[b].sound = std::ranges::none_of(drawn.intrusions, [&](const Intrusion& one) {
+            return one.body == one.other && one.body == static_cast<Index>(b);
+        });
+}
+
+SurfaceAudit::~SurfaceAudit() = default;
+
+AuditResult SurfaceAudit::examine(const std::vector<Vec3>& x) const {
+    return Examination(*this, x).run();
+}
+
+} // namespace osculate::contact

@@ -1,0 +1,70 @@
+#include "osculate/time/audit.hpp"
+
+#include "time/number.hpp"
+
+#include <algorithm>
+
+namespace osculate::time {
+
+namespace {
+
+std::vector<std::vector<mesh::Facet>> outer_facets(const model::Model& model) {
+    std::vector<std::vector<mesh::Facet>> bodies;
+    for (const model::Body& body : model.bodies) {
+        std::vector<mesh::Facet>& facets = bodies.emplace_back(mesh::exterior_facets(body.mesh));
+        for (mesh::Facet& facet : facets)
+            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += body.first_node;
+    }
+    return bodies;
+}
+
+Index body_of(const model::Model& model, Index node) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+        if (node >= model.bodies[b].first_node && node < model.bodies[b].first_node + model.bodies[b].nodes())
+            return static_cast<Index>(b);
+    return -1;
+}
+
+std::pair<Index, Index> ordered(Index a, Index b) {
+    return {std::min(a, b), std::max(a, b)};
+}
+
+} // namespace
+
+Audit::Audit(const model::Model& model) : model_(model), surfaces_(outer_facets(model), model.X) {
+    const contact::AuditResult first = surfaces_.examine(model.X);
+    for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
+    for (const auto& pair : model.pairs) // contact lifts what overlaps
+        drawn_.erase(
+            ordered(body_of(model, pair->slaves().node.front()), body_of(model, pair->master_nodes().front())));
+}
+
+const contact::AuditResult& Audit::examine(const std::vector<Vec3>& u) {
+    x_ = model_.X;
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += u[i];
+    result_ = surfaces_.examine(x_);
+    return result_;
+}
+
+std::optional<contact::Intrusion> Audit::deepest() const {
+    std::optional<contact::Intrusion> worst;
+    for (contact::Intrusion one : result_.intrusions) {
+        const auto drawn = drawn_.find(ordered(one.body, one.other));
+        if (drawn != drawn_.end()) one.excess = std::max(0.0, one.excess - drawn->second);
+        if (!worst || one.relative() > worst->relative()) worst = one;
+    }
+    return worst;
+}
+
+std::string in_words(const contact::Intrusion& intrusion, const model::Model& model) {
+    const model::Body& body = model.bodies[static_cast<std::size_t>(intrusion.body)];
+    const Vec3 at = intrusion.place + model.origin;
+    return (intrusion.edge ? "an edge at node " : "node ") + std::to_string(intrusion.node - body.first_node) +
+           " of body '" + body.name + "' lies " + number(intrusion.depth) + " m deep in " +
+           (intrusion.other == intrusion.body
+                ? "the body itself"
+                : "body '" + model.bodies[static_cast<std::size_t>(intrusion.other)].name + "'") +
+           ", at (" + number(at.x()) + ", " + number(at.y()) + ", " + number(at.z()) + ") m";
+}
+
+} // namespace osculate::time

@@ -3,6 +3,7 @@
 #include "deck/words.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace osculate::deck {
@@ -50,14 +51,13 @@ double LoadHistory::value_at(const Origin& origin, double t, double duration, bo
 }
 
 std::string LoadHistory::end_step(double duration, bool ramped) {
-    bool changed = false, varies = false;
+    const auto is_varying = [](const Term& term) { return term.amplitude != nullptr; };
+    bool changed = false, varies = false, slopes = false;
     std::set<double> corners;
     for (const auto& [name, origin] : origins_) {
         if (!origin.changed) continue;
         changed = true;
-        if (ramped && std::ranges::any_of(origin.given, [](const Term& t) { return t.amplitude == nullptr; }))
-            corners.insert({0, duration});
-        if (ramped && origin.given.empty() && origin.start != 0) corners.insert({0, duration});
+        slopes = slopes || (ramped && (origin.given.empty() || !std::ranges::all_of(origin.given, is_varying)));
         for (const Term& term : origin.given) {
             if (term.amplitude == nullptr) continue;
             varies = true;
@@ -72,6 +72,10 @@ std::string LoadHistory::end_step(double duration, bool ramped) {
     };
     std::string course;
     if (varies) {
+        constexpr double same = 1e-9; // of the step: a table's times ascend in 12 digits
+        for (const double end : {0.0, duration})
+            if (slopes && std::ranges::none_of(corners, [&](double t) { return std::abs(t - end) <= same * duration; }))
+                corners.insert(end);
         for (const double t : corners)
             course += (course.empty() ? "[" : ", [") + number(t) + ", " + number(at(t)) + "]";
         course = "{table: [" + course + "]}";

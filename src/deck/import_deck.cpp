@@ -194,8 +194,11 @@ private:
                 fixed += (fixed.empty() ? "" : ", ") + std::string(1, "xyz"[d]);
                 continue;
             }
-            for (const Holding& h : list) {
+            for (std::size_t k = 0; k < list.size(); ++k) {
+                const Holding& h = list[k];
                 const auto s = static_cast<std::size_t>(std::max(h.step, 0));
+                if (k + 1 < list.size() && list[k + 1].step == static_cast<int>(s))
+                    continue; // held, then driven at once
                 stages_[s].displacement[set] += (stages_[s].displacement[set].empty() ? "" : ", ") +
                                                 std::string(1, "xyz"[d]) + ": " +
                                                 course(units_.length * h.value, h.amplitude);

@@ -76,6 +76,12 @@ TEST_F(Importing, DrivenNodesFollowTheirSteps) {
     EXPECT_EQ(fixed, 5u) << "the floor, node 15 and the three others of the lid";
 }
 
+TEST_F(Importing, TheFirstStepMayDriveWhatWasHeldBeforeIt) {
+    const scene::Scene scene = checked(import("*STEP\n*STATIC\n*BOUNDARY\nLid,2,2,.5\n*END STEP\n"));
+    EXPECT_EQ(scene::find(scene.supports, "Lid")->fixed, (std::array{true, false, false}));
+    EXPECT_NEAR((*scene::find(scene.stages.at(0).second.displacement, "Lid"))[1]->value(), .5e-3, 1e-15);
+}
+
 TEST_F(Importing, LargeStrainsAndDynamicsKeepTheirMeaning) {
     const scene::Scene scene =
         checked(import("*STEP, NLGEOM\n*STATIC\n*DLOAD\n2,P2,1.\n*END STEP\n"

@@ -101,6 +101,10 @@ TEST_F(ImportedLoads, OnNodesAreReplacedNodeByNode) {
     EXPECT_NEAR(at_end(plan(step(all) + step("*CLOAD\nTops,3,0.\n")), 1).z(), 0, round_off);
     EXPECT_NEAR(at_end(plan(step(all) + step("*CLOAD, OP=NEW\n11,3,-1.\n12,3,-1.\n15,3,-1.\n16,3,-1.\n")), 1).z(), -4,
                 round_off);
+    const std::string left = "*CLOAD\n11,3,-1.\n12,3,-1.\n15,3,-1.\n16,3,-1.\n",
+                      rest = "*CLOAD\n12,3,-2.\n13,3,-2.\n16,3,-2.\n17,3,-2.\n14,3,-1.\n18,3,-1.\n";
+    EXPECT_NEAR(at_end(plan(step(left) + step(rest)), 1).z(), -12, round_off) << "nodes 11 and 15 keep theirs";
+    EXPECT_NEAR(at_end(plan(step("*CLOAD\n11,3,0.\n")), 0).z(), 0, round_off);
     EXPECT_THAT(imported.lost, IsEmpty());
     (void)plan(step(all) + step("*CLOAD\n11,3,-9.\n"));
     EXPECT_THAT(imported.lost, SizeIs(1)) << "no longer one pressure";

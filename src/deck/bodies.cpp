@@ -1,9 +1,9 @@
 #include "deck/bodies.hpp"
 
+#include "deck/words.hpp"
 #include "osculate/mesh/mesh_file.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -20,10 +20,9 @@ const DeckSection* section_of(DeckModel& model, const std::vector<Index>& cells,
     const DeckSection& chosen = model.sections[static_cast<std::size_t>(most->first)];
     for (const auto& [other, elements] : count)
         if (other < 0 || model.sections[static_cast<std::size_t>(other)].material != chosen.material)
-            model.left_out.push_back(
-                {other < 0 ? chosen.place : model.sections[static_cast<std::size_t>(other)].place,
-                 fmt::format("{} elements of another material in the piece of '{}'", elements, chosen.elements),
-                 "a body has one material; it is that of most of its elements"});
+            model.lose(other < 0 ? chosen.place : model.sections[static_cast<std::size_t>(other)].place,
+                       fmt::format("{} elements of another material in the piece of '{}'", elements, chosen.elements),
+                       "a body has one material; it is that of most of its elements");
     return &chosen;
 }
 
@@ -36,39 +35,6 @@ std::string formulation_of(const DeckModel& model, const std::vector<Index>& cel
 }
 
 } // namespace
-
-std::string scene_name(const std::string& name) {
-    std::string fit;
-    for (const char c : name) {
-        const bool good =
-            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-        fit += good ? c : '_';
-    }
-    constexpr std::size_t longest = 60;
-    fit = fit.substr(0, longest);
-    if (fit.empty() || !std::isalpha(static_cast<unsigned char>(fit.front()))) fit = "n" + fit;
-    return fit;
-}
-
-std::string fresh_name(const std::string& wanted, std::set<std::string>& taken) {
-    std::string name = scene_name(wanted);
-    for (int k = 2; !taken.insert(name).second; ++k) name = scene_name(wanted) + "_" + std::to_string(k);
-    return name;
-}
-
-std::string in_quotes(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\')
-            result += std::string("\\") + c;
-        else if (code < 0x20 || code == 0x7f)
-            result += fmt::format("\\x{:02x}", code);
-        else
-            result += c;
-    }
-    return result + "\"";
-}
 
 std::vector<DeckBody> make_bodies(DeckModel& model) {
     const mesh::RawMesh& raw = model.mesh.raw;
@@ -153,13 +119,17 @@ bool DeckSets::box_has_just(const DeckBody& body, const std::vector<Index>& poin
     return inside == points.size();
 }
 
-std::vector<std::string> DeckSets::of_points(std::size_t body, const std::vector<Index>& points,
-                                             const std::string& wanted) {
+std::string DeckSets::of_points_as_one(std::size_t body, const std::vector<Index>& points, const std::string& wanted) {
     std::vector<Index> nodes;
     for (const Index p : points) nodes.push_back(node_of(p));
     for (const auto& [name, set] : bodies_[body].mesh.node_sets)
-        if (set == nodes) return {add(body, name, "nodes: " + in_quotes(name))};
-    if (box_has_just(bodies_[body], points)) return {add(body, wanted, box_around(points))};
+        if (set == nodes) return add(body, name, "nodes: " + in_quotes(name));
+    return box_has_just(bodies_[body], points) ? add(body, wanted, box_around(points)) : "";
+}
+
+std::vector<std::string> DeckSets::of_points(std::size_t body, const std::vector<Index>& points,
+                                             const std::string& wanted) {
+    if (const std::string one = of_points_as_one(body, points, wanted); !one.empty()) return {one};
     std::vector<std::string> names;
     for (const Index p : points)
         names.push_back(add(body, wanted + "_" + std::to_string(model_.mesh.raw.point_ids[static_cast<std::size_t>(p)]),
@@ -187,9 +157,7 @@ std::string DeckSets::of_facets(std::size_t body, const std::vector<Index>& face
     if (within != asked.size()) return "";
     std::vector<Index> points;
     for (const Index n : nodes) points.push_back(b.points[static_cast<std::size_t>(n)]);
-    const std::vector<std::string> names =
-        box_has_just(b, points) || points.size() > 1 ? of_points(body, points, wanted) : std::vector<std::string>{};
-    return names.size() == 1 ? names.front() : "";
+    return of_points_as_one(body, points, wanted);
 }
 
 std::string DeckSets::of_surface(std::size_t body, const std::string& in_capitals) {

@@ -22,12 +22,6 @@ struct DeckBody {
     std::string formulation;              ///< of its hexahedra
 };
 
-/// Letters, digits, _ and -, as scenes want names.
-[[nodiscard]] std::string scene_name(const std::string& name);
-
-/// A name that is not taken yet, which it is from then on.
-[[nodiscard]] std::string fresh_name(const std::string& wanted, std::set<std::string>& taken);
-
 /// Throws mesh::MeshError where a piece is no mesh fit for use. Adds to what the model leaves out.
 [[nodiscard]] std::vector<DeckBody> make_bodies(DeckModel& model);
 
@@ -49,6 +43,8 @@ public:
     [[nodiscard]] const std::string& yaml() const { return yaml_; } ///< the entries of `sets`
 
 private:
+    /// Empty where neither a node set nor a box has just these points.
+    std::string of_points_as_one(std::size_t body, const std::vector<Index>& points, const std::string& wanted);
     std::string add(std::size_t body, const std::string& wanted, const std::string& selection);
     std::string box_around(const std::vector<Index>& points) const;
     bool box_has_just(const DeckBody& body, const std::vector<Index>& points) const;
@@ -63,8 +59,5 @@ private:
     std::map<std::string, std::string> known_; ///< body and selection -> name
     std::string yaml_;
 };
-
-/// In double quotes, as YAML has it.
-[[nodiscard]] std::string in_quotes(const std::string& text);
 
 } // namespace osculate::deck

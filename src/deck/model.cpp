@@ -19,34 +19,60 @@ constexpr int components = 3;
 const std::set<std::string> read_elsewhere{"NODE",    "ELEMENT", "NSET",     "ELSET",
                                            "SURFACE", "HEADING", "PREPRINT", "END STEP"};
 
-const std::map<std::string, const char*> reasons{
-    {"NODE PRINT", "what is written is chosen under output"},
-    {"EL PRINT", "what is written is chosen under output"},
-    {"NODE FILE", "what is written is chosen under output"},
-    {"EL FILE", "what is written is chosen under output"},
-    {"NODE OUTPUT", "what is written is chosen under output"},
-    {"ELEMENT OUTPUT", "what is written is chosen under output"},
-    {"CONTACT FILE", "what is written is chosen under output"},
-    {"CONTACT OUTPUT", "what is written is chosen under output"},
-    {"CONTACT PRINT", "what is written is chosen under output"},
-    {"OUTPUT", "what is written is chosen under output"},
-    {"FILE FORMAT", "what is written is chosen under output"},
-    {"CONTROLS", "the solver has settings of its own"},
-    {"EQUATION", "there are no equations between nodes"},
-    {"MPC", "there are no equations between nodes"},
-    {"RIGID BODY", "all bodies are elastic"},
-    {"PLASTIC", "all bodies are elastic"},
-    {"CYCLIC HARDENING", "all bodies are elastic"},
-    {"CREEP", "all bodies are elastic"},
-    {"EXPANSION", "there are no temperatures"},
-    {"CONDUCTIVITY", "there are no temperatures"},
-    {"SPECIFIC HEAT", "there are no temperatures"},
-    {"GAP CONDUCTANCE", "there are no temperatures"},
-    {"TEMPERATURE", "there are no temperatures"},
-    {"SURFACE BEHAVIOR", "contact is exact: no penetration, no law of overclosure"},
-    {"TIME POINTS", "frames are chosen under output"},
-    {"RESTART", "runs begin at the beginning"},
+/// Why a keyword has no counterpart, and whether bodies would move otherwise with it.
+struct Reason {
+    const char* why;
+    bool lost;
 };
+
+constexpr Reason output{"what is written is chosen under output", false},
+    settings{"the solver has settings of its own", false}, equations{"there are no equations between nodes", true},
+    elastic_only{"all bodies are elastic", true}, heat{"there are no temperatures", false};
+
+const std::map<std::string, Reason> reasons{
+    {"NODE PRINT", output},
+    {"EL PRINT", output},
+    {"NODE FILE", output},
+    {"EL FILE", output},
+    {"ELEMENT FILE", output},
+    {"NODE OUTPUT", output},
+    {"ELEMENT OUTPUT", output},
+    {"CONTACT FILE", output},
+    {"CONTACT OUTPUT", output},
+    {"CONTACT PRINT", output},
+    {"ENERGY FILE", output},
+    {"ENERGY OUTPUT", output},
+    {"ENERGY PRINT", output},
+    {"SECTION PRINT", output},
+    {"OUTPUT", output},
+    {"PRINT", output},
+    {"MONITOR", output},
+    {"FILE FORMAT", output},
+    {"CONTROLS", settings},
+    {"CONTACT CONTROLS", settings},
+    {"SOLVER CONTROLS", settings},
+    {"EQUATION", equations},
+    {"MPC", equations},
+    {"TIE", {"there is no tied contact", true}},
+    {"RIGID BODY", elastic_only},
+    {"PLASTIC", elastic_only},
+    {"CYCLIC HARDENING", elastic_only},
+    {"CREEP", elastic_only},
+    {"EXPANSION", heat}, // without a *TEMPERATURE it does nothing
+    {"CONDUCTIVITY", heat},
+    {"SPECIFIC HEAT", heat},
+    {"GAP CONDUCTANCE", heat},
+    {"PHYSICAL CONSTANTS", heat},
+    {"TEMPERATURE", {"there are no temperatures", true}},
+    {"TIME POINTS", {"frames are chosen under output", false}},
+    {"RESTART", {"runs begin at the beginning", false}},
+};
+
+/// Without blanks, as decks are free to write `SURFACE TO SURFACE`.
+std::string without_blanks(std::string text) {
+    std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
+    return text;
+}
 
 class Reader {
 public:
@@ -59,10 +85,11 @@ public:
     }
 
 private:
-    void leave(const std::string& place, const std::string& what, const std::string& why) {
-        model_.left_out.push_back({place, what, why});
+    void lose(const std::string& place, const std::string& what, const std::string& why) {
+        model_.lose(place, what, why);
     }
-    void leave(const DeckCard& card, const std::string& why) { leave(deck_.place(card), "*" + card.keyword, why); }
+    void lose(const DeckCard& card, const std::string& why) { lose(deck_.place(card), "*" + card.keyword, why); }
+    void note(const DeckCard& card, const std::string& why) { model_.note(deck_.place(card), "*" + card.keyword, why); }
 
     [[nodiscard]] static std::string capitals_of(const DeckCard& card, const char* name) {
         const std::string* value = card.parameter(name);
@@ -75,7 +102,7 @@ private:
         std::vector<double> values(std::max(least, fields_.size()), 0.0);
         for (std::size_t f = 0; f < fields_.size(); ++f)
             if (!fields_[f].empty() && !to_number(fields_[f], values[f]))
-                leave(deck_.place(line), std::string(line.text.substr(0, 60)), "no number");
+                lose(deck_.place(line), std::string(line.text.substr(0, 60)), "no number");
         return values;
     }
 
@@ -108,8 +135,12 @@ private:
         if ((word == "STATIC" || word == "DYNAMIC") && step_ != nullptr) return analysis(card);
         if (step_ != nullptr && !step_taken_ && is_analysis(word))
             return drop_step("*" + word + " has no counterpart: statics and implicit dynamics do");
-        const auto reason = reasons.find(word);
-        leave(card, reason != reasons.end() ? reason->second : "it has no counterpart");
+        if (word == "SURFACE BEHAVIOR") return surface_behavior(card);
+        const auto known = reasons.find(word);
+        const Reason reason = known != reasons.end() ? known->second : Reason{"it has no counterpart", true};
+        const bool of_heat = word == "INITIAL CONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE";
+        model_.left_out.push_back(
+            {deck_.place(card), "*" + word, of_heat ? heat.why : reason.why, reason.lost && !of_heat});
     }
 
     static bool is_analysis(const std::string& word) {
@@ -132,8 +163,8 @@ private:
 
     void check_element_type(const DeckCard& card) {
         if (card.keyword == "ELEMENT" && capitals_of(card, "TYPE") == "C3D8R")
-            leave(deck_.place(card), "*ELEMENT, TYPE=C3D8R",
-                  "hexahedra are integrated in full; incompatible_modes stands in, which does not lock either");
+            model_.note(deck_.place(card), "*ELEMENT, TYPE=C3D8R",
+                        "hexahedra are integrated in full; incompatible_modes stands in, which does not lock either");
     }
 
     void begin_material(const DeckCard& card) {
@@ -146,21 +177,21 @@ private:
 
     void material_data(const DeckCard& card) {
         const auto found = model_.materials.find(material_);
-        if (found == model_.materials.end()) return leave(card, "no *MATERIAL stands before it");
-        if (card.first == card.last) return leave(card, "it has no data");
-        if (card.last - card.first > 1) leave(card, "only its first line counts: nothing depends on temperature");
+        if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
+        if (card.first == card.last) return lose(card, "it has no data");
+        if (card.last - card.first > 1) note(card, "only its first line counts: nothing depends on temperature");
         const std::vector<double> v = numbers(*deck_.begin(card), 2);
         if (card.keyword == "DENSITY") {
             found->second.density = v[0];
         } else if (card.keyword == "ELASTIC") {
             const std::string type = capitals_of(card, "TYPE");
-            if (!type.empty() && type != "ISO" && type != "ISOTROPIC") return leave(card, "materials are isotropic");
+            if (!type.empty() && type != "ISO" && type != "ISOTROPIC") return lose(card, "materials are isotropic");
             found->second.elastic = {v[0], v[1]};
         } else {
             if (card.parameter("NEOHOOKE") == nullptr)
-                return leave(card, "NEO HOOKE is the only one that has a counterpart");
+                return lose(card, "NEO HOOKE is the only one that has a counterpart");
             found->second.neo_hookean = {v[0], v[1]};
-            leave(card, "neo_hookean has the same moduli at small strain; at large strain its volumetric part differs");
+            note(card, "neo_hookean has the same moduli at small strain; at large strain its volumetric part differs");
         }
     }
 
@@ -174,8 +205,8 @@ private:
         if (const auto at = model_.mesh.element_set_names.find(in_capitals(s.elements));
             at != model_.mesh.element_set_names.end())
             s.elements = at->second;
-        if (s.cells.empty()) return leave(card, "no element set '" + s.elements + "'");
-        if (card.parameter("ORIENTATION") != nullptr) leave(card, "ORIENTATION: materials are isotropic");
+        if (s.cells.empty()) return lose(card, "no element set '" + s.elements + "'");
+        if (card.parameter("ORIENTATION") != nullptr) note(card, "ORIENTATION: materials are isotropic");
         model_.sections.push_back(std::move(s));
     }
 
@@ -200,29 +231,34 @@ private:
     }
 
     void friction(const DeckCard& card) {
-        if (step_ != nullptr)
-            return leave(card, "friction belongs to all stages: it stays what it is before the steps");
+        if (step_ != nullptr) return lose(card, "friction belongs to all stages: it stays what it is before the steps");
         if (card.first == card.last || !model_.friction.contains(interaction_))
-            return leave(card, "no coefficient, or no *SURFACE INTERACTION before it");
+            return lose(card, "no coefficient, or no *SURFACE INTERACTION before it");
         const std::vector<double> v = numbers(*deck_.begin(card), 1);
-        if (v[0] < 0) return leave(card, "a negative coefficient");
+        if (v[0] < 0) return lose(card, "a negative coefficient");
+        for (const char* name : {"ROUGH", "TAUMAX"})
+            if (card.parameter(name) != nullptr) lose(card, std::string(name) + " has no counterpart");
         model_.friction[interaction_] = v[0];
-        if (v.size() > 1 && v[1] != 0) leave(card, "its stick slope: nodes stick exactly");
+        if (v.size() > 1 && v[1] != 0) note(card, "its stick slope: nodes stick exactly");
     }
 
     void pair(const DeckCard& card) {
-        if (step_ != nullptr) return leave(card, "pairs belong to all stages");
+        if (step_ != nullptr) return lose(card, "pairs belong to all stages");
         DeckPair p;
         p.interaction = capitals_of(card, "INTERACTION");
-        p.mortar = capitals_of(card, "TYPE") == "SURFACE TO SURFACE";
+        const std::string type = without_blanks(capitals_of(card, "TYPE"));
+        p.mortar = type == "SURFACETOSURFACE" || type == "MORTAR" || type == "LINMORTAR" || type == "PGLINMORTAR";
+        if (!p.mortar && !type.empty() && type != "NODETOSURFACE" && type != "MASSLESS")
+            lose(card, "TYPE=" + type + " is not known: node to surface stands in");
         p.place = deck_.place(card);
-        for (const char* name : {"ADJUST", "SMALLSLIDING", "TIED"})
+        for (const char* name : {"ADJUST", "SMALLSLIDING"})
             if (card.parameter(name) != nullptr)
-                leave(card, std::string(name) + ": nodes stay where they are, and slide as far as they do");
+                note(card, std::string(name) + ": nodes stay where they are, and slide as far as they do");
+        if (card.parameter("TIED") != nullptr) lose(card, "TIED: surfaces part and slide");
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             split_fields(line->text, fields_);
             if (fields_.size() < 2) {
-                leave(deck_.place(*line), "a pair of one surface", "a body in contact with itself has no counterpart");
+                lose(deck_.place(*line), "a pair of one surface", "a body in contact with itself has no counterpart");
                 continue;
             }
             p.slave = in_capitals(fields_[0]);
@@ -231,28 +267,35 @@ private:
         }
     }
 
+    /// Contact is exact whatever the law of overclosure; what keeps surfaces together is another matter.
+    void surface_behavior(const DeckCard& card) {
+        const std::string law = without_blanks(capitals_of(card, "PRESSURE-OVERCLOSURE"));
+        if (law == "TIED" || card.parameter("NOSEPARATION") != nullptr) return lose(card, "surfaces part and slide");
+        if (law != "HARD") note(card, "contact is exact: no penetration, no law of overclosure");
+    }
+
     void amplitude(const DeckCard& card) {
         const std::string name = capitals_of(card, "NAME");
         if (const std::string type = capitals_of(card, "DEFINITION"); !type.empty() && type != "TABULAR")
-            return leave(card, "only TABULAR amplitudes have a counterpart");
+            return note(card, "only TABULAR amplitudes have a counterpart");
         if (capitals_of(card, "TIME") == "TOTAL TIME" || card.parameter("USER") != nullptr ||
             card.parameter("SHIFTX") != nullptr || card.parameter("SHIFTY") != nullptr)
-            return leave(card, "only amplitudes over the time of a step have a counterpart");
+            return note(card, "only amplitudes over the time of a step have a counterpart");
         std::vector<double> all;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line)
             for (const double v : numbers(*line, 0)) all.push_back(v);
-        std::vector<std::array<double, 2>> rows;
+        Amplitude rows;
         for (std::size_t k = 0; k + 1 < all.size(); k += 2) rows.push_back({all[k], all[k + 1]});
         for (std::size_t k = 1; k < rows.size(); ++k)
-            if (!(rows[k][0] > rows[k - 1][0])) return leave(card, "its times do not ascend");
-        if (rows.empty()) return leave(card, "it has no rows");
+            if (!(rows[k][0] > rows[k - 1][0])) return note(card, "its times do not ascend");
+        if (rows.empty()) return note(card, "it has no rows");
         model_.amplitudes[name] = std::move(rows);
     }
 
     bool amplitude_of(const DeckCard& card, std::string& name) {
         name = capitals_of(card, "AMPLITUDE");
         if (name.empty() || model_.amplitudes.contains(name)) return true;
-        leave(card, "its amplitude '" + name + "' has no counterpart");
+        lose(card, "its amplitude '" + name + "' has no counterpart");
         return false;
     }
 
@@ -264,16 +307,16 @@ private:
         DeckValues values;
         if (!amplitude_of(card, values.amplitude)) return;
         if (const std::string type = capitals_of(card, "TYPE"); !type.empty() && type != "DISPLACEMENT")
-            return leave(card, "TYPE=" + type + " has no counterpart");
+            return lose(card, "TYPE=" + type + " has no counterpart");
         for (const char* name : {"FIXED", "SUBMODEL", "USER", "LOADCASE"})
-            if (card.parameter(name) != nullptr) return leave(card, std::string(name) + " has no counterpart");
+            if (card.parameter(name) != nullptr) return lose(card, std::string(name) + " has no counterpart");
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             split_fields(line->text, fields_);
             values.place = deck_.place(*line);
             const std::string shown(line->text.substr(0, 60));
             values.points = fields_.empty() ? std::vector<Index>{} : points_of(fields_[0]);
             if (values.points.empty()) {
-                leave(values.place, shown, "no node or node set of that name");
+                lose(values.place, shown, "no node or node set of that name");
                 continue;
             }
             values.value = 0;
@@ -290,12 +333,12 @@ private:
                                   (fields_.size() < 4 || fields_[3].empty() || to_number(fields_[3], values.value));
                 if (fields_.size() < 3 || fields_[2].empty()) last = first;
                 if (!good || first < 1 || last < first) {
-                    leave(values.place, shown, "not understood");
+                    lose(values.place, shown, "not understood");
                     continue;
                 }
             }
             if (first > components) {
-                leave(values.place, shown, "nodes have three displacements");
+                model_.note(values.place, shown, "nodes have three displacements");
                 continue;
             }
             values.first = static_cast<int>(first) - 1;
@@ -314,13 +357,13 @@ private:
             const std::string shown(line->text.substr(0, 60));
             long long component = 0;
             if (fields_.size() < 3 || !to_integer(fields_[1], component) || !to_number(fields_[2], values.value)) {
-                leave(values.place, shown, "not understood");
+                lose(values.place, shown, "not understood");
                 continue;
             }
             values.points = points_of(fields_[0]);
             if (values.points.empty() || component < 1 || component > components) {
-                leave(values.place, shown,
-                      values.points.empty() ? "no node or node set of that name" : "nodes have forces alone");
+                lose(values.place, shown,
+                     values.points.empty() ? "no node or node set of that name" : "nodes have forces alone");
                 continue;
             }
             values.first = values.last = static_cast<int>(component) - 1;
@@ -329,8 +372,8 @@ private:
     }
 
     void pressures(const DeckCard& card) {
-        if (is_new(card)) step_->forget_pressures = true;
-        const std::size_t before = step_->pressures.size();
+        const bool on_surface = card.keyword == "DSLOAD";
+        if (is_new(card)) (on_surface ? step_->forget_on_surfaces : step_->forget_on_elements) = true;
         std::string amplitude;
         if (!amplitude_of(card, amplitude)) return;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
@@ -345,28 +388,31 @@ private:
             p.amplitude = amplitude;
             p.place = place;
             if (fields_.size() < 3 || !to_number(fields_[2], p.value)) {
-                leave(place, shown, "not understood");
+                lose(place, shown, "not understood");
                 continue;
             }
             p.name = std::string(fields_[0]);
-            if (card.keyword == "DSLOAD") {
+            p.keyword = card.keyword;
+            std::string why = "only pressures on faces and gravity have a counterpart";
+            if (on_surface) {
                 const auto at = model_.mesh.surface_names.find(in_capitals(fields_[0]));
-                if (label == "P" && at != model_.mesh.surface_names.end())
+                if (at == model_.mesh.surface_names.end())
+                    why = "no surface of that name";
+                else if (label == "P")
                     p.faces = model_.mesh.raw.surfaces.at(at->second);
             } else if (label.size() == 2 && label[0] == 'P' && label[1] >= '1' && label[1] <= '6') {
-                for (const Index c : cells_of(fields_[0]))
+                const std::vector<Index> cells = cells_of(fields_[0]);
+                why = cells.empty() ? "no element or element set of that name" : "its elements have no such face";
+                for (const Index c : cells)
                     if (const mesh::RawFace face = mesh::deck_face(model_.mesh.raw.cells[c], label[1] - '1');
                         face.count > 0)
                         p.faces.push_back(face);
+                if (long long id = 0; to_integer(fields_[0], id)) p.name = "elements"; // one by one
             }
-            if (p.faces.empty()) {
-                leave(place, shown, "only pressures on faces and gravity have a counterpart");
-            } else if (step_->pressures.size() > before && step_->pressures.back().value == p.value) {
-                DeckPressure& one = step_->pressures.back(); // element by element
-                one.faces.insert(one.faces.end(), p.faces.begin(), p.faces.end());
-            } else {
+            if (p.faces.empty())
+                lose(place, shown, why);
+            else
                 step_->pressures.push_back(std::move(p));
-            }
         }
     }
 
@@ -377,7 +423,8 @@ private:
         bool good = to_number(fields_[2], size);
         for (int d = 0; d < 3; ++d) good = good && to_number(fields_[3 + static_cast<std::size_t>(d)], direction[d]);
         g.cells = cells_of(fields_[0]);
-        if (!good || g.cells.empty() || !(direction.norm() > 0)) return leave(place, shown, "not understood");
+        g.elements = in_capitals(fields_[0]);
+        if (!good || g.cells.empty() || !(direction.norm() > 0)) return lose(place, shown, "not understood");
         g.acceleration = size * direction.normalized();
         g.amplitude = amplitude;
         g.place = place;
@@ -389,13 +436,18 @@ private:
         step_ = &model_.steps.back();
         step_taken_ = false;
         step_->place = deck_.place(card);
-        step_->nlgeom = card.parameter("NLGEOM") != nullptr && capitals_of(card, "NLGEOM") != "NO";
+        if (card.parameter("NLGEOM") != nullptr) nlgeom_ = capitals_of(card, "NLGEOM") != "NO";
+        step_->nlgeom = nlgeom_;
+        if (const std::string course = capitals_of(card, "AMPLITUDE"); course == "STEP" || course == "RAMP")
+            step_->ramped = course == "RAMP";
+        else if (!course.empty())
+            lose(card, "AMPLITUDE=" + course + ": it is STEP or RAMP");
         if (card.parameter("PERTURBATION") != nullptr) drop_step("PERTURBATION has no counterpart");
     }
 
     /// Goes on reading into a step that is not kept, so that nothing of it reaches another.
     void drop_step(const std::string& why) {
-        leave(step_->place, "*STEP", why + "; all of the step is left out");
+        lose(step_->place, "*STEP", why + "; all of the step is left out");
         model_.steps.pop_back();
         step_ = &dropped_;
         step_taken_ = true;
@@ -407,9 +459,10 @@ private:
         step_->dynamic = card.keyword == "DYNAMIC";
         if (step_->dynamic && card.parameter("EXPLICIT") != nullptr)
             return drop_step("*DYNAMIC, EXPLICIT has no counterpart: dynamics are implicit");
+        if (card.parameter("RIKS") != nullptr) return drop_step("RIKS has no counterpart: loads are given");
         step_->direct = card.parameter("DIRECT") != nullptr;
         if (const std::string* alpha = card.parameter("ALPHA"); alpha != nullptr && !to_number(*alpha, step_->alpha))
-            leave(card, "ALPHA is no number");
+            note(card, "ALPHA is no number");
         if (step_->alpha < -1.0 / 3 || step_->alpha > 0) step_->alpha = -0.05;
         if (card.first == card.last) return;
         const std::vector<double> v = numbers(*deck_.begin(card), 2);
@@ -423,6 +476,7 @@ private:
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
     bool step_taken_ = false;
+    bool nlgeom_ = false; ///< of the last step that said so
     std::vector<std::string_view> fields_;
 };
 

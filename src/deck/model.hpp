@@ -14,7 +14,11 @@ namespace osculate::deck {
 struct LeftOut {
     std::string place; ///< file:line
     std::string what, why;
+    bool lost = true; ///< a load, contact, a material, a support, a step; otherwise what bodies do without
 };
+
+/// Time since a step's start and factor; times ascend, and there is a row.
+using Amplitude = std::vector<std::array<double, 2>>;
 
 struct DeckMaterial {
     std::string name, place;
@@ -31,7 +35,7 @@ struct DeckSection {
 
 struct DeckPair {
     std::string slave, master, interaction; ///< in capitals
-    bool mortar = false;                    ///< surface to surface
+    bool mortar = false;                    ///< surface to surface, and mortar
     std::string place;
 };
 
@@ -46,26 +50,33 @@ struct DeckValues {
 
 struct DeckPressure {
     std::vector<mesh::RawFace> faces;
-    std::string name; ///< what the deck calls them
+    std::string name;    ///< what the deck calls them
+    std::string keyword; ///< DLOAD or DSLOAD
     double value = 0;
     std::string amplitude, place;
 };
 
 struct DeckGravity {
     std::vector<Index> cells;
+    std::string elements; ///< their name in capitals
     Vec3 acceleration = Vec3::Zero();
     std::string amplitude, place;
 };
 
 struct DeckStep {
     std::string place;
-    bool dynamic = false, nlgeom = false, direct = false;
-    double alpha = -0.05; ///< of Hilber, Hughes and Taylor; CalculiX's default
+    bool dynamic = false, direct = false;
+    bool nlgeom = false;        ///< its own, or of a step before it
+    std::optional<bool> ramped; ///< what has no amplitude changes linearly; not given: in statics, but not in dynamics
+    double alpha = -0.05;       ///< of Hilber, Hughes and Taylor; CalculiX's default
     double increment = 1, duration = 1;
     std::vector<DeckValues> held, forces;
     std::vector<DeckPressure> pressures;
     std::vector<DeckGravity> gravity;
-    bool forget_held = false, forget_forces = false, forget_pressures = false; ///< OP=NEW
+    bool forget_held = false, forget_forces = false;             ///< OP=NEW
+    bool forget_on_elements = false, forget_on_surfaces = false; ///< OP=NEW of *DLOAD, of *DSLOAD
+
+    [[nodiscard]] bool ramps() const { return ramped.value_or(!dynamic); }
 };
 
 struct DeckModel {
@@ -75,9 +86,23 @@ struct DeckModel {
     std::map<std::string, double> friction; ///< by interaction
     std::vector<DeckPair> pairs;
     std::vector<DeckValues> held; ///< in all steps
-    std::map<std::string, std::vector<std::array<double, 2>>> amplitudes;
+    std::map<std::string, Amplitude> amplitudes;
     std::vector<DeckStep> steps;
     std::vector<LeftOut> left_out;
+
+    /// Loses something of the deck.
+    void lose(const std::string& place, const std::string& what, const std::string& why) {
+        left_out.push_back({place, what, why, true});
+    }
+    /// Has something otherwise than the deck, or leaves out what bodies do without.
+    void note(const std::string& place, const std::string& what, const std::string& why) {
+        left_out.push_back({place, what, why, false});
+    }
+    /// nullptr for an empty name or one that there is none of. @param name  in capitals
+    [[nodiscard]] const Amplitude* amplitude(const std::string& name) const {
+        const auto at = amplitudes.find(name);
+        return at == amplitudes.end() ? nullptr : &at->second;
+    }
 };
 
 /// Throws mesh::MeshError where the mesh cannot be read.

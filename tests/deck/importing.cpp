@@ -1,11 +1,7 @@
-#include "osculate/app/compile.hpp"
+#include "deck/imported.hpp"
 #include "osculate/core/error.hpp"
-#include "osculate/deck/import_deck.hpp"
 #include "osculate/mesh/mesh_error.hpp"
-#include "osculate/scene/reader.hpp"
 
-#include <filesystem>
-#include <fstream>
 #include <gmock/gmock.h>
 
 namespace osculate::deck {
@@ -15,44 +11,12 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
 
-/// A small cube on a large one, in millimetres, both in one element set.
-const std::string mesh_of_cubes = "*NODE, NSET=All\n"
-                                  "1,0,0,0\n2,40,0,0\n3,40,40,0\n4,0,40,0\n5,0,0,40\n6,40,0,40\n7,40,40,40\n8,0,40,40\n"
-                                  "11,10,10,40\n12,30,10,40\n13,30,30,40\n14,10,30,40\n15,10,10,60\n16,30,10,60\n"
-                                  "17,30,30,60\n18,10,30,60\n"
-                                  "*ELEMENT, TYPE=C3D8, ELSET=Eall\n1,1,2,3,4,5,6,7,8\n2,11,12,13,14,15,16,17,18\n"
-                                  "*NSET, NSET=Floor, GENERATE\n1,4\n*NSET, NSET=Lid\n15,16,17,18\n"
-                                  "*SURFACE, NAME=Under\n2,S1\n*SURFACE, NAME=Over\n1,S2\n*SURFACE, NAME=Top\n2,S2\n";
-const std::string properties = "*MATERIAL, NAME=Steel\n*ELASTIC\n210000.,.3\n*DENSITY\n7.8E-9\n"
-                               "*SOLID SECTION, ELSET=EALL, MATERIAL=steel\n"
-                               "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1E7\n"
-                               "*FRICTION\n.25,1E6\n"
-                               "*CONTACT PAIR, INTERACTION=i, TYPE=SURFACE TO SURFACE\nunder,over\n"
-                               "*BOUNDARY\nFloor,1,3\nLid,1,2\n";
-
-class Importing : public ::testing::Test {
-protected:
-    std::filesystem::path path =
-        std::filesystem::path(::testing::TempDir()) /
-        (std::string("osculate_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".inp");
-    void TearDown() override { std::filesystem::remove(path); }
-
-    ImportedScene import(const std::string& steps, DeckUnits units = DeckUnits::mm,
-                         const std::string& model = mesh_of_cubes + properties) const {
-        std::ofstream(path) << model << steps;
-        return import_deck(mesh::read_deck(path), path.string(), units);
-    }
-
-    /// As `osculate check` reads it: it must be fit to run.
-    static scene::Scene checked(const ImportedScene& imported) {
-        scene::Scene scene = scene::parse_scene(imported.text, "imported.yaml");
-        Timings timings;
-        (void)app::compile(scene, app::build_meshes(scene), 1, timings);
-        return scene;
-    }
-};
+class Importing : public Imports {};
 
 const std::string pressed = "*STEP\n*STATIC, DIRECT\n.25,1.\n*DSLOAD\nTop,P,5.\n*NODE PRINT, NSET=All\nU\n*END STEP\n";
 
@@ -112,6 +76,12 @@ TEST_F(Importing, DrivenNodesFollowTheirSteps) {
     EXPECT_EQ(fixed, 5u) << "the floor, node 15 and the three others of the lid";
 }
 
+TEST_F(Importing, TheFirstStepMayDriveWhatWasHeldBeforeIt) {
+    const scene::Scene scene = checked(import("*STEP\n*STATIC\n*BOUNDARY\nLid,2,2,.5\n*END STEP\n"));
+    EXPECT_EQ(scene::find(scene.supports, "Lid")->fixed, (std::array{true, false, false}));
+    EXPECT_NEAR((*scene::find(scene.stages.at(0).second.displacement, "Lid"))[1]->value(), .5e-3, 1e-15);
+}
+
 TEST_F(Importing, LargeStrainsAndDynamicsKeepTheirMeaning) {
     const scene::Scene scene =
         checked(import("*STEP, NLGEOM\n*STATIC\n*DLOAD\n2,P2,1.\n*END STEP\n"
@@ -144,6 +114,7 @@ TEST_F(Importing, WhatHasNoCounterpartIsListedWithItsLine) {
     EXPECT_THAT(imported.left_out,
                 AllOf(Contains(AllOf(HasSubstr(".inp:47: *EQUATION"), HasSubstr("no equations between nodes"))),
                       Contains(AllOf(HasSubstr(".inp:50: *STEP"), HasSubstr("*FREQUENCY")))));
+    EXPECT_EQ(imported.lost.size(), 2u) << "but neither output nor the law of overclosure is";
     EXPECT_THAT(imported.text, Not(HasSubstr("step_2")));
     EXPECT_THROW(import("*STEP\n*FREQUENCY\n10\n*END STEP\n"), mesh::MeshError);
 }
@@ -154,6 +125,79 @@ TEST_F(Importing, FormulationsFollowTheElements) {
     EXPECT_EQ(checked(import(pressed, DeckUnits::mm, model)).bodies[0].second.hex_formulation,
               scene::HexFormulation::incompatible_modes);
     EXPECT_EQ(checked(import(pressed)).bodies[0].second.hex_formulation, scene::HexFormulation::full);
+}
+
+// ---- what is lost ----
+
+TEST_F(Importing, TellsWhatIsLostFromWhatBodiesDoWithout) {
+    const auto lost = [&](const std::string& model_data) { return import(model_data + pressed).lost; };
+    EXPECT_THAT(lost(""), IsEmpty());
+    for (const char* card :
+         {"*TIE, NAME=T\nUnder,Over\n", "*TEMPERATURE\nAll,20.\n", "*SPRING, ELSET=S\n\n100.\n",
+          "*INITIAL CONDITIONS, TYPE=VELOCITY\nAll,3,-1.\n", "*MATERIAL, NAME=P\n*PLASTIC\n100.,0.\n",
+          "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1E7\n", "*BOUNDARY\nNone,1\n"})
+        EXPECT_EQ(lost(card).size(), 1u) << card;
+    for (const char* card : {"*RESTART, WRITE\n", "*TIME POINTS, NAME=T\n1.\n", "*CONTROLS, PARAMETERS=FIELD\n.005\n",
+                             "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nAll,20.\n"})
+        EXPECT_THAT(lost(card), IsEmpty()) << card;
+    EXPECT_THAT(import("*STEP\n*STATIC\n*DSLOAD\nNone,P,1.\n*END STEP\n").lost,
+                ElementsAre(HasSubstr(".inp:50: None,P,1.: no surface of that name")));
+}
+
+TEST_F(Importing, AScenePutsItsLossesFirst) {
+    const std::string text = import("*TIE, NAME=T\nUnder,Over\n" + pressed).text;
+    EXPECT_LT(text.find("# Lost:\n#   "), text.find("*TIE"));
+    EXPECT_LT(text.find("*TIE"), text.find("# Not as in the deck:\n#   "));
+}
+
+TEST_F(Importing, NodesThatNoElementHasLoseWhatTheyCarry) {
+    const std::string model = mesh_of_cubes + "*NODE, NSET=Alone\n99,0,0,90\n*NSET, NSET=Lid\n99\n" + properties;
+    const ImportedScene imported =
+        import("*BOUNDARY\nAlone,1,3\n*STEP\n*STATIC\n*CLOAD\nAlone,3,-5.\n*BOUNDARY\nAlone,3,3,.5\n*END STEP\n",
+               DeckUnits::mm, model);
+    EXPECT_THAT(imported.lost, UnorderedElementsAre(HasSubstr("*CLOAD on 1 nodes: no element has them"),
+                                                    HasSubstr("*BOUNDARY on 1 nodes: no element has them")));
+    EXPECT_THAT(imported.notes, Contains(HasSubstr(".inp:52: *BOUNDARY on 1 nodes"))) << "held at zero";
+    (void)checked(imported);
+}
+
+TEST_F(Importing, SupportsThatAStepLetsGoAreLost) {
+    const std::string next = pressed + "*STEP\n*STATIC\n*BOUNDARY, OP=NEW\n";
+    EXPECT_THAT(import(next + "Floor,1,3\nLid,1,2\n*END STEP\n").lost, IsEmpty()) << "all is given anew";
+    EXPECT_THAT(import(next + "Floor,1,3\nLid,1\n*END STEP\n").lost,
+                ElementsAre(HasSubstr("OP=NEW, which lets go of 4 components")));
+}
+
+TEST_F(Importing, OneStepOfLargeStrainsAmongOthersIsNoLawForAll) {
+    const std::string small = "*STEP\n*STATIC\n*END STEP\n", large = "*STEP, NLGEOM\n*STATIC\n*END STEP\n";
+    EXPECT_THAT(import(small + small + large).lost,
+                ElementsAre(AllOf(HasSubstr(".inp:47: small strain of step 1"), HasSubstr("NLGEOM (3)")),
+                            HasSubstr(".inp:50: small strain of step 2")));
+    EXPECT_THAT(import(large + small).lost, IsEmpty()) << "it lasts";
+    EXPECT_THAT(import(large + "*STEP, NLGEOM=NO\n*STATIC\n*END STEP\n").lost, SizeIs(1));
+}
+
+// ---- contact ----
+
+TEST_F(Importing, PairsAreNamedWithAndWithoutBlanks) {
+    const std::string type = "TYPE=SURFACE TO SURFACE";
+    const auto pair = [&](const std::string& other) {
+        std::string model = mesh_of_cubes + properties;
+        model.replace(model.find(type), type.size(), other);
+        const ImportedScene imported = import(pressed, DeckUnits::mm, model);
+        EXPECT_THAT(imported.lost, IsEmpty()) << other;
+        return checked(imported).contact.at(0).second;
+    };
+    for (const char* mortar :
+         {"TYPE=MORTAR", "TYPE=SURFACETOSURFACE", "type=Surface to Surface", "TYPE=SURFACE  TO SURFACE"})
+        EXPECT_EQ(pair(mortar).discretisation, scene::Discretisation::mortar) << mortar;
+    for (const char* nodes : {"TYPE=NODE TO SURFACE", "TYPE=nodetosurface", "ADJUST=0."}) {
+        EXPECT_EQ(pair(nodes).discretisation, scene::Discretisation::node) << nodes;
+        EXPECT_TRUE(std::holds_alternative<scene::FacetsSurface>(pair(nodes).master.surface)) << nodes;
+    }
+    std::string model = mesh_of_cubes + properties;
+    model.replace(model.find(type), type.size(), "TYPE=SURFACE TO NODE");
+    EXPECT_THAT(import(pressed, DeckUnits::mm, model).lost, ElementsAre(HasSubstr("TYPE=SURFACETONODE is not known")));
 }
 
 } // namespace

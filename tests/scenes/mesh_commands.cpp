@@ -57,5 +57,34 @@ TEST_F(MeshCommand, ImportedDecksPassTheCheckAndRun) {
     EXPECT_THAT(refused.err, HasSubstr("none.inp: no such file"));
 }
 
+TEST_F(MeshCommand, ImportsTakeDecksInMillimetres) {
+    const Outcome imported = osculate({"import", "deck.inp", "--units", "mm"});
+    EXPECT_EQ(imported.code, 0) << imported.err;
+    EXPECT_THAT(imported.out, AllOf(HasSubstr("scale: 0.001"), HasSubstr("E: 1000000000"), HasSubstr("lid: 2000000")));
+    EXPECT_EQ(osculate({"import", "deck.inp", "--units", "si"}).code, 0);
+    EXPECT_EQ(osculate({"import", "deck.inp", "--units", "inch"}).code, 2);
+}
+
+TEST_F(MeshCommand, ImportsThatLosePhysicsWriteNothingUnlessAllowed) {
+    std::ofstream(folder / "lossy.inp") << deck + "*STEP\n*STATIC\n*DSLOAD\nlip,P,2.\n*END STEP\n";
+    const Outcome refused = osculate({"import", "lossy.inp"});
+    EXPECT_EQ(refused.code, 5);
+    EXPECT_EQ(refused.out, "");
+    EXPECT_THAT(refused.err,
+                AllOf(HasSubstr("--allow-loss"), HasSubstr("lossy.inp:51: lip,P,2.: no surface of that name\n")));
+    const Outcome allowed = osculate({"import", "lossy.inp", "--allow-loss"});
+    EXPECT_EQ(allowed.code, 0);
+    EXPECT_THAT(allowed.out, HasSubstr("# Lost:\n#   lossy.inp:51: lip,P,2."));
+}
+
+TEST_F(MeshCommand, ImportedFacesThatAreLoadedTwiceRunWithBothLoads) {
+    std::string twice = deck;
+    twice.insert(twice.find("*NODE PRINT"), "*DSLOAD\nlid,P,1.\n");
+    std::ofstream(folder / "twice.inp") << twice;
+    std::ofstream(folder / "twice.yaml") << osculate({"import", "twice.inp"}).out;
+    ASSERT_EQ(osculate({"run", "twice.yaml", "-o", "run", "--quiet"}).code, 0);
+    EXPECT_NEAR(Csv(folder / "run/history.csv").number(0, "pair.up_on_low.normal"), 3, 1e-9);
+}
+
 } // namespace
 } // namespace osculate::scenes

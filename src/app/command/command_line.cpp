@@ -31,7 +31,7 @@ namespace osculate::app {
 
 namespace {
 
-enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4 };
+enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4, lossy_import = 5 };
 
 struct Arguments {
     std::string scene, output, key_path, run_folder, checkpoint_every, from, schema = "scene";
@@ -42,8 +42,8 @@ struct Arguments {
     StudyOptions study;
     bool formulas = false, list = false, json = false;
     MeshCommand mesh;
-    std::string deck;
-    deck::DeckUnits units = deck::DeckUnits::si;
+    std::string deck, units = "si";
+    bool allow_loss = false;
 
     [[nodiscard]] RunOptions run_options() const {
         return {output, threads, quiet,
@@ -174,10 +174,18 @@ void run_study(Arguments arguments) {
     print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
 }
 
-void import_scene(const std::string& path, deck::DeckUnits units) try {
-    const deck::ImportedScene scene = deck::import_deck(mesh::read_deck(path), path, units);
-    for (const std::string& what : scene.left_out) fmt::print(stderr, "{}\n", what);
+/// A scene that lacks physics of its deck is written only where that is allowed.
+ExitCode import_scene(const Arguments& arguments) try {
+    const deck::DeckUnits units = arguments.units == "mm" ? deck::DeckUnits::mm : deck::DeckUnits::si;
+    const deck::ImportedScene scene = deck::import_deck(mesh::read_deck(arguments.deck), arguments.deck, units);
+    for (const std::string& what : scene.notes) fmt::print(stderr, "{}\n", what);
+    const bool refused = !scene.lost.empty() && !arguments.allow_loss;
+    if (refused)
+        fmt::print(stderr, "nothing is written, as the scene would lack these; --allow-loss writes it without them:\n");
+    for (const std::string& what : scene.lost) fmt::print(stderr, "{}\n", what);
+    if (refused) return lossy_import;
     print(scene.text);
+    return done;
 } catch (const mesh::MeshError& error) {
     throw mesh_faults(error, "deck");
 }
@@ -245,13 +253,15 @@ ExitCode run_command(int argc, char** argv) {
         ->check(CLI::PositiveNumber);
     CLI::App* import = program.add_subcommand("import", "Write an input deck of Abaqus or CalculiX as a scene");
     import->add_option("DECK", arguments.deck, "Input deck, .inp; the scene reads its mesh from it")->required();
-    const std::map<std::string, deck::DeckUnits> units{{"si", deck::DeckUnits::si}, {"mm", deck::DeckUnits::mm}};
     import
         ->add_option("--units", arguments.units,
-                     "Units of the deck's numbers: si (m, kg, s) or mm (mm, t, s, MPa) [si]")
+                     "Units of the deck's numbers: si (m, kg, s) or mm (mm, t, s, so N and MPa) [si]")
         ->type_name("si|mm")
-        ->transform(CLI::Transformer(units))
-        ->check(CLI::IsMember(units));
+        ->check(CLI::IsMember({"si", "mm"}));
+    import->add_flag(
+        "--allow-loss", arguments.allow_loss,
+        "Write the scene although it lacks loads, contact, materials, supports or steps of the deck; without, "
+        "exit code 5");
     std::vector<std::string> repairs = mesh::repair_words();
     repairs.emplace_back("all");
     mesh->add_option("--repair", arguments.mesh.repair, "Faults to mend, as `repair` in a scene")
@@ -279,7 +289,7 @@ ExitCode run_command(int argc, char** argv) {
     } else if (*keys) {
         return show_keys(arguments.key_path);
     } else if (*import) {
-        import_scene(arguments.deck, arguments.units);
+        return import_scene(arguments);
     } else if (*mesh) {
         print(describe_mesh(arguments.mesh));
     } else if (*schemas) {

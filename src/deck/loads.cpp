@@ -1,0 +1,322 @@
+#include "deck/loads.hpp"
+
+#include "deck/words.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <iterator>
+
+namespace osculate::deck {
+namespace {
+
+const char* const on_elements = "DLOAD";
+const char* const on_surfaces = "DSLOAD";
+
+} // namespace
+
+DeckLoads::DeckLoads(DeckModel& model, const std::vector<DeckBody>& bodies, DeckSets& sets, const Units& units,
+                     bool follow)
+    : model_(model), bodies_(bodies), sets_(sets), units_(units), follow_(follow), gravity_(bodies.size()) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        for (std::size_t f = 0; f < bodies_[b].exterior.size(); ++f) {
+            const mesh::Facet& facet = bodies_[b].exterior[f];
+            std::array<Index, 4> corners{-1, -1, -1, -1};
+            for (std::size_t c = 0; c < static_cast<std::size_t>(facet.count); ++c)
+                corners[c] = bodies_[b].points[static_cast<std::size_t>(facet.nodes[c])];
+            std::sort(corners.begin(), corners.end());
+            exterior_[corners] = {b, static_cast<Index>(f)};
+        }
+}
+
+void DeckLoads::write(std::vector<StageLoads>& stages) {
+    for (std::size_t s = 0; s < model_.steps.size(); ++s) {
+        const DeckStep& step = model_.steps[s];
+        forget(step);
+        for (const DeckPressure& p : step.pressures) add_pressure(step, p);
+        add_forces(step);
+        add_gravity(step);
+        end_step(s, stages[s]);
+    }
+    write_pressures(stages);
+}
+
+void DeckLoads::forget(const DeckStep& step) {
+    for (auto& [key, load] : facets_) {
+        if (step.forget_on_elements) load.history.remove(on_elements);
+        if (step.forget_on_surfaces) load.history.remove(on_surfaces);
+    }
+    if (step.forget_on_elements)
+        for (auto& body : gravity_)
+            for (LoadHistory& component : body) component.remove_all();
+    if (step.forget_forces) {
+        for (const PressedForces& pressed : pressed_)
+            for (const Index f : pressed.facets) facets_.at({false, pressed.body, f}).history.remove(pressed.origin);
+        pressed_.clear();
+    }
+}
+
+DeckLoads::FacetLoad& DeckLoads::facet_load(const FacetKey& key, const std::string& name, const std::string& place) {
+    FacetLoad& load = facets_[key];
+    if (load.place.empty()) {
+        load.place = place;
+        load.courses.resize(model_.steps.size());
+    }
+    load.names.insert(name);
+    return load;
+}
+
+void DeckLoads::add_pressure(const DeckStep& step, const DeckPressure& p) {
+    std::set<std::pair<std::size_t, Index>> facets; // a line loads a face once
+    std::size_t inside = 0;
+    for (const mesh::RawFace& face : p.faces) {
+        static constexpr int quarters[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+        for (int part = 0; part < (face.count == 6 ? 4 : 1); ++part) {
+            std::array<Index, 4> corners{-1, -1, -1, -1};
+            for (int c = 0; c < (face.count == 6 ? 3 : face.count); ++c)
+                corners[static_cast<std::size_t>(c)] =
+                    face.nodes[static_cast<std::size_t>(face.count == 6 ? quarters[part][c] : c)];
+            std::sort(corners.begin(), corners.end());
+            const auto at = exterior_.find(corners);
+            if (at == exterior_.end())
+                ++inside;
+            else
+                facets.insert(at->second);
+        }
+    }
+    if (inside > 0)
+        model_.lose(p.place, fmt::format("pressure on {} faces within '{}'", inside, p.name),
+                    "they are not on the outside");
+    const char* const other = p.keyword == on_surfaces ? on_elements : on_surfaces;
+    const bool forgotten = p.keyword == on_surfaces ? step.forget_on_elements : step.forget_on_surfaces;
+    std::size_t both = 0;
+    for (const auto& [body, facet] : facets) {
+        FacetLoad& load = facet_load({follow_, body, facet}, "pressed_" + p.name, p.place);
+        if (!forgotten && load.history.standing(other) != 0) ++both;
+        load.history.add(p.keyword, units_.stress * p.value, model_.amplitude(p.amplitude));
+    }
+    if (both > 0)
+        model_.note(p.place, fmt::format("*{} on {} faces that *{} of an earlier step loads", p.keyword, both, other),
+                    "they add, as in Abaqus; in CalculiX the later takes the place of the earlier");
+}
+
+/// Forces that a step gives take the place of those before it, node by node and component by component.
+void DeckLoads::add_forces(const DeckStep& step) {
+    std::map<std::pair<std::size_t, std::string>, Forces> groups; // by body and amplitude
+    std::map<std::pair<std::size_t, Index>, std::array<bool, 3>> given;
+    for (const DeckValues& f : step.forces) {
+        std::size_t without = 0;
+        for (const Index p : f.points) {
+            if (sets_.body_of(p) < 0) {
+                ++without;
+                continue;
+            }
+            const auto b = static_cast<std::size_t>(sets_.body_of(p));
+            const Index node = sets_.node_of(p);
+            Forces& group = groups[{b, f.amplitude}];
+            if (group.place.empty()) group.place = f.place;
+            group.at.try_emplace(node, Vec3::Zero()).first->second[f.first] += f.value;
+            given[{b, node}][static_cast<std::size_t>(f.first)] = true;
+        }
+        if (without > 0 && f.value != 0)
+            model_.lose(f.place, fmt::format("*CLOAD on {} nodes", without), "no element has them");
+    }
+    std::vector<PressedForces> kept;
+    for (PressedForces& pressed : pressed_) {
+        const bool touched = std::ranges::any_of(pressed.at, [&](const auto& entry) {
+            return given.contains({pressed.body, entry.first});
+        });
+        if (!touched) {
+            kept.push_back(std::move(pressed));
+            continue;
+        }
+        for (const Index f : pressed.facets) facets_.at({false, pressed.body, f}).history.remove(pressed.origin);
+        Forces& rest = groups[{pressed.body, ""}];
+        if (rest.place.empty()) rest.place = step.place;
+        for (const auto& [node, force] : pressed.at) {
+            Vec3& sum = rest.at.try_emplace(node, Vec3::Zero()).first->second;
+            const auto now = given.find({pressed.body, node});
+            for (Index d = 0; d < 3; ++d)
+                if (now == given.end() || !now->second[static_cast<std::size_t>(d)]) sum[d] += force[d];
+        }
+    }
+    pressed_ = std::move(kept);
+    for (const auto& [key, forces] : groups) press_like(forces, key.first, key.second, step.duration);
+}
+
+/// Forces on nodes that are those of one pressure on facets.
+void DeckLoads::press_like(const Forces& forces, std::size_t b, const std::string& amplitude, double duration) {
+    const DeckBody& body = bodies_[b];
+    std::vector<Index> facets;
+    std::map<Index, Vec3> unit;
+    for (std::size_t f = 0; f < body.exterior.size(); ++f) {
+        const mesh::Facet& facet = body.exterior[f];
+        if (!std::all_of(facet.begin(), facet.end(), [&](Index n) { return forces.at.contains(n); })) continue;
+        facets.push_back(static_cast<Index>(f));
+        const auto share = fe::pressure_forces(facet, body.mesh.nodes, 1);
+        for (int c = 0; c < facet.count; ++c)
+            unit.try_emplace(facet.nodes[static_cast<std::size_t>(c)], Vec3::Zero()).first->second +=
+                share[static_cast<std::size_t>(c)];
+    }
+    double both = 0, square = 0, largest = 0, worst = 0;
+    for (const auto& [node, force] : forces.at) {
+        const auto at = unit.find(node);
+        if (at != unit.end()) {
+            both += force.dot(at->second);
+            square += at->second.squaredNorm();
+        }
+        largest = std::max(largest, force.norm());
+    }
+    if (largest == 0) return; // taken away
+    const double pressure = square > 0 ? both / square : 0;
+    for (const auto& [node, force] : forces.at) {
+        const auto at = unit.find(node);
+        worst = std::max(worst, (force - (at != unit.end() ? Vec3(pressure * at->second) : Vec3(Vec3::Zero()))).norm());
+    }
+    constexpr double same = 1e-4; // of the largest force: decks have five digits or so
+    if (facets.empty() || worst > same * largest)
+        return model_.lose(forces.place, fmt::format("*CLOAD on {} nodes of body {}", forces.at.size(), body.name),
+                           "forces on nodes have a counterpart only where they are those of one pressure");
+    PressedForces pressed{b, forces.at, facets, fmt::format("CLOAD {}", ++pressed_so_far_)};
+    const Amplitude* course = model_.amplitude(amplitude);
+    for (const Index f : facets)
+        facet_load({false, b, f}, "loaded", forces.place).history.add(pressed.origin, units_.stress * pressure, course);
+    if (course != nullptr)
+        for (auto& [node, force] : pressed.at) force *= factor_at(*course, duration);
+    pressed_.push_back(std::move(pressed));
+}
+
+double DeckLoads::density(const DeckBody& body) const {
+    if (body.section == nullptr) return 0;
+    const auto material = model_.materials.find(body.section->material);
+    return material == model_.materials.end() ? 0 : material->second.density;
+}
+
+void DeckLoads::add_gravity(const DeckStep& step) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const DeckBody& body = bodies_[b];
+        std::vector<const DeckGravity*> parts;
+        for (const DeckGravity& g : step.gravity) {
+            std::vector<Index> in, sorted = g.cells;
+            std::sort(sorted.begin(), sorted.end());
+            std::set_intersection(sorted.begin(), sorted.end(), body.cells.begin(), body.cells.end(),
+                                  std::back_inserter(in));
+            if (in.empty()) continue;
+            if (!(density(body) > 0)) {
+                model_.lose(g.place, "GRAV on body " + body.name, "it has no density");
+            } else if (in.size() != body.cells.size()) {
+                parts.push_back(&g);
+            } else {
+                Vec3 before;
+                for (std::size_t d = 0; d < 3; ++d) before[static_cast<Index>(d)] = gravity_[b][d].standing(g.elements);
+                constexpr double parallel = 1e-10; // as CalculiX takes it
+                if (!step.forget_on_elements &&
+                    before.cross(g.acceleration).norm() > parallel * before.norm() * g.acceleration.norm())
+                    model_.note(g.place, "GRAV on body " + body.name + " in another direction than in an earlier step",
+                                "it takes the place of the earlier, as in Abaqus; in CalculiX they add");
+                add_acceleration(b, g.elements, g.acceleration, g.amplitude);
+            }
+        }
+        if (!parts.empty()) add_partial_gravity(b, parts);
+    }
+}
+
+void DeckLoads::add_partial_gravity(std::size_t b, const std::vector<const DeckGravity*>& parts) {
+    const DeckBody& body = bodies_[b];
+    using Sum = std::map<std::string, Vec3>; // by amplitude
+    std::map<Index, Sum> of_cell;
+    std::set<std::string> names;
+    for (const DeckGravity* g : parts) {
+        names.insert(g->elements);
+        for (const Index c : g->cells)
+            of_cell[c].try_emplace(g->amplitude, Vec3::Zero()).first->second += g->acceleration;
+    }
+    const Sum& first = of_cell[body.cells.front()];
+    const bool same = std::ranges::all_of(body.cells, [&](Index c) { return of_cell[c] == first; });
+    if (!same) {
+        for (const DeckGravity* g : parts)
+            model_.lose(g->place, "GRAV on body " + body.name, "gravity acts on whole bodies");
+        return;
+    }
+    for (const auto& [amplitude, acceleration] : first)
+        add_acceleration(b, fmt::format("{}", fmt::join(names, "+")), acceleration, amplitude);
+}
+
+void DeckLoads::add_acceleration(std::size_t b, const std::string& origin, const Vec3& acceleration,
+                                 const std::string& amplitude) {
+    const double per_volume = units_.density * density(bodies_[b]) * units_.length;
+    for (std::size_t d = 0; d < 3; ++d)
+        gravity_[b][d].add(origin, per_volume * acceleration[static_cast<Index>(d)], model_.amplitude(amplitude));
+}
+
+void DeckLoads::end_step(std::size_t s, StageLoads& stage) {
+    const DeckStep& step = model_.steps[s];
+    for (auto& [key, load] : facets_) load.courses[s] = load.history.end_step(step.duration, step.ramps());
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        std::array<std::string, 3> courses;
+        bool any = false;
+        for (std::size_t d = 0; d < 3; ++d) {
+            courses[d] = gravity_[b][d].end_step(step.duration, step.ramps());
+            any = any || !courses[d].empty();
+            if (courses[d].empty()) courses[d] = number(gravity_[b][d].standing());
+        }
+        if (any) stage.body_force[bodies_[b].name] = fmt::format("[{}]", fmt::join(courses, ", "));
+    }
+}
+
+void DeckLoads::write_pressures(std::vector<StageLoads>& stages) {
+    struct Group {
+        std::vector<Index> facets;
+        std::string name, place;
+    };
+    using History = std::tuple<bool, std::size_t, std::vector<std::string>>; // follows, body, courses
+    std::map<std::pair<History, std::string>, Group> groups;
+    for (const auto& [key, load] : facets_) {
+        const std::string name = fmt::format("{}", fmt::join(load.names, "_"));
+        Group& group = groups[{{key.follows, key.body, load.courses}, name}];
+        if (group.facets.empty()) group = {{}, name, load.place};
+        group.facets.push_back(key.facet);
+    }
+    const auto write = [&](const History& history, const std::string& set) {
+        const auto& [follows, body, courses] = history;
+        for (std::size_t s = 0; s < courses.size(); ++s)
+            if (!courses[s].empty()) (follows ? stages[s].follower_pressure : stages[s].pressure)[set] = courses[s];
+    };
+    // Loads by their names first; those that are no set by themselves, together where they have one history; at last a set
+    // each.
+    std::map<History, std::vector<Group>> rest;
+    for (auto& [key, group] : groups) {
+        const std::string set = sets_.of_facets(std::get<1>(key.first), group.facets, group.name);
+        if (set.empty())
+            rest[key.first].push_back(std::move(group));
+        else
+            write(key.first, set);
+    }
+    for (const auto& [history, alike] : rest) {
+        const std::size_t body = std::get<1>(history);
+        std::vector<Index> all;
+        for (const Group& group : alike) all.insert(all.end(), group.facets.begin(), group.facets.end());
+        std::sort(all.begin(), all.end());
+        if (alike.size() > 1)
+            if (const std::string set = sets_.of_facets(body, all, alike.front().name); !set.empty()) {
+                write(history, set);
+                continue;
+            }
+        for (const Group& group : alike) {
+            std::size_t without = 0;
+            for (const Index facet : group.facets) {
+                const std::string set = sets_.of_facets(body, {facet}, group.name);
+                if (set.empty())
+                    ++without;
+                else
+                    write(history, set);
+            }
+            if (without > 0)
+                model_.lose(group.place, fmt::format("load on {} faces of '{}'", without, group.name),
+                            "no set of the mesh has just these faces; give them a *SURFACE");
+        }
+    }
+}
+
+} // namespace osculate::deck

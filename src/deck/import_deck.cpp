@@ -3,6 +3,7 @@
 #include "deck/bodies.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 #include "osculate/mesh/mesh_error.hpp"
+#include "osculate/mesh/surface_faces.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -37,7 +37,8 @@ SurfaceFace plane_face(const Facet& facet) {
 std::vector<SurfaceFace> surface_faces(const Mesh& mesh, const std::vector<Facet>& facets, Index first_node) {
     std::vector<SurfaceFace> faces;
     faces.reserve(facets.size());
-    std::map<std::tuple<Index, Index, std::size_t>, std::size_t> begun; // six-node faces by block, element and local face
+    std::map<std::tuple<Index, Index, std::size_t>, std::size_t>
+        begun; // six-node faces by block, element and local face
     for (const Facet& facet : facets) {
         if (facet.block < 0 || mesh.blocks[static_cast<std::size_t>(facet.block)].type != CellType::tet10) {
             faces.push_back(plane_face(facet));

@@ -13,6 +13,7 @@
 #include "osculate/fe/facet_quadrature.hpp"
 #include "osculate/mesh/quality.hpp"
 #include "osculate/mesh/select.hpp"
+#include "osculate/mesh/surface_faces.hpp"
 #include "osculate/scene/nearest.hpp"
 #include "osculate/time/collision_check.hpp"
 

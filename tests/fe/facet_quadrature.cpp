@@ -164,8 +164,9 @@ TEST(SixNodeFace, HasAThirdOfItsAreaAtMiddleNodesAndNoneAtCorners) {
 }
 
 TEST(SixNodeFace, UnderPressureHasTheForcesOfGaussQuadratureWhenCurved) {
-    for (const auto& quarters :
-         {all_quarters, {true, false, false, false}, {false, true, false, true}, {false, false, true, false}}) {
+    const std::vector<std::array<bool, 4>> parts{
+        all_quarters, {true, false, false, false}, {false, true, false, true}, {false, false, true, false}};
+    for (const auto& quarters : parts) {
         mesh::SurfaceFace face = six_nodes;
         face.quarters = quarters;
         std::array<Vec3, 6> expected;

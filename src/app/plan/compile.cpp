@@ -412,12 +412,13 @@ private:
                 } else if (const Index six = facets_of_six_node_faces(*group); six > 0) {
                     // Their corners carry nothing under a uniform pressure, but contact has one law and one share of the
                     // area per node: linear shares on them would press with 0.8 to 1.7 times the pressure.
-                    faults_.push_back(fault(
-                        key + part,
-                        "facets of tet4, wedge6 or hex8 elements: contact has no law for six-node faces yet. Mesh this "
-                        "body with `element: hex8` or `tet4`, with `cad: {quadratic: false}`, or with C3D4 in its file",
-                        fmt::format("{} of its {} facets are parts of faces of tet10 elements of body '{}'", six,
-                                    group->facets.size(), plan_.model.bodies[group->body].name)));
+                    faults_.push_back(
+                        fault(key + part,
+                              "facets of hex8, wedge6 or tet4 elements (tet10 carries loads, but no contact: mesh this "
+                              "body with "
+                              "`element: hex8` or `tet4`, `cad: {quadratic: false}` or C3D4)",
+                              fmt::format("{} of its {} facets are parts of faces of tet10 elements of body '{}'", six,
+                                          group->facets.size(), plan_.model.bodies[group->body].name)));
                     broken = true;
                 }
             if (broken) continue;

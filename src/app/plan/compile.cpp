@@ -415,8 +415,7 @@ private:
                     faults_.push_back(
                         fault(key + part,
                               "facets of hex8, wedge6 or tet4 elements (tet10 carries loads, but no contact: mesh this "
-                              "body with "
-                              "`element: hex8` or `tet4`, `cad: {quadratic: false}` or C3D4)",
+                              "body with `element: hex8` or `tet4`, `cad: {quadratic: false}` or C3D4)",
                               fmt::format("{} of its {} facets are parts of faces of tet10 elements of body '{}'", six,
                                           group->facets.size(), plan_.model.bodies[group->body].name)));
                     broken = true;

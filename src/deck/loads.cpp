@@ -2,6 +2,7 @@
 
 #include "deck/words.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
+#include "osculate/mesh/surface_faces.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -150,14 +151,19 @@ void DeckLoads::press_like(const Forces& forces, std::size_t b, const std::strin
     const DeckBody& body = bodies_[b];
     std::vector<Index> facets;
     std::map<Index, Vec3> unit;
+    std::vector<mesh::Facet> loaded;
     for (std::size_t f = 0; f < body.exterior.size(); ++f) {
-        const mesh::Facet& facet = body.exterior[f];
-        if (!std::all_of(facet.begin(), facet.end(), [&](Index n) { return forces.at.contains(n); })) continue;
+        const mesh::SurfaceFace face = mesh::surface_faces(body.mesh, {body.exterior[f]}).front();
+        // a deck may leave out the corners of six-node faces, which carry nothing where these are straight
+        const auto* first = face.begin() + (face.count == 6 ? 3 : 0);
+        if (!std::all_of(first, face.end(), [&](Index n) { return forces.at.contains(n); })) continue;
         facets.push_back(static_cast<Index>(f));
-        const auto share = fe::pressure_forces(facet, body.mesh.nodes, 1);
-        for (int c = 0; c < facet.count; ++c)
-            unit.try_emplace(facet.nodes[static_cast<std::size_t>(c)], Vec3::Zero()).first->second +=
-                share[static_cast<std::size_t>(c)];
+        loaded.push_back(body.exterior[f]);
+    }
+    for (const mesh::SurfaceFace& face : mesh::surface_faces(body.mesh, loaded)) {
+        const auto share = fe::pressure_forces(face, body.mesh.nodes, 1);
+        for (std::size_t c = 0; c < static_cast<std::size_t>(face.count); ++c)
+            unit.try_emplace(face.nodes[c], Vec3::Zero()).first->second += share[c];
     }
     double both = 0, square = 0, largest = 0, worst = 0;
     for (const auto& [node, force] : forces.at) {
@@ -174,6 +180,8 @@ void DeckLoads::press_like(const Forces& forces, std::size_t b, const std::strin
         const auto at = unit.find(node);
         worst = std::max(worst, (force - (at != unit.end() ? Vec3(pressure * at->second) : Vec3(Vec3::Zero()))).norm());
     }
+    for (const auto& [node, share] : unit)
+        if (!forces.at.contains(node)) worst = std::max(worst, (pressure * share).norm());
     constexpr double same = 1e-4; // of the largest force: decks have five digits or so
     if (facets.empty() || worst > same * largest)
         return model_.lose(forces.place, fmt::format("*CLOAD on {} nodes of body {}", forces.at.size(), body.name),

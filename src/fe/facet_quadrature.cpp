@@ -1,32 +1,79 @@
 #include "osculate/fe/facet_quadrature.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace osculate::fe {
 namespace {
 
-/// A quadrature point: shape functions and their derivatives, times no weight, tangents of the facet.
+/// A quadrature point: shape functions and their derivatives, times no weight, tangents of the face.
 struct Point {
     double weight = 1;
-    std::array<double, 4> N{}, dxi{}, deta{};
+    std::array<double, 6> N{}, dxi{}, deta{};
     Vec3 x_xi = Vec3::Zero(), x_eta = Vec3::Zero();
 };
 
+/// A point of a triangle by its natural coordinates and its share of the area.
+struct TrianglePoint {
+    double xi, eta, share;
+};
+
+/// Degree four [Strang and Fix 1973; Dunavant 1985]: N_i x_xi x x_eta of a six-node face is one of degree four.
+const std::array<TrianglePoint, 6>& triangle_rule() {
+    static const std::array<TrianglePoint, 6> rule = [] {
+        const double root = std::sqrt(38 - 44 * std::sqrt(0.4)), ten = std::sqrt(10.0);
+        const double a = (8 - ten + root) / 18, b = (8 - ten - root) / 18;
+        const double uneven = std::sqrt(213125 - 53320 * ten) / 3720, w = 620.0 / 3720;
+        return std::array<TrianglePoint, 6>{{{a, a, w + uneven},
+                                             {1 - 2 * a, a, w + uneven},
+                                             {a, 1 - 2 * a, w + uneven},
+                                             {b, b, w - uneven},
+                                             {1 - 2 * b, b, w - uneven},
+                                             {b, 1 - 2 * b, w - uneven}}};
+    }();
+    return rule;
+}
+
+/// The quadratic shape functions of a triangle at (xi, eta), nodes as those of mesh::SurfaceFace.
+Point six_node_point(double xi, double eta, double weight) {
+    const double zeta = 1 - xi - eta;
+    Point p;
+    p.weight = weight;
+    p.N = {zeta * (2 * zeta - 1), xi * (2 * xi - 1), eta * (2 * eta - 1), 4 * zeta * xi, 4 * xi * eta, 4 * eta * zeta};
+    p.dxi = {1 - 4 * zeta, 4 * xi - 1, 0, 4 * (zeta - xi), 4 * eta, -4 * eta};
+    p.deta = {1 - 4 * zeta, 0, 4 * eta - 1, -4 * xi, 4 * xi, 4 * (zeta - eta)};
+    return p;
+}
+
+/// Calls use(point) for the points of a part of a six-node face: of the triangle with a corner at (xi, eta) whose edges are
+/// `size` times those of the whole, turned by half a turn where `size` < 0.
+template <class Use> void integrate_part(double xi, double eta, double size, Use use) {
+    for (const TrianglePoint& p : triangle_rule())
+        use(six_node_point(xi + size * p.xi, eta + size * p.eta, 0.5 * size * size * p.share));
+}
+
 /// Calls use(point) for every quadrature point.
-template <class Use> void integrate(const mesh::Facet& facet, const std::vector<Vec3>& positions, Use use) {
-    const auto finish = [&](Point& p) {
-        for (std::size_t i = 0; i < static_cast<std::size_t>(facet.count); ++i) {
-            const Vec3& x = positions[static_cast<std::size_t>(facet.nodes[i])];
+template <class Use> void integrate(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, Use use) {
+    const auto finish = [&](Point p) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i) {
+            const Vec3& x = positions[static_cast<std::size_t>(face.nodes[i])];
             p.x_xi += p.dxi[i] * x;
             p.x_eta += p.deta[i] * x;
         }
         use(p);
     };
-    if (facet.count == 3) {
+    if (face.count == 6) {
+        if (face.whole()) return integrate_part(0, 0, 1, finish);
+        if (face.quarters[0]) integrate_part(0, 0, 0.5, finish);
+        if (face.quarters[1]) integrate_part(0.5, 0, 0.5, finish);
+        if (face.quarters[2]) integrate_part(0, 0.5, 0.5, finish);
+        if (face.quarters[3]) integrate_part(0.5, 0.5, -0.5, finish);
+        return;
+    }
+    if (face.count == 3) {
         // N_i integrates to 1/6 over the unit triangle, and the area vector is constant
-        Point p{0.5, {1. / 3, 1. / 3, 1. / 3, 0}, {-1, 1, 0, 0}, {-1, 0, 1, 0}};
-        finish(p);
+        finish({0.5, {1. / 3, 1. / 3, 1. / 3}, {-1, 1}, {-1, 0, 1}});
         return;
     }
     const std::array<double, 4> xi_i{-1, 1, 1, -1}, eta_i{-1, -1, 1, 1};
@@ -45,35 +92,54 @@ template <class Use> void integrate(const mesh::Facet& facet, const std::vector<
 
 } // namespace
 
-std::array<double, 4> tributary_areas(const mesh::Facet& facet, const std::vector<Vec3>& positions) {
-    std::array<double, 4> areas{};
-    integrate(facet, positions, [&](const Point& p) {
+std::array<double, 6> tributary_areas(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions) {
+    std::array<double, 6> areas{};
+    integrate(face, positions, [&](const Point& p) {
         const double area = p.weight * p.x_xi.cross(p.x_eta).norm();
-        for (std::size_t i = 0; i < 4; ++i) areas[i] += p.N[i] * area;
+        for (std::size_t i = 0; i < areas.size(); ++i) areas[i] += p.N[i] * area;
     });
     return areas;
 }
 
-std::array<Vec3, 4> pressure_forces(const mesh::Facet& facet, const std::vector<Vec3>& positions, double pressure) {
-    std::array<Vec3, 4> forces;
+std::array<double, 4> tributary_areas(const mesh::Facet& facet, const std::vector<Vec3>& positions) {
+    const auto areas = tributary_areas(mesh::plane_face(facet), positions);
+    return {areas[0], areas[1], areas[2], areas[3]};
+}
+
+double area(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions) {
+    double sum = 0;
+    for (const double share : tributary_areas(face, positions)) sum += share;
+    return sum;
+}
+
+std::array<Vec3, 6> pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions,
+                                    double pressure) {
+    std::array<Vec3, 6> forces;
     forces.fill(Vec3::Zero());
-    integrate(facet, positions, [&](const Point& p) {
+    integrate(face, positions, [&](const Point& p) {
         const Vec3 force = -pressure * p.weight * p.x_xi.cross(p.x_eta);
-        for (std::size_t i = 0; i < 4; ++i) forces[i] += p.N[i] * force;
+        for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += p.N[i] * force;
     });
     return forces;
 }
 
-Matrix pressure_tangent(const mesh::Facet& facet, const std::vector<Vec3>& positions, double pressure) {
-    Matrix K = Matrix::Zero(3 * facet.count, 3 * facet.count);
-    integrate(facet, positions, [&](const Point& p) {
-        for (int b = 0; b < facet.count; ++b) {
+void add_pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, double pressure,
+                         std::vector<Vec3>& forces) {
+    const auto own = pressure_forces(face, positions, pressure);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i)
+        forces[static_cast<std::size_t>(face.nodes[i])] += own[i];
+}
+
+Matrix pressure_tangent(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, double pressure) {
+    Matrix K = Matrix::Zero(3 * face.count, 3 * face.count);
+    integrate(face, positions, [&](const Point& p) {
+        for (int b = 0; b < face.count; ++b) {
             // d (x_xi x x_eta) = dN_b/dxi du x x_eta - dN_b/deta du x x_xi
             const auto j = static_cast<std::size_t>(b);
             const Vec3 arm = p.dxi[j] * p.x_eta - p.deta[j] * p.x_xi;
             Mat3 cross; // du x arm
             cross << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
-            for (int a = 0; a < facet.count; ++a)
+            for (int a = 0; a < face.count; ++a)
                 K.block<3, 3>(3 * a, 3 * b) -= pressure * p.weight * p.N[static_cast<std::size_t>(a)] * cross;
         }
     });

@@ -10,7 +10,7 @@ constexpr LocalFace wedge_faces[] = {
 constexpr LocalFace hex_faces[] = {{{0, 4, 7, 3}, 4}, {{1, 2, 6, 5}, 4}, {{0, 1, 5, 4}, 4},
                                    {{3, 7, 6, 2}, 4}, {{0, 3, 2, 1}, 4}, {{4, 5, 6, 7}, 4}};
 
-// Every six-node face as its three corner triangles and the middle one.
+// Every six-node face as its three corner triangles and the middle one, in the order of SurfaceFace::quarters.
 constexpr LocalFace tet10_faces[] = {{{0, 4, 7, -1}, 3}, {{4, 1, 8, -1}, 3}, {{7, 8, 3, -1}, 3}, {{4, 8, 7, -1}, 3}, //
                                      {{1, 5, 8, -1}, 3}, {{5, 2, 9, -1}, 3}, {{8, 9, 3, -1}, 3}, {{5, 9, 8, -1}, 3}, //
                                      {{2, 6, 9, -1}, 3}, {{6, 0, 7, -1}, 3}, {{9, 7, 3, -1}, 3}, {{6, 7, 9, -1}, 3}, //
@@ -31,6 +31,13 @@ std::span<const LocalFace> cell_faces(CellType type) {
     case CellType::tet10: return tet10_faces;
     }
     return {};
+}
+
+std::array<int, 6> six_node_face(std::size_t face) {
+    // its corners are those of its first three quarters, its middle nodes the corners of the last
+    const LocalFace* quarters = tet10_faces + 4 * face;
+    return {quarters[0].nodes[0], quarters[1].nodes[1], quarters[2].nodes[2],
+            quarters[3].nodes[0], quarters[3].nodes[1], quarters[3].nodes[2]};
 }
 
 std::span<const std::array<int, 3>> corner_neighbours(CellType type) {

@@ -16,6 +16,10 @@ struct LocalFace {
 
 [[nodiscard]] std::span<const LocalFace> cell_faces(CellType type);
 
+/// Local node numbers of face 0 to 3 of a tet10, whose quarters are cell_faces 4 face to 4 face + 3: corners, then the
+/// nodes midway on the edges 01, 12 and 20.
+[[nodiscard]] std::array<int, 6> six_node_face(std::size_t face);
+
 /// Local node numbers of the three neighbours of every corner, ordered so that the triple product of the edges to them
 /// is positive in a well-shaped element. A tetrahedron's Jacobian is constant: one corner stands for all. None for tet10,
 /// whose edges are curved.

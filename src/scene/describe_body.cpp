@@ -11,6 +11,7 @@ constexpr Range divisions_range{.low = 1, .high = 10000};
 constexpr double most_elements = 2e7;
 
 const Words cell_words{"tet4", "wedge6", "hex8", "tet10"};
+constexpr const char* element_meaning = "Element shape. Contact takes no surfaces of tet10.";
 
 void describe(Visitor& v, mesh::Focus& f) {
     v.vector({.name = "point",
@@ -62,7 +63,7 @@ void describe(Visitor& v, BlockMesh& m) {
                  .range = divisions_range,
                  .largest_product = most_elements},
                 m.divisions);
-    word(v, {.name = "element", .meaning = "Element shape."}, cell_words, m.element);
+    word(v, {.name = "element", .meaning = element_meaning}, cell_words, m.element);
     static const Words patterns{"quad", "triangle", "hybrid"};
     word(v,
          {.name = "pattern",
@@ -93,7 +94,7 @@ void describe(Visitor& v, HalfTubeMesh& m) {
                  .range = divisions_range,
                  .largest_product = most_elements},
                 m.divisions);
-    word(v, {.name = "element", .meaning = "Element shape."}, cell_words, m.element);
+    word(v, {.name = "element", .meaning = element_meaning}, cell_words, m.element);
 }
 
 void describe(Visitor& v, ContactorMesh& m) {
@@ -117,7 +118,7 @@ void describe(Visitor& v, ContactorMesh& m) {
                  .range = divisions_range,
                  .largest_product = most_elements},
                 m.divisions);
-    word(v, {.name = "element", .meaning = "Element shape."}, cell_words, m.element);
+    word(v, {.name = "element", .meaning = element_meaning}, cell_words, m.element);
 }
 
 void describe_portion(Visitor& v, Portion& portion) {
@@ -237,7 +238,8 @@ void describe(Visitor& v, CadMesh& m) {
                .meaning = "Elements that a full circle of a curved face has at least; 0: curvature does not count.",
                .range = {.low = 0, .high = 1000}},
               m.per_circle);
-    v.flag({.name = "quadratic", .meaning = "Tetrahedra of ten nodes, with their middle nodes on the geometry."},
+    v.flag({.name = "quadratic",
+            .meaning = "Tetrahedra of ten nodes, with their middle nodes on the geometry; no contact on them."},
            m.quadratic);
     describe_share(v, m);
 }

@@ -14,7 +14,7 @@ const Words body_fields{"displacement", "velocity",   "acceleration", "stress", 
 const Words slave_fields{"gap",       "contact_force", "normal_stress",       "slip",         "status",      "normal",
                          "slip_rate", "area",          "tangential_traction", "friction_use", "master_facet"};
 const Words master_fields{"contact_force", "normal_stress"};
-const Words reductions{"mean", "max", "min", "sum"};
+const Words reductions{"mean", "max", "min", "sum", "area_mean"};
 
 void body(Visitor& v, std::string& name) {
     v.text({.name = "body", .meaning = "Body.", .required = true, .names = Names::body}, name);
@@ -30,8 +30,10 @@ void fields(Visitor& v, const Words& vocabulary, std::vector<std::string>& names
     v.words({.name = "fields", .meaning = "Fields, see docs/output.md.", .default_text = usual}, vocabulary, names);
 }
 void reduce(Visitor& v, std::vector<std::string>& names, const char* usual) {
-    v.words({.name = "reduce", .meaning = "What becomes of the nodes' values.", .default_text = usual}, reductions,
-            names);
+    v.words({.name = "reduce",
+             .meaning = "What becomes of the nodes' values; area_mean weighs them with the areas that belong to them.",
+             .default_text = usual},
+            reductions, names);
 }
 void samples(Visitor& v, int& count) {
     v.integer({.name = "samples", .meaning = "Places, both ends among them.", .range = {.low = 2, .high = 100000}},

@@ -26,12 +26,7 @@ void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model
     Field x(u.size());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = model.X[i] + u[i];
     for (const FollowerLoad& load : pressures)
-        for (const mesh::Facet& facet : *load.facets) {
-            const auto forces = fe::pressure_forces(facet, x, load.start);
-            for (int c = 0; c < facet.count; ++c)
-                f[static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(c)])] +=
-                    forces[static_cast<std::size_t>(c)];
-        }
+        for (const mesh::SurfaceFace& face : *load.faces) fe::add_pressure_forces(face, x, load.start, f);
 }
 
 BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads)
@@ -135,9 +130,8 @@ bool BodyForces::linearise(const Field& u) {
     Field x(u.size());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = model_.X[i] + u[i];
     for (const FollowerLoad& load : pressures_)
-        for (const mesh::Facet& facet : *load.facets)
-            tangent_.add({facet.nodes.begin(), facet.nodes.begin() + facet.count},
-                         fe::pressure_tangent(facet, x, factor * load.end));
+        for (const mesh::SurfaceFace& face : *load.faces)
+            tangent_.add({face.begin(), face.end()}, fe::pressure_tangent(face, x, factor * load.end));
     return true;
 }
 

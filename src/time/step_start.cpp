@@ -35,7 +35,7 @@ StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, co
     for (const FollowerPressure& pressure : stage.follower_pressures) {
         const double now =
             pressure.course >= 0 ? value[pressure.course] : pressure.start + ramp * (pressure.end - pressure.start);
-        load.pressures.push_back({&pressure.facets, now, now});
+        load.pressures.push_back({&pressure.faces, now, now});
     }
     load.prescribed = prescribed_start;
     for (Index node = 0; node < model_.nodes(); ++node)

@@ -1,8 +1,13 @@
 #include "deck/imported.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/deck/import_deck.hpp"
+#include "osculate/mesh/generators.hpp"
 #include "osculate/mesh/mesh_error.hpp"
+#include "osculate/mesh/surface_faces.hpp"
+#include "osculate/scene/reader.hpp"
 
 #include <gmock/gmock.h>
+#include <map>
 
 namespace osculate::deck {
 namespace {
@@ -58,6 +63,50 @@ TEST_F(Importing, ForcesOnNodesAreThePressureThatTheyAreOf) {
     const ImportedScene uneven = import("*STEP\n*STATIC\n*CLOAD\nLid,3,-200\n15,3,-1\n*END STEP\n");
     EXPECT_TRUE(scene::parse_scene(uneven.text, "uneven.yaml").stages.at(0).second.pressure.empty());
     EXPECT_THAT(uneven.left_out, Contains(AllOf(HasSubstr("*CLOAD on 4 nodes"), HasSubstr("one pressure"))));
+}
+
+/// A block of ten-node tetrahedra, 2 mm each way, standing on its floor; its nodes as Lid, Floor, All.
+std::string deck_of_tet10s(const mesh::Mesh& block) {
+    std::string text = "*NODE, NSET=All\n", lid = "*NSET, NSET=Lid\n", floor = "*NSET, NSET=Floor\n";
+    for (Index n = 0; n < block.node_count(); ++n) {
+        const Vec3& X = block.nodes[n];
+        const std::string id = std::to_string(n + 1);
+        text += id + "," + std::to_string(X.x()) + "," + std::to_string(X.y()) + "," + std::to_string(X.z()) + "\n";
+        if (X.z() == 2) lid += id + ",\n";
+        if (X.z() == 0) floor += id + ",\n";
+    }
+    text += "*ELEMENT, TYPE=C3D10, ELSET=E\n";
+    for (Index e = 0; e < block.blocks[0].size(); ++e) {
+        text += std::to_string(e + 1);
+        for (std::size_t a = 0; a < 10; ++a)
+            text += "," + std::to_string(block.blocks[0].connectivity[10 * static_cast<std::size_t>(e) + a] + 1);
+        text += "\n";
+    }
+    return text + lid + floor +
+           "*MATERIAL, NAME=M\n*ELASTIC\n210000.,.3\n*SOLID SECTION, ELSET=E, MATERIAL=M\n"
+           "*BOUNDARY\nFloor,1,3\n";
+}
+
+TEST_F(Importing, ForcesOnSixNodeFacesAreThoseOfAPressureOnNodesMidwayAlone) {
+    // 3 MPa on two triangles of 2 mm^2: 2 N on every node midway, twice where both meet, and nothing on corners
+    const mesh::Mesh block = mesh::make_block({0, 0, 0}, {2, 2, 2}, {1, 1, 1}, mesh::CellType::tet10);
+    std::map<Index, double> force;
+    for (const mesh::SurfaceFace& face : mesh::surface_faces(block, block.surfaces.at("z_max")))
+        for (std::size_t i = 3; i < 6; ++i) force[face.nodes[i]] -= 2;
+    ASSERT_EQ(force.size(), 5u);
+    std::string loads = "*STEP\n*STATIC\n*CLOAD\n";
+    for (const auto& [node, f] : force) loads += std::to_string(node + 1) + ",3," + std::to_string(f) + "\n";
+    const ImportedScene imported = import(loads + "*END STEP\n", DeckUnits::mm, deck_of_tet10s(block));
+    const scene::Scene scene = checked(imported);
+    ASSERT_EQ(scene.stages.at(0).second.pressure.size(), 1u) << imported.text;
+    EXPECT_EQ(scene.stages[0].second.pressure[0].first, "Lid");
+    EXPECT_NEAR(scene.stages[0].second.pressure[0].second.value(), 3e6, 1e-3);
+    for (auto& [node, f] : force) f = -2; // as of four triangles each: no pressure does this
+    loads = "*STEP\n*STATIC\n*CLOAD\n";
+    for (const auto& [node, f] : force) loads += std::to_string(node + 1) + ",3," + std::to_string(f) + "\n";
+    const ImportedScene uneven = import(loads + "*END STEP\n", DeckUnits::mm, deck_of_tet10s(block));
+    EXPECT_TRUE(scene::parse_scene(uneven.text, "uneven.yaml").stages.at(0).second.pressure.empty());
+    EXPECT_THAT(uneven.left_out, Contains(AllOf(HasSubstr("*CLOAD on 5 nodes"), HasSubstr("one pressure"))));
 }
 
 TEST_F(Importing, DrivenNodesFollowTheirSteps) {

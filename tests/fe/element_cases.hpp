@@ -74,14 +74,13 @@ inline Eigen::Matrix3Xd distorted_element(mesh::CellType type, double amount = 0
     return A * X;
 }
 
-/// Faces of a cell, outward, in VTK's node order.
+/// Faces of a cell, outward, in the order of mesh::SurfaceFace.
 inline std::vector<std::vector<Index>> cell_faces(mesh::CellType type) {
     switch (type) {
     case mesh::CellType::tet4: return {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}};
     case mesh::CellType::wedge6: return {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
-    case mesh::CellType::tet10: // four facets per face
-        return {{0, 4, 7}, {4, 1, 8}, {7, 8, 3}, {4, 8, 7}, {1, 5, 8}, {5, 2, 9}, {8, 9, 3}, {5, 9, 8},
-                {2, 6, 9}, {6, 0, 7}, {9, 7, 3}, {6, 7, 9}, {0, 6, 4}, {6, 2, 5}, {4, 5, 1}, {6, 5, 4}};
+    case mesh::CellType::tet10: // corners, then the nodes midway
+        return {{0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {2, 0, 3, 6, 7, 9}, {0, 2, 1, 6, 5, 4}};
     case mesh::CellType::hex8: break;
     }
     return {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};

@@ -69,7 +69,7 @@ double cylinder_ratio(const ElementCase& element, double nu) {
         mesh::Facet bore;
         bore.count = 4;
         bore.nodes = {grid.node(0, j, 0), grid.node(0, j, 1), grid.node(0, j + 1, 1), grid.node(0, j + 1, 0)};
-        const auto forces = pressure_forces(bore, positions, pressure);
+        const auto forces = pressure_forces(mesh::plane_face(bore), positions, pressure);
         for (std::size_t i = 0; i < 4; ++i) f.col(bore.nodes[i]) += forces[i];
     }
     const Eigen::Matrix3Xd u = grid.solve(fixed, Eigen::Matrix3Xd::Zero(3, grid.X.cols()), f);

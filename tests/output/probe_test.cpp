@@ -1,3 +1,4 @@
+#include "osculate/fe/reference_element.hpp"
 #include "osculate/output/csv_reader.hpp"
 #include "osculate/output/probe.hpp"
 #include "osculate/output/probe_file.hpp"
@@ -116,6 +117,40 @@ TEST(NodesProbe, ReducesWhatHasAValue) {
     const auto row = slaves->rows(blocks.snapshot())[0];
     EXPECT_NEAR(row[0], -0.01, round_off) << "those without a partner left out";
     EXPECT_NEAR(row[3], 400, 1e-9);
+}
+
+TEST(NodesProbe, TakesTheMeanOverTheAreaByTheShapeFunctions) {
+    for (const mesh::CellType type : {mesh::CellType::hex8, mesh::CellType::tet10}) {
+        model::Model model;
+        model::Body body{"block", mesh::make_block({0, 0, 0}, {2, 1, 1}, {2, 1, 1}, type), 0, {}, 0};
+        for (Vec3& X : body.mesh.nodes) X.x() = X.x() * (1 + X.x()) / 3; // elements of unlike sizes, 0 to 2
+        if (type == mesh::CellType::tet10)                               // with straight edges
+            for (std::size_t e = 0; e < static_cast<std::size_t>(body.mesh.element_count()); ++e) {
+                const Index* cell = body.mesh.blocks.front().connectivity.data() + 10 * e;
+                for (std::size_t m = 0; m < 6; ++m)
+                    body.mesh.nodes[cell[4 + m]] = (body.mesh.nodes[cell[fe::Tet10::edges[m][0]]] +
+                                                    body.mesh.nodes[cell[fe::Tet10::edges[m][1]]]) /
+                                                   2;
+            }
+        model::Set top{"top", 0, {}, body.mesh.surfaces.at("z_max")};
+        for (Index n = 0; n < body.mesh.node_count(); ++n)
+            if (body.mesh.nodes[n].z() == 1) top.nodes.push_back(n);
+        model.X = body.mesh.nodes;
+        model.bodies.push_back(std::move(body));
+        model::State state;
+        // what the elements hold exactly: x for hexahedra, x^2 for ten nodes
+        const bool quadratic = type == mesh::CellType::tet10;
+        for (const Vec3& X : model.X) state.u.emplace_back(quadratic ? X.x() * X.x() : X.x(), 0, 0);
+        const auto probe = make_nodes_probe(model, top, {"displacement"}, {"area_mean"});
+        EXPECT_EQ(names(*probe).front(), "area_mean_displacement_x [m]");
+        EXPECT_NEAR(probe->rows(Snapshot(model, state, {}))[0][0], quadratic ? 4.0 / 3 : 1, round_off);
+        top.facets.clear();
+        EXPECT_THROW((void)make_nodes_probe(model, top, {"displacement"}, {"area_mean"}), std::invalid_argument);
+    }
+    const TwoBlocks blocks; // all slave nodes have the same area
+    const auto pair = make_slave_nodes_probe(blocks.model, 0, {"normal_stress"}, {"mean", "area_mean"});
+    const auto row = pair->rows(blocks.snapshot())[0];
+    EXPECT_NEAR(row[1], row[0], round_off * row[0]);
 }
 
 TEST(SectionForceProbe, CarriesTheStressOfTheSection) {

@@ -83,7 +83,7 @@ TEST(FollowerPressure, IsTheCauchyStressOfTheBlock) {
         const double a = (low + high) / 2, P = neo_hookean_tension(1e6, 0.3, a, width);
         (P / (width * width) < -p ? low : high) = a;
     }
-    for (const char* element : {"hex8", "tet4"}) {
+    for (const char* element : {"hex8", "tet4", "tet10"}) {
         support::SceneRun run;
         support::run_scene(run, scene_file("squeezed", stretched_block),
                            {{"bodies.block.mesh.block.element", element},
@@ -106,13 +106,13 @@ TEST(FollowerPressure, WorksOverTheStepWithTheMeanOfItsForcesAtBothEnds) {
     double swept = 0; // m^3
     std::vector<Vec3> before(run.plan.model.X.size(), Vec3::Zero());
     for (const auto& step : run.steps) {
-        for (const auto& facet : run.plan.stages[0].follower_pressures[0].facets)
+        for (const auto& face : run.plan.stages[0].follower_pressures[0].faces)
             for (const std::vector<Vec3>* u : {&std::as_const(before), &step.state.u}) {
                 std::vector<Vec3> x = run.plan.model.X;
                 for (std::size_t i = 0; i < x.size(); ++i) x[i] += (*u)[i];
-                const auto f = fe::pressure_forces(facet, x, 1);
-                for (int c = 0; c < facet.count; ++c)
-                    swept += 0.5 * f[c].dot(step.state.u[facet.nodes[c]] - before[facet.nodes[c]]);
+                const auto f = fe::pressure_forces(face, x, 1);
+                for (int c = 0; c < face.count; ++c)
+                    swept += 0.5 * f[c].dot(step.state.u[face.nodes[c]] - before[face.nodes[c]]);
             }
         before = step.state.u;
     }

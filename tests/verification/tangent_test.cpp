@@ -95,7 +95,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     }
     constexpr double dt = 0.01; // s: inertia and stiffness weigh about the same
     for (const auto& pressure : plan.stages[1].follower_pressures)
-        load.pressures.push_back({&pressure.facets, pressure.end / 2, pressure.end});
+        load.pressures.push_back({&pressure.faces, pressure.end / 2, pressure.end});
     equilibrium.begin_attempt(state, load, dt);
     equilibrium.set_statuses(statuses, time::StatusRule::frozen, false);
     Vector z = equilibrium.unknowns(u, state.contact);

@@ -1,24 +1,36 @@
 #pragma once
-/// Surface integrals over one facet at given nodal positions.
+/// Surface integrals over one facet or one face of an element at given nodal positions.
 
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/mesh.hpp"
+#include "osculate/mesh/surface_faces.hpp"
 
 #include <array>
 #include <vector>
 
 namespace osculate::fe {
 
-/// Tributary areas, integral of N_i dA, m^2, in the order of facet.nodes; zero past facet.count. Exact for triangles and
-/// flat quadrilaterals, 2 x 2 Gauss otherwise.
+/// Tributary areas, integral of N_i dA, m^2, in the order of face.nodes; zero past face.count. Exact for triangles and
+/// flat quadrilaterals, 2 x 2 Gauss otherwise; exact for straight six-node faces, where corners have none and middle nodes a
+/// third each, by a rule of degree four on curved ones.
+[[nodiscard]] std::array<double, 6> tributary_areas(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions);
+/// The same with the facet's own shape functions: not what belongs to the nodes of a six-node face.
 [[nodiscard]] std::array<double, 4> tributary_areas(const mesh::Facet& facet, const std::vector<Vec3>& positions);
 
-/// Consistent nodal forces of a pressure p (Pa), -p times the integral of N_i n dA, N, in the order of facet.nodes; zero
-/// past facet.count. n points out of the body: p > 0 pushes into it. Exact, warped quadrilaterals included.
-[[nodiscard]] std::array<Vec3, 4> pressure_forces(const mesh::Facet& facet, const std::vector<Vec3>& positions,
-                                                  double pressure);
+/// Area of a face, m^2: the sum of its tributary areas.
+[[nodiscard]] double area(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions);
 
-/// Derivative of pressure_forces (3n x 3n, n = facet.count) by the positions, N/m; not symmetric.
-[[nodiscard]] Matrix pressure_tangent(const mesh::Facet& facet, const std::vector<Vec3>& positions, double pressure);
+/// Consistent nodal forces of a pressure p (Pa), -p times the integral of N_i n dA, N, in the order of face.nodes; zero
+/// past face.count. n points out of the body: p > 0 pushes into it. Exact, warped quadrilaterals and curved six-node faces
+/// included.
+[[nodiscard]] std::array<Vec3, 6> pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions,
+                                                  double pressure);
+/// Adds them to the forces of all nodes, N.
+void add_pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, double pressure,
+                         std::vector<Vec3>& forces);
+
+/// Derivative of pressure_forces (3n x 3n, n = face.count) by the positions, N/m; not symmetric.
+[[nodiscard]] Matrix pressure_tangent(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions,
+                                      double pressure);
 
 } // namespace osculate::fe

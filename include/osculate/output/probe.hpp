@@ -57,7 +57,9 @@ using FieldNames = std::vector<std::string>;
 [[nodiscard]] std::unique_ptr<Probe> make_contact_line_probe(const model::Model& model, Index pair, const Vec3& from,
                                                              const Vec3& to, int samples, const FieldNames& fields);
 
-/// Fields of nodes reduced to one number per component: mean, max, min or sum, of nodes that have a value.
+/// Fields of nodes reduced to one number per component: mean, max, min or sum, of nodes that have a value, or area_mean: the
+/// mean over the set's facets, undeformed, as the elements' shape functions have the field between nodes.
+/// @throws std::invalid_argument where area_mean is asked for and the set has no facets
 [[nodiscard]] std::unique_ptr<Probe> make_nodes_probe(const model::Model& model, const model::Set& set,
                                                       const FieldNames& fields,
                                                       const std::vector<std::string>& reductions);

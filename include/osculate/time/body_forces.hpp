@@ -13,10 +13,10 @@ struct BodyWork {
     double follower = 0; ///< of the follower pressures on the bodies
 };
 
-/// A pressure that follows its facets over a step.
+/// A pressure that follows its faces over a step.
 struct FollowerLoad {
-    const std::vector<mesh::Facet>* facets = nullptr; ///< global nodes
-    double start = 0, end = 0;                        ///< Pa
+    const std::vector<mesh::SurfaceFace>* faces = nullptr; ///< global nodes
+    double start = 0, end = 0;                             ///< Pa
 };
 
 /// Springs that hold every node of all bodies to where it was, in proportion to its share of its body's volume: the forces

@@ -1,7 +1,7 @@
 #pragma once
 /// One stage as the stepper sees it.
 
-#include "osculate/mesh/mesh.hpp"
+#include "osculate/mesh/surface_faces.hpp"
 #include "osculate/model/constraints.hpp"
 #include "osculate/time/integrator.hpp"
 #include "osculate/time/step_control.hpp"
@@ -35,9 +35,9 @@ struct CourseForce {
 
 /// A pressure on the current area, along the current normal.
 struct FollowerPressure {
-    std::vector<mesh::Facet> facets; ///< global nodes
-    double start = 0, end = 0;       ///< Pa, ramped as the stage says
-    Index course = -1;               ///< of the stage, that it follows instead
+    std::vector<mesh::SurfaceFace> faces; ///< global nodes
+    double start = 0, end = 0;            ///< Pa, ramped as the stage says
+    Index course = -1;                    ///< of the stage, that it follows instead
 };
 
 struct Stage {

@@ -2,6 +2,7 @@
 
 #include "app/fault.hpp"
 #include "app/plan/mesh_share.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ std::string describe_mesh(const MeshCommand& command) {
         for (const auto& [name, cells] : raw.parts) fmt::format_to(out, "part {}: {} elements\n", name, cells.size());
         for (const auto& [name, facets] : m.surfaces) {
             double area = 0;
-            for (const mesh::Facet& facet : facets) area += mesh::facet_area_vector(facet, m.nodes).norm();
+            for (const mesh::SurfaceFace& face : mesh::surface_faces(m, facets)) area += fe::area(face, m.nodes);
             fmt::format_to(out, "surface {}: {} facets, area {:.6g}\n", name, facets.size(), area);
         }
         for (const auto& [name, nodes] : m.node_sets) fmt::format_to(out, "nodes {}: {}\n", name, nodes.size());

@@ -13,6 +13,7 @@
 #include "osculate/fe/facet_quadrature.hpp"
 #include "osculate/mesh/quality.hpp"
 #include "osculate/mesh/select.hpp"
+#include "osculate/mesh/surface_faces.hpp"
 #include "osculate/scene/nearest.hpp"
 #include "osculate/time/collision_check.hpp"
 
@@ -160,6 +161,12 @@ private:
         throw InternalError("the scene names a set it does not have");
     }
 
+    /// Faces of a set, global nodes.
+    std::vector<mesh::SurfaceFace> faces(const model::Set& set) const {
+        const model::Body& body = plan_.model.bodies[static_cast<std::size_t>(set.body)];
+        return mesh::surface_faces(body.mesh, set.facets, body.first_node);
+    }
+
     /// A part that the mesh names; one fault when it does not.
     mesh::Region select(const std::string& set_name, const std::string& body, const scene::SelectNamed& s,
                         const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
@@ -252,7 +259,7 @@ private:
                 const auto was = before.follower_pressure.find(set_name);
                 const bool known = was != before.follower_pressure.end();
                 stage.follower_pressures.push_back(
-                    {set(set_name).facets, known ? ramped(was->second) : 0, ramped(value),
+                    {faces(set(set_name)), known ? ramped(was->second) : 0, ramped(value),
                      value.is_value() ? -1 : courses.index("follower_pressure." + set_name, value)});
             }
             for (const auto& [key, loaded] :
@@ -278,10 +285,8 @@ private:
     }
 
     void add_pressure(const std::string& set_name, double pressure, std::vector<Vec3>& force) const {
-        for (const mesh::Facet& facet : set(set_name).facets) {
-            const auto f = fe::pressure_forces(facet, plan_.model.X, pressure);
-            for (int c = 0; c < facet.count; ++c) force[facet.nodes[c]] += f[c];
-        }
+        for (const mesh::SurfaceFace& face : faces(set(set_name)))
+            fe::add_pressure_forces(face, plan_.model.X, pressure, force);
     }
 
     /// Loads that follow no course.
@@ -395,6 +400,14 @@ private:
         }
     }
 
+    /// How many facets of a set belong to six-node faces.
+    Index facets_of_six_node_faces(const model::Set& set) const {
+        const auto& blocks = plan_.model.bodies[static_cast<std::size_t>(set.body)].mesh.blocks;
+        return static_cast<Index>(std::ranges::count_if(set.facets, [&](const mesh::Facet& facet) {
+            return blocks[static_cast<std::size_t>(facet.block)].type == mesh::CellType::tet10;
+        }));
+    }
+
     void add_pairs() {
         const bool paths = std::ranges::any_of(plan_.stages, &time::Stage::follow_paths);
         for (const auto& [name, spec] : scene_.contact) {
@@ -405,6 +418,16 @@ private:
             for (const auto& [part, group] : {std::pair{".slave", &slave}, std::pair{".master.set", &master}})
                 if (group->facets.empty()) {
                     faults_.push_back(fault(key + part, "a set with facets", "a set of nodes that cover no facet"));
+                    broken = true;
+                } else if (const Index six = facets_of_six_node_faces(*group); six > 0) {
+                    // Their corners carry nothing under a uniform pressure, but contact has one law and one share of the
+                    // area per node: linear shares on them would press with 0.8 to 1.7 times the pressure.
+                    faults_.push_back(
+                        fault(key + part,
+                              "facets of hex8, wedge6 or tet4 elements (tet10 carries loads, but no contact: mesh this "
+                              "body with `element: hex8` or `tet4`, `cad: {quadratic: false}` or C3D4)",
+                              fmt::format("{} of its {} facets are parts of faces of tet10 elements of body '{}'", six,
+                                          group->facets.size(), plan_.model.bodies[group->body].name)));
                     broken = true;
                 }
             if (broken) continue;

@@ -77,17 +77,17 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
     const bool gravity = !scene.gravity.isZero(0);
     list.say("gravity", gravity, gravity ? "on every body with a density" : "not given",
              {0, gravity ? static_cast<double>(plan.stages.size()) : 0, "sum(s) over all elements, once"});
-    double facets = 0, values = 0;
+    double faces = 0, values = 0;
     for (const time::Stage& stage : plan.stages) {
         double own = 0;
         for (const time::FollowerPressure& pressure : stage.follower_pressures)
-            own += static_cast<double>(pressure.facets.size());
-        facets = std::max(facets, own);
+            own += static_cast<double>(pressure.faces.size());
+        faces = std::max(faces, own);
         values = std::max(values, static_cast<double>(stage.courses.size()));
     }
-    list.say("follower pressure", facets > 0,
-             facets > 0 ? "forces and tangent anew at every iterate" : "no pressure follows",
-             {0, facets, "facets an iteration"});
+    list.say("follower pressure", faces > 0,
+             faces > 0 ? "forces and tangent anew at every iterate" : "no pressure follows",
+             {0, faces, "faces an iteration"});
     list.say("courses over time", values > 0,
              values > 0 ? "load(s) and motion(s) by tables or expressions"
                         : "every load and motion ramps or jumps to its value",

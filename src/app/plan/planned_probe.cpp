@@ -62,6 +62,9 @@ std::pair<std::string, std::string> place_of(const scene::Probe& spec) {
             [](const scene::SectionForceProbe& p) {
                 return std::pair{std::string("section_force.point"), "a plane that cuts body '" + p.body + "'"};
             },
+            [](const scene::NodesProbe&) {
+                return std::pair{std::string("nodes.set"), std::string("a set with facets, for area_mean")};
+            },
             [](const auto&) {
                 return std::pair{std::string(), std::string()};
             }},

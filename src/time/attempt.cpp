@@ -19,6 +19,7 @@ std::string name(Reason reason) {
     case Reason::error: return "error";
     case Reason::energy: return "energy";
     case Reason::collision: return "collision";
+    case Reason::closing_energy: return "closing_energy";
     case Reason::forced: return "forced";
     }
     return "";

@@ -32,6 +32,18 @@ double energy_from_nowhere(const Ledger& before, const Ledger& after) {
     return energy > 0 ? std::max({0.0, free(after) - free(before), after.contact - before.contact}) / energy : 0;
 }
 
+/// All energy there has been up to a ledger's state, as far as contact and integrator have not brought it in, J.
+double energy_so_far(const Ledger& ledger) {
+    return ledger.kinetic + ledger.strain + ledger.friction + ledger.damping + std::max(0.0, ledger.algorithmic) +
+           std::max(0.0, -ledger.contact);
+}
+
+/// StepEvidence::closing_energy: a force at the end of a step has done work along the whole gap that it has closed.
+double closing_energy(const Ledger& before, const Ledger& after) {
+    const double energy = std::max(energy_so_far(before), energy_so_far(after));
+    return energy > 0 ? std::max(0.0, before.contact - after.contact) / energy : 0;
+}
+
 /// Ends of the stage's equal steps and corners of its courses, ascending.
 std::vector<double> times_to_hit(const Stage& stage, double t_start) {
     std::vector<double> corners;
@@ -136,6 +148,22 @@ double Stepper::local_error(const Dynamics& dynamics, const Constraints& constra
         largest = std::max(largest, error);
     }
     return largest;
+}
+
+double Stepper::velocity_error(const Dynamics& dynamics, const Constraints& constraints, const std::vector<Vec3>& a,
+                               double dt, double energy) const {
+    if (!(energy > 0)) return 0;
+    std::vector<Vec3> error(a.size()), momentum(a.size(), Vec3::Zero());
+    for (Index i = 0; i < model_.nodes(); ++i) {
+        Vec3 change = constraints.to_local(i, a[i] - state_.a[i]);
+        for (int k = 0; k < 3; ++k)
+            if (constraints.constraint(i, k) != nullptr) change(k) = 0; // that of a held direction is given
+        error[i] = constraints.to_global(i, dynamics.integrator.error * dt * change);
+    }
+    model_.mass(dynamics.lumped_mass).multiply_add(error, momentum, options_.threads);
+    double twice = 0;
+    for (std::size_t i = 0; i < error.size(); ++i) twice += error[i].dot(momentum[i]);
+    return std::sqrt(std::max(0.0, twice) / (2 * energy));
 }
 
 void Stepper::refresh_patches() {
@@ -321,6 +349,12 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
                 if (dynamics != nullptr) {
                     if (std::isfinite(stage.limits.error_tolerance))
                         evidence.local_error = local_error(*dynamics, constraints, next.a, dt, worst_in_time);
+                    if (std::isfinite(stage.limits.velocity_error) && !not_finite)
+                        evidence.velocity_error =
+                            velocity_error(*dynamics, constraints, next.a, dt,
+                                           std::max(energy_so_far(ledger_), energy_so_far(ledger)));
+                    if (std::isfinite(stage.limits.closing_energy) && !not_finite)
+                        evidence.closing_energy = closing_energy(ledger_, ledger);
                     if (touches(state_) || touches(next)) evidence.energy_jump = energy_from_nowhere(ledger_, ledger);
                 }
             }
@@ -332,7 +366,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
 
         Attempt attempt = diary(decision, result, equilibrium, time, dt, iterations);
         if (not_finite) explain(*not_finite, model_, attempt);
-        if (decision.reason == Reason::error) name_node(model_, worst_in_time, attempt);
+        if (decision.reason == Reason::error && worst_in_time >= 0) name_node(model_, worst_in_time, attempt);
         attempts.push_back(attempt);
         if (decision.verdict == Verdict::accept) {
             equilibrium.commit();

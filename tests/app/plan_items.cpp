@@ -38,7 +38,7 @@ finite strain                . . . x . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .
-time error control           . . . . . . . . . . . . . .
+time error control           x x x x x . . . . x x . . .
 massless contact nodes       x x x x x . . . . x x . . .
 gravity                      x x . x . . . . . . . . . .
 follower pressure            . . . . . . . . . . . . . .

@@ -31,6 +31,7 @@ struct Summary {
         double force_balance = 0;                            ///< of the forces that act
         double penetration = 0, penetration_m = 0;           ///< in facet sizes; m
         std::optional<double> energy_balance, energy_growth; ///< of the largest energy; without a dynamic step none
+        std::optional<double> closing_loss;                  ///< alike: taken by gaps that closed
     };
     /// Whether the run came to what its scene expects.
     struct Expectation {
@@ -53,6 +54,7 @@ struct Summary {
     int threads = 1;
     std::vector<std::string> plan;
     std::optional<Checks> checks;
+    std::vector<std::string> warnings;      ///< sentences; left out of the file when there are none
     std::optional<Expectation> expectation; ///< where the scene has one, when the run has ended
 };
 

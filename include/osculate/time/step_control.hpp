@@ -34,13 +34,15 @@ struct GapEvidence {
 /// before the equilibrium with contact is solved, and the whole step once more afterwards.
 struct StepEvidence {
     std::vector<GapEvidence> gaps;
-    bool solved = true;     ///< false: nothing else is looked at
-    bool hopeless = false;  ///< not solved, and no smaller step would be
-    int iterations = 0;     ///< of all solves of the attempt
-    double residual = 0;    ///< relative
-    double local_error = 0; ///< Integrator::local_error(), m
-    double energy_jump = 0; ///< in the unit of its tolerance, >= 0
-    double collision = 1;   ///< fraction of the step at which a path first goes through a surface; 1: none does
+    bool solved = true;        ///< false: nothing else is looked at
+    bool hopeless = false;     ///< not solved, and no smaller step would be
+    int iterations = 0;        ///< of all solves of the attempt
+    double residual = 0;       ///< relative
+    double local_error = 0;    ///< Integrator::local_error(), m
+    double energy_jump = 0;    ///< in the unit of its tolerance, >= 0
+    double velocity_error = 0; ///< Stepper::velocity_error(), of the speed that all energy would give
+    double closing_energy = 0; ///< taken by gaps that closed, of all energy there has been
+    double collision = 1;      ///< fraction of the step at which a path first goes through a surface; 1: none does
     Index collision_pair = -1, collision_slave = -1; ///< whose path that is
     /// Deepest slave node of a mortar pair that lies inside the master where its facets overlap nothing, so that no
     /// average sees it; pair -1: there is none. In the solution, not in the trial.
@@ -63,6 +65,8 @@ struct StepLimits {
     double unseen_interpenetration = 0.01; ///< of GapEvidence::length, for StepEvidence::unseen
     double error_tolerance = std::numeric_limits<double>::infinity(); ///< m
     double energy_tolerance = std::numeric_limits<double>::infinity();
+    double velocity_error = std::numeric_limits<double>::infinity(); ///< of a step that can be cut, as the next
+    double closing_energy = std::numeric_limits<double>::infinity();
 };
 
 struct Decision {
@@ -70,7 +74,8 @@ struct Decision {
     Reason reason = Reason::none;
     double dt = 0;     ///< of the next step after accept, of the same step after retry, s
     double lambda = 1; ///< fraction of a rejected attempt's dt that was called for, floor included, dt_min not
-    double value = 0;  ///< what decided: gap g1, residual, local error, energy jump or fraction; accepted: the residual
+    double value =
+        0; ///< what decided: gap g1, residual, local error, energy jump, share or fraction; accepted: the residual
     Index pair = -1, slave = -1; ///< governing point of an interpenetration or a collision
     bool unseen = false;         ///< an interpenetration that no average sees
     std::string cause;           ///< in words; empty when accepted
@@ -80,7 +85,8 @@ struct Decision {
 [[nodiscard]] bool cannot_be_cut(const StepLimits& limits, double dt, int repeats);
 
 /// The smallest lambda of all objections governs, among equals the first of: solver, interpenetration, collision, error,
-/// energy. A cut never goes below dt_min, which is tried before giving up.
+/// velocity_error, energy, closing_energy. A cut never goes below dt_min, which is tried before giving up. Velocities' error
+/// and closing gaps only cut: at dt_min they are no objection, and RunChecks reports what they cost.
 /// @param dt       of the attempt, s
 /// @param repeats  of this step so far, forced ones not counted
 [[nodiscard]] Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats);

@@ -223,6 +223,10 @@ private:
             stage.limits.in_metres = g_p.metres;
             if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
             if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
+            if (dynamic && spec.control.step_size == scene::StepSize::controlled) {
+                if (!spec.control.error_tolerance) stage.limits.velocity_error = spec.control.velocity_error;
+                stage.limits.closing_energy = spec.control.closing_energy;
+            }
             stage.follow_paths = dynamic && !scene_.contact.empty();
             stage.limits.dt_max = spec.duration / spec.steps;
             stage.limits.dt_min = scene_.solver.smallest_step * stage.limits.dt_max;

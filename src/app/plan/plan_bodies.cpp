@@ -69,13 +69,15 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
              dynamic > 0 ? "judges dynamic steps, and columns of history.csv" : every_static,
              {0, 4 * blocks, "3x3 blocks a step"});
     const auto controlled = std::ranges::count_if(plan.stages, [](const time::Stage& stage) {
-        return stage.dynamics && std::isfinite(stage.limits.error_tolerance);
+        return stage.dynamics &&
+               (std::isfinite(stage.limits.error_tolerance) || std::isfinite(stage.limits.velocity_error));
     });
     list.say("time error control", controlled > 0,
-             controlled > 0 ? fmt::format("{} stage(s) with control.error_tolerance", controlled)
-             : dynamic > 0  ? "no stage has control.error_tolerance"
-                            : every_static,
-             {0, static_cast<double>(model.nodes()), "nodes a step"});
+             controlled > 0
+                 ? fmt::format("{} stage(s) whose steps are cut for their error and for closing gaps", controlled)
+             : dynamic > 0 ? "control.step_size is fixed"
+                           : every_static,
+             {0, blocks, "3x3 blocks a step"});
     const bool asked = std::ranges::any_of(scene.stages, [](const auto& stage) {
         const auto* analysis = std::get_if<scene::DynamicAnalysis>(&stage.second.analysis);
         return analysis != nullptr && analysis->contact_mass != scene::ContactMass::kept;

@@ -27,8 +27,8 @@ namespace {
 const std::string header = "attempt,time,dt,verdict,reason,body,node,value,lambda,iterations";
 constexpr std::size_t columns = 10;
 constexpr Verdict verdicts[] = {Verdict::accept, Verdict::retry, Verdict::give_up};
-constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration, Reason::solver, Reason::error,
-                              Reason::energy, Reason::collision,        Reason::forced};
+constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration, Reason::solver,         Reason::error,
+                              Reason::energy, Reason::collision,        Reason::closing_energy, Reason::forced};
 
 struct Cell {
     std::string text;

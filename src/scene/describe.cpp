@@ -172,8 +172,8 @@ void describe(Visitor& v, StepControl& s) {
                      "closing gaps then take of the energy is a warning in summary.json."},
          sizes, s.step_size);
     v.number({.name = "velocity_error",
-              .meaning = "Estimated error of the velocities that a dynamic step may make by itself, root mean square "
-                         "over the mass, of the speed that all energy there has been would give; more cuts the step.",
+              .meaning = "Estimated error that a dynamic step may make by itself in the velocities of the bodies' "
+                         "centres, of the speed that all energy there has been would give; more cuts the step.",
               .range = range::positive},
              s.velocity_error);
     v.number({.name = "closing_energy",

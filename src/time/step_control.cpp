@@ -50,7 +50,7 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits, bool
     }
     if (!(evidence.energy_jump <= limits.energy_tolerance))
         consider(governing, {Reason::energy, limits.failure_lambda, evidence.energy_jump, nullptr});
-    if (can_be_cut && !(evidence.closing_energy <= limits.closing_energy)) {
+    if (can_be_cut && !evidence.closes_anyhow && !(evidence.closing_energy <= limits.closing_energy)) {
         // the work of a force that grows with the step along a gap that does
         const double lambda = limits.reserve * std::sqrt(limits.closing_energy / evidence.closing_energy);
         consider(governing, {Reason::closing_energy, lambda, evidence.closing_energy, nullptr});
@@ -75,7 +75,7 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
     case Reason::collision: text << "a surface is passed through at " << objection.value << " of the step"; break;
     case Reason::error:
         if (objection.of_velocity) {
-            text << "the velocities' error is " << objection.value
+            text << "the error of the centres' velocities is " << objection.value
                  << " of the speed that all energy would give, allowed is " << limits.velocity_error;
             break;
         }

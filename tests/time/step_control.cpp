@@ -268,6 +268,16 @@ TEST(StepControl, AcceptsTheSmallestStepWhateverVelocitiesAndClosingGapsLose) {
     EXPECT_EQ(judge(evidence, limits, 1, 0).reason, Reason::energy);
 }
 
+/// As where a node with mass lands: its own energy goes at once.
+TEST(StepControl, DoesNotCutForALossThatCutsDoNotLessen) {
+    StepLimits limits;
+    limits.closing_energy = 0.01;
+    StepEvidence evidence;
+    evidence.closing_energy = 0.5;
+    evidence.closes_anyhow = true;
+    EXPECT_EQ(judge(evidence, limits, 1, 1).verdict, Verdict::accept);
+}
+
 TEST(StepControl, GrowsNoFurtherThanTheErrorOfVelocitiesAdmits) {
     StepLimits limits;
     limits.velocity_error = 0.01;

@@ -34,15 +34,18 @@ struct GapEvidence {
 /// before the equilibrium with contact is solved, and the whole step once more afterwards.
 struct StepEvidence {
     std::vector<GapEvidence> gaps;
-    bool solved = true;        ///< false: nothing else is looked at
-    bool hopeless = false;     ///< not solved, and no smaller step would be
-    int iterations = 0;        ///< of all solves of the attempt
-    double residual = 0;       ///< relative
-    double local_error = 0;    ///< Integrator::local_error(), m
-    double energy_jump = 0;    ///< in the unit of its tolerance, >= 0
-    double velocity_error = 0; ///< Stepper::velocity_error(), of the speed that all energy would give
-    double closing_energy = 0; ///< taken by gaps that closed, of all energy there has been
-    double collision = 1;      ///< fraction of the step at which a path first goes through a surface; 1: none does
+    bool solved = true;     ///< false: nothing else is looked at
+    bool hopeless = false;  ///< not solved, and no smaller step would be
+    int iterations = 0;     ///< of all solves of the attempt
+    double residual = 0;    ///< relative
+    double local_error = 0; ///< Integrator::local_error(), m
+    double energy_jump = 0; ///< in the unit of its tolerance, >= 0
+    /// Error that the step makes by itself in the velocities of the bodies' centres, of the speed that all energy would
+    /// give: sqrt(sum_b |e_b|^2 m_b/(2 energy)), e_b = c dt (a - a_n), c of Integrator::local_error() and a of contact.
+    double velocity_error = 0;
+    double closing_energy = 0;  ///< taken by gaps that closed, of all energy there has been
+    bool closes_anyhow = false; ///< a longer attempt at the step lost less of it, by its length: no cut helps
+    double collision = 1;       ///< fraction of the step at which a path first goes through a surface; 1: none does
     Index collision_pair = -1, collision_slave = -1; ///< whose path that is
     /// Deepest slave node of a mortar pair that lies inside the master where its facets overlap nothing, so that no
     /// average sees it; pair -1: there is none. In the solution, not in the trial.

@@ -84,10 +84,6 @@ private:
     /// Largest of Integrator::local_error() over the nodes with mass, free directions, m. @param worst  whose it is
     [[nodiscard]] double local_error(const Dynamics& dynamics, const model::Constraints& constraints,
                                      const std::vector<Vec3>& a, double dt, Index& worst) const;
-    /// Error that a step makes in the velocities by itself: sqrt(e.M e/(2 energy)), e = c dt (a - a_n), c of
-    /// Integrator::local_error(), whose displacement error e dt is.
-    [[nodiscard]] double velocity_error(const Dynamics& dynamics, const model::Constraints& constraints,
-                                        const std::vector<Vec3>& a, double dt, double energy) const;
     void refresh_patches();
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
                                    const std::vector<Vec3>& prescribed_start, double elapsed) const;

@@ -102,7 +102,8 @@ std::vector<std::string> RunChecks::warnings() const {
     return {
         fmt::format("gaps that closed took {:.2g} of the largest energy with them, which exact contact does not: "
                     "rebounds are too slow. Smaller steps lose less: control.step_size: controlled where it is fixed, "
-                    "a smaller control.closing_energy or solver.smallest_step where it is not",
+                    "a smaller control.closing_energy or solver.smallest_step where it is not; nodes that keep their "
+                    "mass (see check) lose theirs at every landing",
                     share(closing_, energy_))};
 }
 

@@ -1,5 +1,10 @@
 #include "osculate/model/model.hpp"
 
+#include "osculate/model/moment_factors.hpp"
+
+#include <algorithm>
+#include <optional>
+
 namespace osculate::model {
 
 namespace {
@@ -36,44 +41,109 @@ BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
 } // namespace
 
 namespace {
+
+/// @param mass  (n x n) of an element
+void element_mass(const fe::ElementKernel& kernel, const Eigen::Matrix3Xd& X, double density, bool lumped,
+                  Matrix& mass) {
+    mass.setZero(kernel.nodes(), kernel.nodes());
+    if (lumped) {
+        Vector m(kernel.nodes());
+        kernel.lumped_mass(X, density, m);
+        mass.diagonal() = m;
+    } else {
+        kernel.mass(X, density, mass);
+    }
+}
+
 /// Takes the mass off the nodes marked and scales what is left to the same total.
-void redistribute(const std::vector<Index>& element, const std::vector<char>& massless, Matrix& mass) {
+/// @returns  false where nothing is left
+bool redistribute(const std::vector<Index>& element, const std::vector<char>& massless, Matrix& mass) {
     const double total = mass.sum();
-    Matrix kept = mass;
     for (Index i = 0; i < mass.rows(); ++i)
         if (massless[element[static_cast<std::size_t>(i)]] != 0) {
-            kept.row(i).setZero();
-            kept.col(i).setZero();
+            mass.row(i).setZero();
+            mass.col(i).setZero();
         }
-    const double rest = kept.sum();
-    if (rest > 0) mass = kept * (total / rest);
+    const double rest = mass.sum();
+    if (!(rest > 0)) return false;
+    mass *= total / rest;
+    return true;
 }
+
+/// Positions from the middle of a body's box in halves of its extents, so that every moment is of the size of the mass.
+struct BodyFrame {
+    Vec3 centre, half;
+    explicit BodyFrame(const Body& body) {
+        Eigen::AlignedBox3d box;
+        for (const Vec3& X : body.mesh.nodes) box.extend(X);
+        centre = box.center();
+        half = 0.5 * box.sizes();
+    }
+    [[nodiscard]] Eigen::Matrix3Xd operator()(const Eigen::Matrix3Xd& X) const {
+        return half.cwiseInverse().asDiagonal() * (X.colwise() - centre);
+    }
+};
+
+/// (elements) factors on redistribute()'s masses of a body that give it the moments it had, 0 for elements of marked
+/// nodes alone; none where there are no such factors.
+std::optional<std::vector<double>> redistribution(const Body& body, bool lumped, const std::vector<char>& massless) {
+    const BodyFrame frame(body);
+    Moments target = Moments::Zero();
+    std::vector<Moments> parts;
+    std::vector<std::size_t> element_of;
+    std::size_t elements = 0;
+    Matrix mass;
+    for_each_element(
+        body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
+            const Eigen::Matrix3Xd x = frame(X);
+            element_mass(kernel, X, body.density, lumped, mass);
+            target += moments(mass, x);
+            if (redistribute(element, massless, mass)) {
+                parts.push_back(moments(mass, x));
+                element_of.push_back(elements);
+            }
+            ++elements;
+        });
+    Eigen::Matrix<double, 10, Eigen::Dynamic> columns(10, static_cast<Index>(parts.size()));
+    for (std::size_t p = 0; p < parts.size(); ++p) columns.col(static_cast<Index>(p)) = parts[p];
+    const std::optional<Vector> found = moment_factors(columns, target);
+    if (!found) return std::nullopt;
+    std::vector<double> factors(elements, 0.0);
+    for (std::size_t p = 0; p < parts.size(); ++p) factors[element_of[p]] = (*found)(static_cast<Index>(p));
+    return factors;
+}
+
 } // namespace
 
-BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
-                          const std::vector<char>& massless) {
-    BlockMatrix M = pattern_of(bodies, nodes);
-    for (const Body& body : bodies) {
+AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
+                            const std::vector<char>& massless) {
+    AssembledMass assembled{pattern_of(bodies, nodes), {}};
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const Body& body = bodies[b];
+        const auto first = massless.begin() + (massless.empty() ? 0 : body.first_node);
+        std::optional<std::vector<double>> factors;
+        if (!massless.empty() && body.density > 0 &&
+            std::any_of(first, first + body.nodes(), [](char m) { return m != 0; })) {
+            factors = redistribution(body, lumped, massless);
+            if (!factors) assembled.kept.push_back(static_cast<Index>(b));
+        }
+        std::size_t e = 0;
         Matrix scalar, Me;
         for_each_element(
             body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
                 const Index n = kernel.nodes();
-                scalar.setZero(n, n);
-                if (lumped) {
-                    Vector m(n);
-                    kernel.lumped_mass(X, body.density, m);
-                    scalar.diagonal() = m;
-                } else {
-                    kernel.mass(X, body.density, scalar);
+                element_mass(kernel, X, body.density, lumped, scalar);
+                if (factors) {
+                    (void)redistribute(element, massless, scalar);
+                    scalar *= (*factors)[e++];
                 }
-                if (!massless.empty()) redistribute(element, massless, scalar);
                 Me.setZero(3 * n, 3 * n);
                 for (Index i = 0; i < n; ++i)
                     for (Index k = 0; k < n; ++k) Me.block<3, 3>(3 * i, 3 * k).diagonal().setConstant(scalar(i, k));
-                M.add(element, Me);
+                assembled.M.add(element, Me);
             });
     }
-    return M;
+    return assembled;
 }
 
 BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {

@@ -37,9 +37,9 @@ template <class Value, std::size_t n> Value one_of(const Value (&values)[n], con
 }
 
 constexpr time::Verdict verdicts[] = {time::Verdict::accept, time::Verdict::retry, time::Verdict::give_up};
-constexpr time::Reason reasons[] = {time::Reason::none,  time::Reason::interpenetration, time::Reason::solver,
-                                    time::Reason::error, time::Reason::energy,           time::Reason::collision,
-                                    time::Reason::forced};
+constexpr time::Reason reasons[] = {
+    time::Reason::none,   time::Reason::interpenetration, time::Reason::solver, time::Reason::error,
+    time::Reason::energy, time::Reason::collision,        time::Reason::audit,  time::Reason::forced};
 
 Json written(const time::Attempt& a) {
     return {{"attempt", a.attempt},

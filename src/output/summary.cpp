@@ -44,6 +44,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
         list["force_balance"] = checks.force_balance;
         if (checks.energy_balance) list["energy_balance"] = *checks.energy_balance;
         if (checks.energy_growth) list["energy_growth"] = *checks.energy_growth;
+        if (checks.closing_loss) list["closing_loss"] = *checks.closing_loss;
         list["penetration"] = checks.penetration;
         list["penetration_m"] = checks.penetration_m;
     }
@@ -60,6 +61,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                           {"time", audit.time},
                           {"place", audit.place}});
     }
+    if (!summary.warnings.empty()) json["warnings"] = summary.warnings;
     if (summary.expectation)
         json["expectation"] = {{"met", summary.expectation->met()}, {"misses", summary.expectation->misses}};
     write_json_atomic(path, json);

@@ -79,6 +79,7 @@ std::string checks_section(const RunFiles& files) {
         {"force_balance", "Force left over in the worst step, of the forces that act"},
         {"energy_balance", "What the energies do not add up to, of the largest energy"},
         {"energy_growth", "Kinetic plus strain energy beyond external work, of the largest energy"},
+        {"closing_loss", "Energy that gaps took when they closed, of the largest energy"},
         {"penetration", "Deepest place of a body inside another, in facet sizes"},
         {"penetration_m", "The same as a length"}};
     const json checks = object(files.summary, "checks"), expectation = object(files.summary, "expectation");
@@ -99,6 +100,8 @@ std::string checks_section(const RunFiles& files) {
                          measure(member(audit, "depth_m"), "m") + " inside the facets of '" + word(audit, "inside") +
                          "' at " + scene::engineering(member(audit, "time"), "s") + "; " +
                          measure(member(audit, "excess_m"), "m") + " more than facets of smooth surfaces bulge by."));
+    for (const json& warning : list(files.summary, "warnings"))
+        if (warning.is_string()) text += element("p", "Warning: " + escaped(warning.get<std::string>()));
     if (!expectation.empty()) {
         std::string misses;
         for (const json& miss : list(expectation, "misses"))

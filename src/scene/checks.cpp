@@ -121,6 +121,10 @@ public:
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {
         if (stage.control.error_tolerance && std::holds_alternative<StaticAnalysis>(stage.analysis))
             fault({"stages", name, "control", "error_tolerance"}, "a dynamic stage", "a static one");
+        if (stage.control.step_size == StepSize::fixed && std::holds_alternative<StaticAnalysis>(stage.analysis))
+            fault({"stages", name, "control", "step_size"}, "a dynamic stage", "a static one");
+        if (stage.control.error_tolerance && stage.control.step_size == StepSize::fixed)
+            fault({"stages", name, "control", "error_tolerance"}, "step_size: controlled", "step_size: fixed");
         const std::vector<std::string> path{"stages", name, "displacement"};
         for (const auto& [set, components] : stage.displacement) {
             const Support* support = find(supports, set);

@@ -163,9 +163,27 @@ void describe(Visitor& v, StepControl& s) {
          .range = {.low = 0, .high = 1, .open_low = true},
          .default_text = "0.05 in dynamics, 0.5 in statics"},
         s.allowed_interpenetration);
+    static const Words sizes{"controlled", "fixed"};
+    word(v,
+         {.name = "step_size",
+          .meaning = "Dynamic steps are cut, down to solver.smallest_step, until they keep velocity_error (or "
+                     "error_tolerance) and closing_energy, or they are as long as contact and the solver allow; what "
+                     "closing gaps then take of the energy is a warning in summary.json."},
+         sizes, s.step_size);
+    v.number({.name = "velocity_error",
+              .meaning = "Estimated error that a dynamic step may make by itself in the velocities of the bodies' "
+                         "centres, of the speed that all energy there has been would give; more cuts the step.",
+              .range = range::positive},
+             s.velocity_error);
+    v.number({.name = "closing_energy",
+              .meaning = "Energy that gaps which close may take in one dynamic step, of all there has been; more cuts "
+                         "the step.",
+              .range = range::positive},
+             s.closing_energy);
     v.optional_number({.name = "error_tolerance",
                        .meaning = "Estimated error of the displacement of any node that a dynamic step may make by "
-                                  "itself; more cuts the step.",
+                                  "itself; more cuts the step, and gives up at the smallest. It takes the place of "
+                                  "velocity_error.",
                        .unit = dimension::length,
                        .range = range::positive,
                        .default_text = "no bound"},

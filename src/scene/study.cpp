@@ -112,8 +112,8 @@ const std::vector<std::string>& body_columns() {
 
 const std::vector<std::string>& run_numbers() {
     static const std::vector<std::string> names{
-        "dofs",   "steps",         "rejected",       "iterations",    "cpu",        "wall",
-        "memory", "force_balance", "energy_balance", "energy_growth", "penetration"};
+        "dofs",   "steps",         "rejected",       "iterations",    "cpu",          "wall",
+        "memory", "force_balance", "energy_balance", "energy_growth", "closing_loss", "penetration"};
     return names;
 }
 

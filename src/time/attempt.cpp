@@ -17,7 +17,8 @@ std::string name(Reason reason) {
     case Reason::interpenetration: return "interpenetration";
     case Reason::solver: return "solver";
     case Reason::error: return "error";
-    case Reason::energy: return "energy";
+    case Reason::energy:
+    case Reason::closing_energy: return "energy";
     case Reason::collision: return "collision";
     case Reason::audit: return "audit";
     case Reason::forced: return "forced";

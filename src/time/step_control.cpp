@@ -13,6 +13,7 @@ struct Objection {
     double lambda = 1;
     double value = 0;
     const GapEvidence* point = nullptr; ///< of an interpenetration
+    bool of_velocity = false;           ///< a time error
 };
 
 /// The smaller lambda; among equals the one there already.
@@ -28,7 +29,8 @@ void consider_gap(Objection& governing, const GapEvidence& gap, const StepLimits
 }
 
 /// What speaks most strongly against the step. What is not a number does.
-Objection strongest(const StepEvidence& evidence, const StepLimits& limits) {
+/// @param can_be_cut  otherwise what only asks for smaller steps is silent
+Objection strongest(const StepEvidence& evidence, const StepLimits& limits, bool can_be_cut) {
     Objection governing;
     if (!evidence.solved) return {Reason::solver, limits.failure_lambda, evidence.residual, nullptr};
     for (const GapEvidence& gap : evidence.gaps) consider_gap(governing, gap, limits);
@@ -44,8 +46,17 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits) {
             limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error); // of order dt^3
         consider(governing, {Reason::error, lambda, evidence.local_error, nullptr});
     }
+    if (can_be_cut && !(evidence.velocity_error <= limits.velocity_error)) {
+        const double lambda = limits.reserve * std::sqrt(limits.velocity_error / evidence.velocity_error);
+        consider(governing, {Reason::error, lambda, evidence.velocity_error, nullptr, true});
+    }
     if (!(evidence.energy_jump <= limits.energy_tolerance))
         consider(governing, {Reason::energy, limits.failure_lambda, evidence.energy_jump, nullptr});
+    if (can_be_cut && !evidence.closes_anyhow && !(evidence.closing_energy <= limits.closing_energy)) {
+        // the work of a force that grows with the step along a gap that does
+        const double lambda = limits.reserve * std::sqrt(limits.closing_energy / evidence.closing_energy);
+        consider(governing, {Reason::closing_energy, lambda, evidence.closing_energy, nullptr});
+    }
     return governing;
 }
 
@@ -70,10 +81,19 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
              << limits.audited_depth * evidence.intrusion->length << " m";
         break;
     case Reason::error:
+        if (objection.of_velocity) {
+            text << "the error of the centres' velocities is " << objection.value
+                 << " of the speed that all energy would give, allowed is " << limits.velocity_error;
+            break;
+        }
         text << "the local time error is " << objection.value << " m, allowed is " << limits.error_tolerance << " m";
         break;
     case Reason::energy:
         text << "the energy jumps by " << objection.value << ", allowed is " << limits.energy_tolerance;
+        break;
+    case Reason::closing_energy:
+        text << "gaps that close take " << objection.value << " of all energy there has been, allowed is "
+             << limits.closing_energy;
         break;
     case Reason::none:
     case Reason::forced: break;
@@ -86,6 +106,10 @@ double next_step(const StepEvidence& evidence, const StepLimits& limits, double 
     if (repeats == 0 && !evidence.forced && evidence.iterations <= limits.easy_iterations) factor = limits.growth;
     if (evidence.local_error > 0) {
         const double admitted = limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error);
+        factor = std::min(factor, std::max(admitted, 1.0));
+    }
+    if (evidence.velocity_error > 0) {
+        const double admitted = limits.reserve * std::sqrt(limits.velocity_error / evidence.velocity_error);
         factor = std::min(factor, std::max(admitted, 1.0));
     }
     return std::min(factor * dt, limits.dt_max);
@@ -107,7 +131,7 @@ double reduction_factor(double g0, double g1, double g_p) {
 
 Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats) {
     Decision decision;
-    const Objection objection = strongest(evidence, limits);
+    const Objection objection = strongest(evidence, limits, !cannot_be_cut(limits, dt, repeats));
     if (objection.reason == Reason::none) {
         decision.value = evidence.residual;
         if (!evidence.forced) {

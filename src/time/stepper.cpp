@@ -23,6 +23,37 @@ bool touches(const model::State& state) {
     });
 }
 
+/// Masses that contact forces accelerate, and the directions in which nothing holds their bodies.
+struct CentreMasses {
+    std::vector<std::size_t> slave, master; ///< (pairs) bodies
+    std::vector<double> mass;               ///< (bodies) kg
+    std::vector<Eigen::Array<bool, 3, 1>> free;
+
+    CentreMasses(const model::Model& model, const Dynamics& dynamics, const Constraints& constraints, int threads)
+        : mass(model.bodies.size(), 0.0), free(model.bodies.size(), Eigen::Array<bool, 3, 1>::Constant(true)) {
+        std::vector<Vec3> sums(model.X.size(), Vec3::Zero());
+        model.mass(dynamics.lumped_mass).multiply_add(std::vector<Vec3>(sums.size(), Vec3::UnitX()), sums, threads);
+        constexpr double across = 1e-6; // of a unit vector: round-off of a support's axes
+        for (std::size_t b = 0; b < model.bodies.size(); ++b)
+            for (Index n = 0; n < model.bodies[b].nodes(); ++n) {
+                const Index node = model.bodies[b].first_node + n;
+                mass[b] += sums[node].x();
+                for (int k = 0; k < 3; ++k)
+                    if (constraints.constraint(node, k) != nullptr)
+                        free[b] = free[b] && constraints.frame(node).col(k).array().abs() < across;
+            }
+        const auto owner = [&](Index node) {
+            std::size_t b = 0;
+            while (b + 1 < model.bodies.size() && model.bodies[b + 1].first_node <= node) ++b;
+            return b;
+        };
+        for (const auto& pair : model.pairs) {
+            slave.push_back(owner(pair->slaves().node.front()));
+            master.push_back(owner(pair->master_nodes().front()));
+        }
+    }
+};
+
 /// What the energy of a step in which something touches has risen by beyond external work, of the kinetic and strain energy
 /// at its start. Contact may feed it through its own work, and through the integrator: a force that ends with a node's
 /// release acts on, in the formulas that take it as linear over the step, along the way that opens the gap.
@@ -30,6 +61,38 @@ double energy_from_nowhere(const Ledger& before, const Ledger& after) {
     const auto free = [](const Ledger& ledger) { return ledger.kinetic + ledger.strain - ledger.external; };
     const double energy = before.kinetic + before.strain;
     return energy > 0 ? std::max({0.0, free(after) - free(before), after.contact - before.contact}) / energy : 0;
+}
+
+/// All energy there has been up to a ledger's state, as far as contact and integrator have not brought it in, J.
+double energy_so_far(const Ledger& ledger) {
+    return ledger.kinetic + ledger.strain + ledger.friction + ledger.damping + std::max(0.0, ledger.algorithmic) +
+           std::max(0.0, -ledger.contact);
+}
+
+/// StepEvidence::closing_energy: a force at the end of a step has done work along the whole gap that it has closed.
+double closing_energy(const Ledger& before, const Ledger& after) {
+    const double energy = std::max(energy_so_far(before), energy_so_far(after));
+    return energy > 0 ? std::max(0.0, before.contact - after.contact) / energy : 0;
+}
+
+/// StepEvidence::velocity_error, of an energy. From contact forces and not from accelerations: those of a rule that damps
+/// nothing alternate for ever after a shock.
+double velocity_error(const model::Model& model, const Dynamics& dynamics, const CentreMasses& masses,
+                      const model::State& from, const model::State& to, double dt, double energy) {
+    if (!(energy > 0)) return 0;
+    std::vector<Vec3> change(model.bodies.size(), Vec3::Zero()); // of the force on each body, N
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t j = 0; j < to.contact[p].lambda.size(); ++j)
+            sum += to.contact[p].lambda[j] - from.contact[p].lambda[j];
+        change[masses.slave[p]] += sum;
+        change[masses.master[p]] -= sum;
+    }
+    double twice = 0;
+    for (std::size_t b = 0; b < change.size(); ++b)
+        for (int k = 0; k < 3; ++k)
+            if (masses.free[b](k) && masses.mass[b] > 0) twice += change[b](k) * change[b](k) / masses.mass[b];
+    return dynamics.integrator.error * dt * std::sqrt(twice / (2 * energy));
 }
 
 /// Ends of the stage's equal steps and corners of its courses, ascending.
@@ -201,11 +264,14 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
     if (dynamics != nullptr && state_.v.empty())
         start_motion(stage, constraints, load_at(stage, constraints, prescribed_start, 0));
 
+    std::optional<CentreMasses> centres;
+    if (dynamics != nullptr) centres.emplace(model_, *dynamics, constraints, options_.threads);
     const double t_start = from != nullptr ? from->stage_start : state_.time, step = stage.duration / stage.steps;
     const bool controlled = std::isfinite(stage.limits.allowed_interpenetration) && !model_.pairs.empty();
     double dt = step; // not end - begin: round-off would make every step another one
     int repeats = 0;
     std::vector<Attempt> attempts; // of one step
+    double lost_per_second = 0;    // by closing gaps, in the step's last attempt that was cut for it
     CollisionCheck collisions(model_, stage.limits, stage.follow_paths, timings_, options_.threads);
     const std::vector<double> targets = times_to_hit(stage, t_start);
     std::size_t reached = 0;
@@ -334,6 +400,14 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
                 if (dynamics != nullptr) {
                     if (std::isfinite(stage.limits.error_tolerance))
                         evidence.local_error = local_error(*dynamics, constraints, next.a, dt, worst_in_time);
+                    if (std::isfinite(stage.limits.velocity_error) && !not_finite)
+                        evidence.velocity_error =
+                            velocity_error(model_, *dynamics, *centres, state_, next, dt,
+                                           std::max(energy_so_far(ledger_), energy_so_far(ledger)));
+                    if (std::isfinite(stage.limits.closing_energy) && !not_finite)
+                        evidence.closing_energy = closing_energy(ledger_, ledger);
+                    // a node with mass loses the same however short the step in which it lands
+                    evidence.closes_anyhow = lost_per_second > 0 && evidence.closing_energy > lost_per_second * dt;
                     if (touches(state_) || touches(next)) evidence.energy_jump = energy_from_nowhere(ledger_, ledger);
                 }
             }
@@ -345,7 +419,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
 
         Attempt attempt = diary(decision, result, equilibrium, time, dt, iterations);
         if (not_finite) explain(*not_finite, model_, attempt);
-        if (decision.reason == Reason::error) name_node(model_, worst_in_time, attempt);
+        if (decision.reason == Reason::error && worst_in_time >= 0) name_node(model_, worst_in_time, attempt);
         attempts.push_back(attempt);
         if (decision.verdict == Verdict::accept) {
             equilibrium.commit();
@@ -358,6 +432,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
             refresh_patches();
             attempts.clear();
             repeats = 0;
+            lost_per_second = 0;
             reached += fit.on_target ? 1 : 0;
             dt = std::max(decision.dt, proposed); // a step that was short of a target alone keeps its size for the next
             observer.between_steps(checkpoint);
@@ -369,6 +444,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
             give_up(failed, equilibrium, observer);
         }
         equilibrium.rollback();
+        if (decision.reason == Reason::closing_energy) lost_per_second = evidence.closing_energy / dt;
         if (decision.reason != Reason::forced) ++repeats;
         dt = decision.reason == Reason::forced ? proposed : decision.dt;
     }

@@ -38,8 +38,8 @@ finite strain                . . . x . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .
-time error control           . . . . . . . . . . . . . .
-massless contact nodes       x x x x x . . . . x x . . .
+time error control           x x x x x . . . . x x . . .
+massless contact nodes       . x . x x . . . . x x . . .
 gravity                      x x . x . . . . . . . . . .
 follower pressure            . . . . . . . . . . . . . .
 courses over time            x . x . . . . . . x x . . .

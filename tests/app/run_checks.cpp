@@ -213,11 +213,21 @@ TEST(RunChecks, MeasureEnergiesAgainstTheLargest) {
         EXPECT_NEAR(*checks.checks().energy_growth, 0.2 / 12, round_off);
         EXPECT_NEAR(*checks.checks().energy_balance, 0.01 / 12, round_off);
         EXPECT_THAT(checks.judge("")->misses, ElementsAre("energy growth 0.0167 above 0.01"));
+        EXPECT_EQ(*checks.checks().closing_loss, 0);
+        EXPECT_THAT(checks.warnings(), IsEmpty());
         ledger.contact = -11; // later all is lost; what was gained before is not forgotten
         ledger.kinetic = 0.7;
         ledger.strain = 0;
         checks.accepted({step.state, step.equilibrium, step.dt, step.iterations, step.stage, &ledger});
         EXPECT_NEAR(*checks.checks().energy_growth, 0.2 / 12, round_off);
+        EXPECT_NEAR(*checks.checks().closing_loss, 11.3 / 12, round_off);
+        EXPECT_THAT(checks.warnings(), ElementsAre(HasSubstr("gaps that closed took 0.94")));
+        RunChecks resumed(plan.model, expect);
+        resumed.recall(checks.memory());
+        EXPECT_EQ(resumed.warnings(), checks.warnings());
+        ledger.contact = -5; // what a release brings in does not make up for it
+        resumed.accepted({step.state, step.equilibrium, step.dt, step.iterations, step.stage, &ledger});
+        EXPECT_NEAR(*resumed.checks().closing_loss, 11.3 / 12, round_off);
     });
 }
 

@@ -236,6 +236,59 @@ TEST(StepControl, CutsForTimeErrorByItsOrder) {
     EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::accept);
 }
 
+/// Both fall with the square of the step.
+TEST(StepControl, CutsForTheErrorOfVelocitiesAndForClosingGaps) {
+    StepLimits limits;
+    limits.velocity_error = limits.closing_energy = 0.01;
+    for (const Reason reason : {Reason::error, Reason::closing_energy}) {
+        StepEvidence evidence;
+        double& found = reason == Reason::error ? evidence.velocity_error : evidence.closing_energy;
+        found = 0.04;
+        const Decision decision = judge(evidence, limits, 1, 0);
+        EXPECT_EQ(decision.verdict, Verdict::retry);
+        EXPECT_EQ(decision.reason, reason);
+        EXPECT_EQ(decision.value, 0.04);
+        EXPECT_DOUBLE_EQ(decision.lambda, limits.reserve * 0.5);
+        EXPECT_THAT(decision.cause, HasSubstr("0.04"));
+        found = 0.01;
+        EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::accept);
+    }
+}
+
+TEST(StepControl, AcceptsTheSmallestStepWhateverVelocitiesAndClosingGapsLose) {
+    StepLimits limits;
+    limits.velocity_error = limits.closing_energy = 0.01;
+    limits.dt_min = 1;
+    StepEvidence evidence;
+    evidence.velocity_error = evidence.closing_energy = 0.5;
+    EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::accept);
+    EXPECT_EQ(judge(evidence, limits, 2, 0).verdict, Verdict::retry);
+    evidence.energy_jump = 1;
+    limits.energy_tolerance = 0.5;
+    EXPECT_EQ(judge(evidence, limits, 1, 0).reason, Reason::energy);
+}
+
+/// As where a node with mass lands: its own energy goes at once.
+TEST(StepControl, DoesNotCutForALossThatCutsDoNotLessen) {
+    StepLimits limits;
+    limits.closing_energy = 0.01;
+    StepEvidence evidence;
+    evidence.closing_energy = 0.5;
+    evidence.closes_anyhow = true;
+    EXPECT_EQ(judge(evidence, limits, 1, 1).verdict, Verdict::accept);
+}
+
+TEST(StepControl, GrowsNoFurtherThanTheErrorOfVelocitiesAdmits) {
+    StepLimits limits;
+    limits.velocity_error = 0.01;
+    limits.growth = 3;
+    StepEvidence evidence;
+    evidence.velocity_error = 0.01 / 4;
+    EXPECT_DOUBLE_EQ(judge(evidence, limits, 1, 0).dt, limits.reserve * 2);
+    evidence.velocity_error = 0.01;
+    EXPECT_DOUBLE_EQ(judge(evidence, limits, 1, 0).dt, 1);
+}
+
 TEST(StepControl, CutsForAnEnergyJump) {
     StepLimits limits;
     limits.energy_tolerance = 1e-6;

@@ -186,6 +186,65 @@ TEST(Mass, MovedOffContactNodesStaysInTheBody) {
     const double exact = 0.01; // 1 m x 0.1 m x 0.1 m of 1 kg/m^3
     EXPECT_NEAR(rod, exact, 1e-14);
     EXPECT_EQ(tip, 0);
+    EXPECT_TRUE(m.kept_contact_mass.empty());
+}
+
+/// A bar whose whole skin may touch: an inner line of nodes alone would have no inertia about it.
+TEST(Mass, OfABarWhoseSkinIsAllSlaveStillSpins) {
+    const std::string text = R"(
+bodies:
+  bar:
+    mesh: {block: {origin: [-50 mm, -10 mm, -10 mm], size: [100 mm, 20 mm, 20 mm], divisions: [10, 2, 2]}}
+    material: {linear_elastic: {E: 1 GPa, nu: 0.3, density: 8000 kg/m^3}}
+    initial_spin: [100 Hz, 0 Hz, 0 Hz]
+  wall:
+    mesh: {block: {origin: [-1 m, -1 m, -2 m], size: [2 m, 2 m, 1 m], divisions: [1, 1, 1]}}
+    material: {linear_elastic: {E: 1 GPa, nu: 0.3, density: 8000 kg/m^3}}
+sets:
+  skin: {body: bar, box: {min: [-1 m, -1 m, -1 m], max: [1 m, 1 m, 1 m]}}
+  top: {body: wall, surface: z_max}
+  all: {body: wall, box: {min: [-9 m, -9 m, -9 m], max: [9 m, 9 m, 9 m]}}
+supports: {all: {fix: [x, y, z]}}
+contact: {never: {slave: skin, master: {set: top, surface: facets}}}
+stages: {spin: {analysis: dynamic, duration: 1 us, steps: 1}}
+)";
+    support::SceneRun run;
+    support::run_scene(run, scene_file("spun.yaml", text));
+    const double mass = 0.32, side = 0.02, rate = 100, round_off = 1e-3; // of a microsecond's stretching
+    const double exact = 0.5 * mass * side * side / 6 * rate * rate;
+    EXPECT_NEAR(last(run).ledger.kinetic, exact, round_off * exact);
+    EXPECT_EQ(run.plan.model.kept_contact_mass, std::vector<Index>{0});
+}
+
+/// What a support pushes back with in statics it pushes back with in dynamics: the same weights at the same nodes.
+TEST(Mass, AtRestStaysAtRestWhereDynamicsFollowsStatics) {
+    for (const char* layers : {"1", "2", "6"}) {
+        const std::string text = std::string(R"(
+bodies:
+  block:
+    mesh: {block: {size: [100 mm, 100 mm, 100 mm], divisions: [3, 3, )") +
+                                 layers + R"(]}}
+    material: {linear_elastic: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}
+  table:
+    mesh: {block: {origin: [-0.1 m, -0.1 m, -0.1 m], size: [0.3 m, 0.3 m, 0.1 m], divisions: [2, 2, 1]}}
+    material: {linear_elastic: {E: 1 GPa, nu: 0.3, density: 1000 kg/m^3}}
+sets:
+  foot: {body: block, surface: z_min}
+  top: {body: table, surface: z_max}
+  all: {body: table, box: {min: [-9 m, -9 m, -9 m], max: [9 m, 9 m, 9 m]}}
+supports: {all: {fix: [x, y, z]}}
+contact: {rest: {slave: foot, master: {set: top, surface: facets}, friction: 0.3}}
+gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
+stages:
+  settle: {}
+  rest: {analysis: dynamic, duration: 0.1 s, steps: 20}
+)";
+        support::SceneRun run;
+        support::run_scene(run, scene_file("rest.yaml", text));
+        const double weight = 9.81, solved_to = 1e-7;
+        for (const support::RunStep& step : run.steps)
+            EXPECT_NEAR(step.pairs[0].on_slave.z(), weight, solved_to * weight) << layers << " layers at " << step.time;
+    }
 }
 
 /// The initial velocity of a body is not that of what holds it: it would come and go there, step by step, for ever.

@@ -19,7 +19,8 @@ namespace osculate::app {
 ///   energy_growth   largest rise of kinetic plus strain energy beyond external work since the dynamic stage began
 ///   penetration     deepest slave node below its master, open or closed, in sizes of the facet concerned; or of any node
 ///                   or edge inside another body or its own that the audit of geometry finds
-/// Both energies are shares of the largest energy there was: kinetic plus strain, or the work of external forces.
+///   closing_loss    what gaps that closed took from the energy: exact contact gives nothing back of it, see docs/theory.md
+/// All energies are shares of the largest energy there was: kinetic plus strain, or the work of external forces.
 class RunChecks {
 public:
     /// The model must outlive it.
@@ -35,6 +36,8 @@ public:
     [[nodiscard]] output::Summary::Checks checks() const;
     /// What the audit found deepest; `on` as the step says.
     [[nodiscard]] output::Summary::Audit audit() const;
+    /// What may surprise whoever believes the results, in sentences.
+    [[nodiscard]] std::vector<std::string> warnings() const;
     /// What a run that has ended did not come to; nothing where nothing is expected.
     /// @param failure  why the run gave up; empty: it completed
     [[nodiscard]] std::optional<output::Summary::Expectation> judge(const std::string& failure) const;
@@ -53,6 +56,7 @@ private:
     double excess_ = 0, excessive_ = 0, bound_ = 0; ///< largest penetration over its bound; both, in facet sizes
     bool dynamic_ = false;                          ///< a ledger was seen
     double energy_ = 0, balance_ = 0, growth_ = 0;  ///< J
+    double contact_ = 0, closing_ = 0;              ///< J, Ledger::contact of the last step; what it has fallen by
 };
 
 } // namespace osculate::app

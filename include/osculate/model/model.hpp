@@ -40,6 +40,7 @@ struct Model {
     BlockMatrix K;                               ///< constant stiffness of the linear bodies, in the pattern of all
     std::unique_ptr<FiniteStrain> finite_strain; ///< the other bodies; null where there are none
     BlockMatrix consistent_mass, lumped_mass;    ///< of all bodies, kg, pattern of K; empty where no stage asks for it
+    std::vector<Index> kept_contact_mass; ///< bodies whose contact nodes were to have no mass and keep it, ascending
 
     std::vector<Vec3> initial_velocity; ///< (nodes) m/s; empty where no stage is dynamic
 
@@ -57,11 +58,16 @@ struct Model {
 [[nodiscard]] BlockMatrix undeformed_stiffness(const Model& model, int threads);
 /// Stiffness of the bodies that are linear, in the pattern of all.
 [[nodiscard]] BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
+struct AssembledMass {
+    BlockMatrix M;
+    std::vector<Index> kept; ///< bodies that keep the mass of nodes marked, because nothing else has their moments
+};
 /// Mass of all bodies, multiples of the unit matrix in the pattern of the stiffness; lumped: diagonal.
-/// @param massless  (nodes) nodes whose mass goes to the other nodes of their elements, in proportion to theirs; an element
-///                  that has no other keeps its mass. Empty: none
-[[nodiscard]] BlockMatrix assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
-                                        const std::vector<char>& massless);
+/// @param massless  (nodes) nodes that are to have no mass: theirs goes to the other nodes of their elements, and factors
+///                  near 1 on all elements keep the body's mass, centre and inertia to round-off, see moment_factors().
+///                  A body without such factors keeps its mass as it is. Empty: none
+[[nodiscard]] AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
+                                          const std::vector<char>& massless);
 /// (nodes) share of each node in the volume of its body, lumped; the shares of a body sum to 1.
 [[nodiscard]] std::vector<double> volume_shares(const Model& model);
 /// Centre of mass of a body of uniform density in its reference configuration, m.

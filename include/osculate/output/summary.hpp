@@ -32,6 +32,7 @@ struct Summary {
         double force_balance = 0;                            ///< of the forces that act
         double penetration = 0, penetration_m = 0;           ///< in facet sizes; m
         std::optional<double> energy_balance, energy_growth; ///< of the largest energy; without a dynamic step none
+        std::optional<double> closing_loss;                  ///< alike: taken by gaps that closed
     };
     /// The deepest place at which a body lay inside another in an accepted step, see contact::SurfaceAudit.
     struct Audit {
@@ -64,6 +65,7 @@ struct Summary {
     std::vector<std::string> plan;
     std::optional<Checks> checks;
     std::optional<Audit> audit;             ///< none: one body that meets nothing
+    std::vector<std::string> warnings;      ///< sentences; left out of the file when there are none
     std::optional<Expectation> expectation; ///< where the scene has one, when the run has ended
 };
 

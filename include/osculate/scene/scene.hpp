@@ -279,11 +279,17 @@ struct RelativeLength {
     bool operator==(const RelativeLength&) const = default;
 };
 
+enum class StepSize { controlled, fixed };
+
 /// What an attempted step must keep to; one that does not is repeated with a smaller dt.
 struct StepControl {
     /// A fraction is one of the facet size. Not given: 0.05 in dynamics, 0.5 in statics.
     std::optional<RelativeLength> allowed_interpenetration;
-    std::optional<double> error_tolerance; ///< of the displacement, in one dynamic step, m; not given: no bound
+    /// Whether dynamic steps are cut for what they lose: velocity_error and closing_energy, or error_tolerance.
+    StepSize step_size = StepSize::controlled;
+    double velocity_error = 0.02;  ///< of the bodies' centres in one step, of the speed that all energy would give
+    double closing_energy = 0.005; ///< that gaps which close may take in one dynamic step, of all energy there has been
+    std::optional<double> error_tolerance; ///< of the displacement, in one dynamic step, m; given: not velocity_error
     double energy_tolerance = 0.01; ///< rise beyond external work in one dynamic step, of kinetic plus strain energy
     double growth = 2;              ///< of dt after an easy step, up to the stage's step
     bool operator==(const StepControl&) const = default;

@@ -8,7 +8,7 @@
 namespace osculate::time {
 
 enum class Verdict { accept, retry, give_up };
-enum class Reason { none, interpenetration, solver, error, energy, collision, audit, forced };
+enum class Reason { none, interpenetration, solver, error, energy, collision, audit, closing_energy, forced };
 
 /// A row of steps.csv.
 struct Attempt {

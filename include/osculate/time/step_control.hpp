@@ -42,7 +42,12 @@ struct StepEvidence {
     double residual = 0;    ///< relative
     double local_error = 0; ///< Integrator::local_error(), m
     double energy_jump = 0; ///< in the unit of its tolerance, >= 0
-    double collision = 1;   ///< fraction of the step at which a path first goes through a surface; 1: none does
+    /// Error that the step makes by itself in the velocities of the bodies' centres, of the speed that all energy would
+    /// give: sqrt(sum_b |e_b|^2 m_b/(2 energy)), e_b = c dt (a - a_n), c of Integrator::local_error() and a of contact.
+    double velocity_error = 0;
+    double closing_energy = 0;  ///< taken by gaps that closed, of all energy there has been
+    bool closes_anyhow = false; ///< a longer attempt at the step lost less of it, by its length: no cut helps
+    double collision = 1;       ///< fraction of the step at which a path first goes through a surface; 1: none does
     Index collision_pair = -1, collision_slave = -1; ///< whose path that is
     /// Deepest slave node of a mortar pair that lies inside the master where its facets overlap nothing, so that no
     /// average sees it; pair -1: there is none. In the solution, not in the trial.
@@ -68,6 +73,8 @@ struct StepLimits {
     double audited_depth = std::numeric_limits<double>::infinity();   ///< of Intrusion::relative()
     double error_tolerance = std::numeric_limits<double>::infinity(); ///< m
     double energy_tolerance = std::numeric_limits<double>::infinity();
+    double velocity_error = std::numeric_limits<double>::infinity(); ///< of a step that can be cut, as the next
+    double closing_energy = std::numeric_limits<double>::infinity();
 };
 
 struct Decision {
@@ -75,7 +82,8 @@ struct Decision {
     Reason reason = Reason::none;
     double dt = 0;     ///< of the next step after accept, of the same step after retry, s
     double lambda = 1; ///< fraction of a rejected attempt's dt that was called for, floor included, dt_min not
-    double value = 0;  ///< what decided: gap g1, residual, local error, energy jump or fraction; accepted: the residual
+    double value =
+        0; ///< what decided: gap g1, residual, local error, energy jump, share or fraction; accepted: the residual
     Index pair = -1, slave = -1;                 ///< governing point of an interpenetration or a collision
     bool unseen = false;                         ///< an interpenetration that no average sees
     std::optional<contact::Intrusion> intrusion; ///< what the audit found
@@ -86,7 +94,8 @@ struct Decision {
 [[nodiscard]] bool cannot_be_cut(const StepLimits& limits, double dt, int repeats);
 
 /// The smallest lambda of all objections governs, among equals the first of: solver, interpenetration, collision, audit,
-/// error, energy. A cut never goes below dt_min, which is tried before giving up.
+/// error, velocity_error, energy, closing_energy. A cut never goes below dt_min, which is tried before giving up. Velocities' error
+/// and closing gaps only cut: at dt_min they are no objection, and RunChecks reports what they cost.
 /// @param dt       of the attempt, s
 /// @param repeats  of this step so far, forced ones not counted
 [[nodiscard]] Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats);

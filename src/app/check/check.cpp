@@ -93,6 +93,12 @@ Check examine(const LoadedScene& loaded, int threads) {
         if (p.gaps.above == 0)
             check.warnings.push_back({"contact." + pair->name(), "no slave node is above or below the master"});
     }
+    for (const Index b : plan.model.kept_contact_mass)
+        check.warnings.push_back({"bodies." + plan.model.bodies[static_cast<std::size_t>(b)].name,
+                                  "its slave nodes keep their mass, against contact_mass: redistributed: no masses on "
+                                  "its other nodes have its centre and inertia, so impacts cost or bring in energy and "
+                                  "contact forces ring; mesh it finer behind the contact or let fewer of its nodes be "
+                                  "slaves"});
     check.free = free_motions(plan);
     return check;
 }

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -238,6 +239,10 @@ private:
             stage.limits.in_metres = g_p.metres;
             if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
             if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
+            if (dynamic && spec.control.step_size == scene::StepSize::controlled) {
+                if (!spec.control.error_tolerance) stage.limits.velocity_error = spec.control.velocity_error;
+                stage.limits.closing_energy = spec.control.closing_energy;
+            }
             stage.follow_paths = dynamic && !scene_.contact.empty();
             if (audited()) stage.limits.audited_depth = scene_.solver.audited_depth;
             stage.limits.dt_max = spec.duration / spec.steps;
@@ -344,7 +349,14 @@ private:
         for (const time::Stage& stage : plan_.stages) {
             if (!stage.dynamics) continue;
             model::BlockMatrix& mass = stage.dynamics->lumped_mass ? m.lumped_mass : m.consistent_mass;
-            if (mass.empty()) mass = model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass, massless);
+            if (mass.empty()) {
+                model::AssembledMass assembled =
+                    model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass, massless);
+                mass = std::move(assembled.M);
+                std::vector<Index> kept;
+                std::ranges::set_union(m.kept_contact_mass, assembled.kept, std::back_inserter(kept));
+                m.kept_contact_mass = std::move(kept);
+            }
             if (!m.initial_velocity.empty()) continue;
             for (std::size_t b = 0; b < m.bodies.size(); ++b) {
                 const model::Body& body = m.bodies[b];
@@ -356,19 +368,29 @@ private:
         }
     }
 
-    /// In full from the start. In dynamics it acts on mass where the mass is, so that bodies fall without strain.
+    /// Whose mass a stage weighs: its own, in statics that of the dynamic stage it leads to, or else comes from.
+    [[nodiscard]] const time::Dynamics* weighed(std::size_t s) const {
+        for (std::size_t k = s; k < plan_.stages.size(); ++k)
+            if (plan_.stages[k].dynamics) return &*plan_.stages[k].dynamics;
+        for (std::size_t k = s; k-- > 0;)
+            if (plan_.stages[k].dynamics) return &*plan_.stages[k].dynamics;
+        return nullptr;
+    }
+
+    /// In full from the start. It acts on mass where the mass is, so that bodies fall without strain, and in statics on the
+    /// same mass, so that what rests goes on resting when inertia sets in.
     void add_gravity() {
         if (scene_.gravity.isZero(0)) return;
         const model::Model& m = plan_.model;
-        for (time::Stage& stage : plan_.stages) {
+        for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
             std::vector<Vec3> weight(m.X.size(), Vec3::Zero());
-            if (stage.dynamics)
-                m.mass(stage.dynamics->lumped_mass)
+            if (const time::Dynamics* dynamics = weighed(s))
+                m.mass(dynamics->lumped_mass)
                     .multiply_add(std::vector<Vec3>(m.X.size(), scene_.gravity), weight, threads_);
             else
                 for (const model::Body& body : m.bodies)
                     if (body.density > 0) model::add_body_force(body, body.density * scene_.gravity, weight);
-            for (auto* force : {&stage.force_start, &stage.force_end})
+            for (auto* force : {&plan_.stages[s].force_start, &plan_.stages[s].force_end})
                 for (std::size_t i = 0; i < weight.size(); ++i) (*force)[i] += weight[i];
         }
     }

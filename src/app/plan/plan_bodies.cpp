@@ -29,6 +29,17 @@ PlanCost finite_strain_cost(const model::Model& model) {
     return cost;
 }
 
+/// How many bodies have slave nodes, which is how many could have massless ones.
+std::size_t bodies_with_slaves(const model::Model& model) {
+    return static_cast<std::size_t>(std::ranges::count_if(model.bodies, [&](const model::Body& body) {
+        return std::ranges::any_of(model.pairs, [&](const auto& pair) {
+            return std::ranges::any_of(pair->slaves().node, [&](Index node) {
+                return node >= body.first_node && node < body.first_node + body.nodes();
+            });
+        });
+    }));
+}
+
 } // namespace
 
 void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list) {
@@ -58,21 +69,30 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
              dynamic > 0 ? "judges dynamic steps, and columns of history.csv" : every_static,
              {0, 4 * blocks, "3x3 blocks a step"});
     const auto controlled = std::ranges::count_if(plan.stages, [](const time::Stage& stage) {
-        return stage.dynamics && std::isfinite(stage.limits.error_tolerance);
+        return stage.dynamics &&
+               (std::isfinite(stage.limits.error_tolerance) || std::isfinite(stage.limits.velocity_error));
     });
     list.say("time error control", controlled > 0,
-             controlled > 0 ? fmt::format("{} stage(s) with control.error_tolerance", controlled)
-             : dynamic > 0  ? "no stage has control.error_tolerance"
-                            : every_static,
-             {0, static_cast<double>(model.nodes()), "nodes a step"});
-    const bool massless = std::ranges::any_of(scene.stages, [](const auto& stage) {
+             controlled > 0
+                 ? fmt::format("{} stage(s) whose steps are cut for their error and for closing gaps", controlled)
+             : dynamic > 0 ? "control.step_size is fixed"
+                           : every_static,
+             {0, blocks, "3x3 blocks a step"});
+    const bool asked = std::ranges::any_of(scene.stages, [](const auto& stage) {
         const auto* analysis = std::get_if<scene::DynamicAnalysis>(&stage.second.analysis);
         return analysis != nullptr && analysis->contact_mass != scene::ContactMass::kept;
     });
+    std::string keepers;
+    for (const Index b : model.kept_contact_mass)
+        keepers += fmt::format("{}'{}'", keepers.empty() ? "" : ", ", model.bodies[static_cast<std::size_t>(b)].name);
+    const bool massless = asked && model.kept_contact_mass.size() < bodies_with_slaves(model);
     list.say("massless contact nodes", massless,
-             massless      ? "a stage asks for them by contact_mass"
-             : dynamic > 0 ? "contact nodes keep their mass"
-                           : every_static);
+             !asked ? (dynamic > 0 ? "contact nodes keep their mass" : every_static)
+             : keepers.empty()
+                 ? massless ? "contact_mass: redistributed, with mass, centre and inertia of every body"
+                            : "no body has slave nodes"
+                 : fmt::format("{} of body {} keep their mass: no other nodes can carry its centre and inertia",
+                               massless ? "contact_mass: redistributed, but slave nodes" : "slave nodes", keepers));
 
     const bool gravity = !scene.gravity.isZero(0);
     list.say("gravity", gravity, gravity ? "on every body with a density" : "not given",

@@ -28,7 +28,7 @@ const std::string header = "attempt,time,dt,verdict,reason,body,node,value,lambd
 constexpr std::size_t columns = 10;
 constexpr Verdict verdicts[] = {Verdict::accept, Verdict::retry, Verdict::give_up};
 constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration, Reason::solver, Reason::error,
-                              Reason::energy, Reason::collision,        Reason::forced};
+                              Reason::energy, Reason::collision,        Reason::audit,  Reason::forced};
 
 struct Cell {
     std::string text;

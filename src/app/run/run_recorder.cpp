@@ -299,6 +299,7 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
 }
 
 void RunRecorder::write_pictures() {
+    for (const std::string& warning : summary_.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (const std::string note = write_plots(scene_, settings_.directory); !note.empty())
         fmt::print(stderr, "{}\n", note);
     if (!scene_.output.report) return;
@@ -324,6 +325,7 @@ void RunRecorder::write_summary() {
         summary_.audit = checks_.audit();
         summary_.audit->on = plan_.stepper.audit;
     }
+    summary_.warnings = checks_.warnings();
     on_disk(timings_, [&] { output::write_summary(settings_.directory / "summary.json", summary_); });
 }
 

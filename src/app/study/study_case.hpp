@@ -16,7 +16,8 @@ namespace osculate::app {
 inline constexpr std::array study_parts{"search", "patches", "contact", "assembly", "factor", "solve", "output"};
 
 /// Of `checks` in summary.json.
-inline constexpr std::array study_checks{"force_balance", "energy_balance", "energy_growth", "penetration"};
+inline constexpr std::array study_checks{"force_balance", "energy_balance", "energy_growth", "closing_loss",
+                                         "penetration"};
 
 /// NaN, for checks that a run does not have.
 constexpr std::array<double, study_checks.size()> no_checks() {

@@ -122,6 +122,16 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
     return worst;
 }
 
+void BodyForces::add_terms(const Field& u, Field& terms) const {
+    const model::BlockMatrix& A = tangent();
+    for (Index i = 0; i < A.rows(); ++i) {
+        Vec3& sum = terms[static_cast<std::size_t>(i)];
+        for (Index k = A.row_begin(i); k < A.row_end(i); ++k)
+            sum += A.block(k).cwiseAbs() * u[static_cast<std::size_t>(A.column(k))].cwiseAbs();
+        if (dynamics_ != nullptr) sum += force_start_[static_cast<std::size_t>(i)].cwiseAbs();
+    }
+}
+
 bool BodyForces::linearise(const Field& u) {
     if (!varies()) return false;
     tangent_ = constant_;

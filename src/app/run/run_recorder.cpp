@@ -318,6 +318,7 @@ void RunRecorder::write_summary() {
     summary_.factorisations = stepper_.factorisations();
     summary_.gmres_iterations = stepper_.gmres_iterations();
     summary_.steps.stabilised = stepper_.stabilised_steps();
+    summary_.steps.at_round_off = stepper_.steps_at_round_off();
     summary_.timings = timings_;
     summary_.checks = checks_.checks();
     on_disk(timings_, [&] { output::write_summary(settings_.directory / "summary.json", summary_); });

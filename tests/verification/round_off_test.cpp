@@ -152,6 +152,19 @@ TEST(RoundOff, ABlockStandsOnASlopeThatNoAxisOfTheMeshIsAlong) {
     }
 }
 
+TEST(RoundOff, ABlockAtFiniteStrainComesToRest) {
+    for (const char* const law : {"saint_venant_kirchhoff", "neo_hookean"}) {
+        std::string text = at_rest;
+        for (auto at = text.find("linear_elastic"); at != std::string::npos; at = text.find("linear_elastic", at))
+            text.replace(at, 14, law);
+        for (const double distance : {0.0, 0.1, 0.3}) {
+            const Outcome rests(text, moved_by(distance, {"table", "block"}));
+            ASSERT_EQ(rests.failure, "") << law << ", " << distance << " m";
+            EXPECT_NEAR(rests.contact_force().z(), 7850 * 9.81 * 1.25e-4, 1e-6) << law << ", " << distance << " m";
+        }
+    }
+}
+
 TEST(RoundOff, TheTutorialsBlockMayBePressedAsLightlyAsOneLikes) {
     for (const char* const pressure : {"1 Pa", "0.1 Pa", "1e-3 Pa"}) {
         const Outcome light(press, {{"stages.press.pressure.top", pressure}});

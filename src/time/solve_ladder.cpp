@@ -38,7 +38,7 @@ solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const 
 solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, StatusRule rule,
                                LadderOptions& options) {
     const auto size = static_cast<Index>(z.size());
-    const auto solve = [&] {
+    const auto call = [&] {
         solve::KinsolResult solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
         if (solved.outcome != KinsolOutcome::stopped || !equilibrium.rests()) return solved;
         solved.outcome = KinsolOutcome::converged;
@@ -46,7 +46,7 @@ solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& so
         solved.residual = equilibrium.records().back().residual;
         return solved;
     };
-    solve::KinsolResult solved = solve();
+    solve::KinsolResult solved = call();
     if (solved.outcome != KinsolOutcome::stopped) return solved; // it may still gain
     const double moved = largest_component(equilibrium.displacements(z));
     if (!(moved <= options.farthest)) return solved; // it rests nowhere near a solution
@@ -56,7 +56,7 @@ solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& so
     options.reference_force = floor;
     equilibrium.set_statuses(equilibrium.statuses(), rule, false);
     const int before = solved.iterations;
-    solved = solve();
+    solved = call();
     solved.iterations += before;
     return solved;
 }

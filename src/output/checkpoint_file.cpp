@@ -252,6 +252,7 @@ Json to_json(const time::Checkpoint& run) {
             {"moved", run.moved},
             {"attempts", run.attempts},
             {"stabilised_steps", run.stabilised_steps},
+            {"steps_at_round_off", run.steps_at_round_off},
             {"factorisations", run.factorisations},
             {"gmres_iterations", run.gmres_iterations},
             {"refreshed_patches", run.refreshed_patches},
@@ -277,6 +278,7 @@ time::Checkpoint checkpoint(const Json& json) {
     run.moved = json["moved"].get<bool>();
     run.attempts = number<int>(json, "attempts");
     run.stabilised_steps = number<int>(json, "stabilised_steps");
+    run.steps_at_round_off = number<int>(json, "steps_at_round_off");
     run.factorisations = number<long>(json, "factorisations");
     run.gmres_iterations = number<long>(json, "gmres_iterations");
     run.refreshed_patches = number<long>(json, "refreshed_patches");

@@ -25,7 +25,8 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["pairs"] = pairs;
     json["steps"] = {{"accepted", summary.steps.accepted},
                      {"rejected", summary.steps.rejected},
-                     {"stabilised", summary.steps.stabilised}};
+                     {"stabilised", summary.steps.stabilised},
+                     {"at_round_off", summary.steps.at_round_off}};
     json["iterations"] = summary.iterations;
     json["factorisations"] = summary.factorisations;
     json["gmres_iterations"] = summary.gmres_iterations;

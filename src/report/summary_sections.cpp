@@ -47,7 +47,9 @@ std::string key_figures(const RunFiles& files, double last_time) {
     add("Reached", std::isfinite(last_time) ? scene::engineering(last_time, "s") : "–", "of the scene's time");
     add("Steps", count(member(steps, "accepted")),
         count(member(steps, "rejected")) +
-            (member(steps, "rejected") == 1 ? " attempt rejected" : " attempts rejected"));
+            (member(steps, "rejected") == 1 ? " attempt rejected" : " attempts rejected") +
+            (member(steps, "at_round_off") > 0 ? ", " + count(member(steps, "at_round_off")) + " ended at round-off"
+                                               : ""));
     add("Newton iterations", count(files.number("iterations")),
         figure(files.number("iterations") / (member(steps, "accepted") + member(steps, "rejected"))) + " per attempt");
     add("Wall time", duration(member(seconds, "total")), duration(member(seconds, "cpu")) + " CPU");

@@ -3,6 +3,8 @@
 #include "osculate/fe/facet_quadrature.hpp"
 #include "time/nodal_field.hpp"
 
+#include <algorithm>
+
 namespace osculate::time {
 
 namespace {
@@ -115,6 +117,25 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
     (varies() ? constant_ : tangent_).multiply_add(weighted(1, u, -1, u_start_), f, threads_);
     if (nonlinear()) worst = model_.finite_strain->add_step_force(model_.X, u_start_, u, mean_, f, threads_);
     return worst;
+}
+
+void BodyForces::add_terms(const Field& u, Field& terms) const {
+    const model::BlockMatrix& A = tangent();
+    for (Index i = 0; i < A.rows(); ++i) {
+        Vec3& sum = terms[static_cast<std::size_t>(i)];
+        for (Index k = A.row_begin(i); k < A.row_end(i); ++k)
+            sum += A.block(k).cwiseAbs() * u[static_cast<std::size_t>(A.column(k))].cwiseAbs();
+        if (dynamics_ != nullptr) sum += force_start_[static_cast<std::size_t>(i)].cwiseAbs();
+    }
+    // at finite strain stresses come of F = 1 + du/dX: the digits of the 1 are those of offsets between nodes
+    for (const model::Body& body : model_.bodies) {
+        if (std::ranges::all_of(body.kernels, [](const auto& kernel) { return kernel->linear(); })) continue;
+        for (Index i = body.first_node; i < body.first_node + body.nodes(); ++i)
+            for (Index k = A.row_begin(i); k < A.row_end(i); ++k) {
+                const auto j = static_cast<std::size_t>(A.column(k)), own = static_cast<std::size_t>(i);
+                terms[own] += A.block(k).cwiseAbs() * (model_.X[j] - model_.X[own]).cwiseAbs();
+            }
+    }
 }
 
 bool BodyForces::linearise(const Field& u) {

@@ -55,7 +55,7 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     }
     const auto n = static_cast<std::size_t>(model.nodes());
     u_.assign(n, Vec3::Zero());
-    x_ = internal_ = unbalanced_ = u_;
+    x_ = internal_ = unbalanced_ = tail_ = tail_start_ = u_;
 }
 
 void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double dt) {
@@ -74,7 +74,9 @@ void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double
             }
         }
     }
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = model_.X[i] + state.u[i];
+    u_ = state.u;
+    place();
+    tail_start_ = tail_;
     for (std::size_t p = 0; p < model_.pairs.size(); ++p)
         model_.pairs[p]->begin_step(x_, state.contact[p], timings_, threads_);
     records_.clear();
@@ -148,7 +150,7 @@ void Equilibrium::release() {
 
 void Equilibrium::unpack(const double* z) {
     constraints_.scatter(z, load_.prescribed, u_);
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = model_.X[i] + u_[i];
+    place();
     for (std::size_t p = 0; p < model_.pairs.size(); ++p)
         for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
             const double* force = z + matrix_->multiplier(first_coupling_[p] + j);
@@ -197,7 +199,7 @@ std::vector<std::vector<Status>> Equilibrium::natural_statuses() const {
         const model::ContactTerm& pair = *model_.pairs[p];
         auto& list = statuses.emplace_back(static_cast<std::size_t>(pair.size()), Status::open);
         for (Index j = 0; j < pair.size(); ++j)
-            if (pair.point(j).found) list[j] = pair.law(j).status(pair.state(j, x_, lambda_[p][j]));
+            if (pair.point(j).found) list[j] = pair.law(j).status(contact_state(p, j));
     }
     return statuses;
 }
@@ -232,6 +234,7 @@ bool Equilibrium::evaluate_bodies() {
 }
 
 solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* F) {
+    rests_ = false;
     before_z_.swap(last_z_);
     last_z_ = Eigen::Map<const Vector>(z, size_);
     unpack(z);
@@ -253,7 +256,10 @@ solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* 
 
     fill(F);
     record(F, status_changes);
-    return cycles(records_.back().residual) ? Verdict::stop : Verdict::proceed;
+    constexpr int at_rest = 3; // iterates that have gained nothing: Newton would have
+    const bool round = cycles(records_.back().residual);
+    rests_ = (round || idle_ >= at_rest) && at_round_off(F);
+    return round || rests_ ? Verdict::stop : Verdict::proceed;
 }
 
 void Equilibrium::fill(double* F) {
@@ -270,7 +276,7 @@ void Equilibrium::fill(double* F) {
             if (point.found)
                 for (Index i = 0; i < pair.carriers(j); ++i)
                     unbalanced_[pair.point_nodes(j)[i]] -= pair.master_force(j, i, lambda);
-            const auto law = pair.law(j).residual(pair.state(j, x_, lambda), statuses_[p][j]);
+            const auto law = pair.law(j).residual(contact_state(p, j), statuses_[p][j]);
             const Mat3 mirrored = symmetry_directions(slave);
             const Vec3 value = constraints_.to_local(slave, Vec3(law.value - mirrored * law.value + mirrored * lambda));
             for (int k = 0; k < 3; ++k) F[matrix_->contact_row(coupling, k)] = value(k);

@@ -38,7 +38,7 @@ void Equilibrium::linearise(std::size_t p, Index j, contact::VariationForm form,
     const model::ContactTerm& pair = *model_.pairs[p];
     const Vec3& lambda = lambda_[p][j];
     const Status status = statuses_[p][j];
-    const auto law = pair.law(j).residual(pair.state(j, x_, lambda), status);
+    const auto law = pair.law(j).residual(contact_state(p, j), status);
     const Mat3 mirrored = symmetry_directions(pair.slaves().node[j]), kept = Mat3::Identity() - mirrored;
     tangent.D = kept * law.by_lambda + mirrored;
     tangent.reaches = reaches(p, j);
@@ -70,7 +70,7 @@ solve::FactorStatus Equilibrium::factorise() {
 SoftContact Equilibrium::soften(std::size_t p, Index j) const {
     const model::ContactTerm& pair = *model_.pairs[p];
     SoftContact soft;
-    const auto law = pair.law(j).residual(pair.state(j, x_, lambda_[p][j]), statuses_[p][j]);
+    const auto law = pair.law(j).residual(contact_state(p, j), statuses_[p][j]);
     const Index slave = pair.slaves().node[j];
     const Mat3 mirrored = symmetry_directions(slave), kept = Mat3::Identity() - mirrored;
     soft.coupling = first_coupling_[p] + j;

@@ -139,7 +139,16 @@ private:
                                                        "near its modulus a linear one is not true");
     }
 
+    /// Where the residual is so near the tolerance that round-off rather than the contact may hold it there.
+    void larger_tolerance() {
+        constexpr double near = 100; // times the tolerance
+        if (found_.residual < near * failed_.ladder.tolerance)
+            add("solver.tolerance", "above " + number(found_.residual) + " instead of " +
+                                        number(failed_.ladder.tolerance) + ": the residual rests at round-off there");
+    }
+
     void cycle() {
+        larger_tolerance();
         smaller_steps("fewer nodes change their status at once");
         const model::ContactTerm* const one = found_.contact ? pair(found_.contact->pair) : nullptr;
         if (one == nullptr) return;
@@ -176,10 +185,7 @@ private:
 
     void stall() {
         smaller_steps("Newton starts nearer to the solution");
-        constexpr double near = 100;
-        if (found_.residual < near * failed_.ladder.tolerance)
-            add("solver.tolerance", "above " + number(found_.residual) + " instead of " +
-                                        number(failed_.ladder.tolerance) + ": the residual rests at round-off there");
+        larger_tolerance();
         if (found_.contact)
             add("contact." + found_.contact->pair + ".friction",
                 "lower, if only for a test whether friction is to blame");

@@ -32,13 +32,21 @@ solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const 
     return kinsol;
 }
 
-/// One KINSOL call. One that comes to rest at round-off of the internal forces counts as converged, with a larger reference
-/// force from then on.
+/// One KINSOL call. One that comes to rest at the round-off of every row counts as converged: Equilibrium::rests(). One that
+/// comes to rest at round-off of the internal forces as a whole does too, with a larger reference force from then on.
 /// @param rule  of the statuses: they go on from where it came to rest
 solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, StatusRule rule,
                                LadderOptions& options) {
     const auto size = static_cast<Index>(z.size());
-    solve::KinsolResult solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
+    const auto call = [&] {
+        solve::KinsolResult solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
+        if (solved.outcome != KinsolOutcome::stopped || !equilibrium.rests()) return solved;
+        solved.outcome = KinsolOutcome::converged;
+        z = equilibrium.last_iterate(); // KINSOL's is the one before
+        solved.residual = equilibrium.records().back().residual;
+        return solved;
+    };
+    solve::KinsolResult solved = call();
     if (solved.outcome != KinsolOutcome::stopped) return solved; // it may still gain
     const double moved = largest_component(equilibrium.displacements(z));
     if (!(moved <= options.farthest)) return solved; // it rests nowhere near a solution
@@ -48,7 +56,7 @@ solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& so
     options.reference_force = floor;
     equilibrium.set_statuses(equilibrium.statuses(), rule, false);
     const int before = solved.iterations;
-    solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
+    solved = call();
     solved.iterations += before;
     return solved;
 }
@@ -98,7 +106,11 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
         last_z = z;
         Statuses next = equilibrium.natural_statuses();
         if (next == last) return result;
-        if (!seen.insert(next).second) break;
+        if (!seen.insert(next).second) {
+            // statuses that go round for what is no more than round-off
+            if (equilibrium.holds(z, next, options.tolerance)) return result;
+            break;
+        }
         statuses = std::move(next);
     }
     result.outcome = KinsolOutcome::stopped;

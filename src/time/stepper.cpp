@@ -178,6 +178,7 @@ void Stepper::resume(Checkpoint checkpoint) {
     moved_ = checkpoint.moved;
     attempts_ = checkpoint.attempts;
     stabilised_steps_ = checkpoint.stabilised_steps;
+    steps_at_round_off_ = checkpoint.steps_at_round_off;
     factorisations_ = checkpoint.factorisations;
     gmres_iterations_ = checkpoint.gmres_iterations;
     refreshed_patches_ = checkpoint.refreshed_patches;
@@ -291,6 +292,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
                        moved_,
                        attempts_,
                        stabilised_steps_,
+                       steps_at_round_off_,
                        factorisations_,
                        gmres_iterations_,
                        refreshed_patches_,
@@ -425,6 +427,7 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
             equilibrium.commit();
             state_ = next; // in place: its arrays stay where they are for whoever looks at them
             stabilised_steps_ += result.stabilised_solves > 0 ? 1 : 0;
+            steps_at_round_off_ += equilibrium.rests() ? 1 : 0;
             if (dynamics != nullptr) ledger_ = ledger;
             observer.attempted(attempt, equilibrium.records());
             observer.accepted(

@@ -49,6 +49,9 @@ public:
     [[nodiscard]] bool stabilised() const { return springs_.share != nullptr; }
     /// f (nodes) N at u (nodes) m; not to be used where an element is not admissible.
     model::WorstElement evaluate(const std::vector<Vec3>& u, std::vector<Vec3>& f) const;
+    /// Adds to `terms`, (nodes) N, the absolute values of what f(u) is summed up from: its round-off is some last digits of
+    /// that. By the tangent as it is.
+    void add_terms(const std::vector<Vec3>& u, std::vector<Vec3>& terms) const;
     /// Takes the tangent to u. False where it does not depend on u, and nothing is done.
     bool linearise(const std::vector<Vec3>& u);
     /// df/du, at the last linearise(): the effective stiffness.

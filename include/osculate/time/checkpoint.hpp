@@ -21,7 +21,7 @@ struct Checkpoint {
     model::State state;
     Ledger ledger;
     bool moved = false; ///< a dynamic stage has begun
-    int attempts = 0, stabilised_steps = 0;
+    int attempts = 0, stabilised_steps = 0, steps_at_round_off = 0;
     long factorisations = 0, gmres_iterations = 0, refreshed_patches = 0, paths_followed = 0;
     EquilibriumMemory memory;
     std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs)

@@ -94,6 +94,13 @@ public:
     /// Statuses at the last residual, and what the complementarity functions say there.
     [[nodiscard]] const std::vector<std::vector<contact::Status>>& statuses() const { return statuses_; }
     [[nodiscard]] std::vector<std::vector<contact::Status>> natural_statuses() const;
+    /// Whether the last residual came to rest at the round-off of its own rows: no iterate can say more, see at_round_off().
+    [[nodiscard]] bool rests() const { return rests_; }
+    /// The z of the last residual.
+    [[nodiscard]] const Vector& last_iterate() const { return last_z_; }
+    /// Whether z is an equilibrium with these statuses, to the tolerance (of the reference force) or to the round-off of its
+    /// rows. Statuses are these afterwards, frozen.
+    [[nodiscard]] bool holds(const Vector& z, std::vector<std::vector<contact::Status>> statuses, double tolerance);
     /// Lines of iterations.csv since begin_attempt.
     [[nodiscard]] const std::vector<IterationRecord>& records() const { return records_; }
     /// The last different sets of statuses since begin_attempt, the latest last: a few, for a post-mortem.
@@ -124,6 +131,15 @@ private:
     void fill(double* F);
     void record(const double* F, int status_changes);
     [[nodiscard]] bool cycles(double residual);
+    /// u to positions x_ and what their rounding takes off, tail_: x_ + tail_ = X + u to the last digit of u.
+    void place();
+    /// What the law needs to know of slave j of pair p, from differences of displacements and of reference positions: how far
+    /// the bodies are from the origin changes nothing.
+    [[nodiscard]] contact::ContactState contact_state(std::size_t p, Index j) const;
+    /// Whether no component of F, the last residual, is more than round-off of the terms its row is the sum of.
+    [[nodiscard]] bool at_round_off(const double* F) const;
+    /// What the contact law's row of slave j of pair p is the sum of, N, local axes.
+    [[nodiscard]] Vec3 law_terms(std::size_t p, Index j) const;
     /// Whether slave j of pair p has a contact partner and bears on it.
     [[nodiscard]] bool reaches(std::size_t p, Index j) const;
     [[nodiscard]] SoftContact soften(std::size_t p, Index j) const;
@@ -151,6 +167,7 @@ private:
     double reference_force_ = 1;
 
     std::vector<Vec3> u_, x_, internal_, unbalanced_;
+    std::vector<Vec3> tail_, tail_start_;                   ///< see place(); at the start of the step
     std::vector<Vec3> product_u_, product_f_, product_law_; ///< scratch of multiply()
     std::vector<Vector> product_on_;
     std::vector<Vec3> linear_about_; ///< of the next residual; empty: exact
@@ -166,6 +183,7 @@ private:
     std::size_t last_configuration_ = 0;
     double best_ = 0;          ///< least residual since set_statuses()
     int idle_ = 0;             ///< iterates since
+    bool rests_ = false;       ///< see rests()
     Vector last_z_, before_z_; ///< of the last two residuals
     Index worst_node_ = -1;
     model::WorstElement worst_element_;                        ///< at the last residual

@@ -79,6 +79,8 @@ public:
     [[nodiscard]] long paths_followed() const { return paths_followed_; }
     /// Steps accepted on the rung `stabilised`, see climb().
     [[nodiscard]] int stabilised_steps() const { return stabilised_steps_; }
+    /// Steps accepted with a residual above the tolerance but at the round-off of its rows, see Equilibrium::rests().
+    [[nodiscard]] int steps_at_round_off() const { return steps_at_round_off_; }
     [[nodiscard]] double end_time() const;
 
 private:
@@ -126,7 +128,7 @@ private:
     Ledger ledger_;
     bool moved_ = false; ///< a dynamic stage has begun
     int attempts_ = 0;
-    int stabilised_steps_ = 0;
+    int stabilised_steps_ = 0, steps_at_round_off_ = 0;
     std::unique_ptr<Audit> audit_;        ///< null: not wanted
     std::unique_ptr<Checkpoint> resumed_; ///< until run() has gone on from it
     long factorisations_ = 0, gmres_iterations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;

@@ -134,6 +134,10 @@ void show_run(const output::Summary& summary, const Arguments& arguments, const 
     print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}{}/history.csv\n", summary.scene,
                       summary.steps.accepted, summary.iterations, summary.total_seconds,
                       frames ? folder + "/series.pvd and " : "", folder));
+    if (summary.steps.at_round_off > 0)
+        print(fmt::format("note: {} of these steps ended at the round-off of their forces and gaps, which is above "
+                          "solver.tolerance\n",
+                          summary.steps.at_round_off));
 }
 
 void report_run(const std::string& folder) {

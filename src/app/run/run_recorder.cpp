@@ -319,6 +319,7 @@ void RunRecorder::write_summary() {
     summary_.factorisations = stepper_.factorisations();
     summary_.gmres_iterations = stepper_.gmres_iterations();
     summary_.steps.stabilised = stepper_.stabilised_steps();
+    summary_.steps.at_round_off = stepper_.steps_at_round_off();
     summary_.timings = timings_;
     summary_.checks = checks_.checks();
     if (plan_.stepper.audit || !scene_.solver.audit) {

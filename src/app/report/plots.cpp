@@ -134,9 +134,8 @@ std::string script_of(const std::string& name, const scene::Plot& plot, const st
                         gnuplot_text(plot.x_label.empty() ? plot.curves.front().second.x : plot.x_label),
                         gnuplot_text(plot.y_label.empty() ? plot.curves.front().second.y : plot.y_label));
     for (const auto& [terminal, ending] : {std::pair{"svg", "svg"}, {"pngcairo", "png"}})
-        text +=
-            fmt::format("set terminal {} size 900,600 background 'white'\nset output '{}.{}'\nplot {}\nunset output\n",
-                        terminal, name, ending, lines);
+        text += fmt::format("set terminal {} size 900,600 background 'white'\nset output {}\nplot {}\nunset output\n",
+                            terminal, gnuplot_text(name + "." + ending), lines);
     return text;
 }
 

@@ -22,13 +22,6 @@ struct Curve {
     std::string title;
 };
 
-/// Text within single quotes of gnuplot.
-std::string in_quotes(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
-}
-
 double largest(const std::vector<double>& column) {
     double found = 0;
     for (const double value : column)
@@ -67,15 +60,14 @@ std::string plot(const output::NumberTable& history, const std::string& name, co
     for (std::size_t c = 0; c < curves.size(); ++c)
         lines += fmt::format("{} '../history.csv' using 1:(column({})/{:g}) with {} lc rgb '{}' title {}",
                              c == 0 ? "" : ", \\\n    ", curves[c].column, scale, style, colours[c % colours.size()],
-                             in_quotes(curves[c].title));
-    std::string text = fmt::format("set title {}\nset ylabel {}\nset xrange {}\nset yrange {}\n", in_quotes(title),
-                                   in_quotes(prefixes[static_cast<std::size_t>(thousands + 4)] + unit),
+                             gnuplot_text(curves[c].title));
+    std::string text = fmt::format("set title {}\nset ylabel {}\nset xrange {}\nset yrange {}\n", gnuplot_text(title),
+                                   gnuplot_text(prefixes[static_cast<std::size_t>(thousands + 4)] + unit),
                                    range_of(history, {{1, ""}}, 1), range_of(history, curves, scale));
     for (const auto& [terminal, ending] : {std::pair{"svg", "svg"}, std::pair{"pngcairo", "png"}})
-        text +=
-            fmt::format("set terminal {} size 1000,560 font 'sans,13' background 'white'\nset output '{}.{}'\nplot{}\n"
-                        "unset output\n",
-                        terminal, name, ending, lines);
+        text += fmt::format("set terminal {} size 1000,560 font 'sans,13' background 'white'\nset output {}\nplot{}\n"
+                            "unset output\n",
+                            terminal, gnuplot_text(name + "." + ending), lines);
     return text;
 }
 

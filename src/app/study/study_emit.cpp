@@ -1,6 +1,7 @@
 #include "app/study/study_emit.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/core/printable.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -125,6 +126,13 @@ echo $code > "$folder/{code}"
 [ $code -eq 0 ] || [ $code -eq 3 ] # a run that gives up is a result
 )sh";
 
+/// A name for SLURM, whose comments know neither quotes nor line breaks.
+std::string job_name(std::string name) {
+    for (char& c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != '.') c = '_';
+    return name;
+}
+
 /// A text within a string that Snakemake formats.
 std::string unformatted(const std::string& text) {
     std::string doubled;
@@ -150,7 +158,8 @@ std::string emit_snakemake(const scene::Study& study, const std::vector<StudyCas
                         fmt::arg("code", literal(unformatted(shell_word(run + "/" + exit_code_file)))));
     }
     if (!inputs.empty()) inputs.pop_back();
-    write_text(path, fmt::format(snakefile, fmt::arg("name", study.name), fmt::arg("file", shell_word(path.string())),
+    write_text(path, fmt::format(snakefile, fmt::arg("name", printable(study.name)),
+                                 fmt::arg("file", shell_word(path.string())),
                                  fmt::arg("directory", literal(fs::absolute(folder).lexically_normal().string())),
                                  fmt::arg("program", literal(program())), fmt::arg("inputs", inputs),
                                  fmt::arg("gather", literal(unformatted(line_of(gather))))) +
@@ -172,10 +181,11 @@ std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& 
     }
     if (count == 0) return fmt::format("{}: every run is finished; `{}` gathers the results\n", study.name, gathering);
     write_text(folder / "cases.txt", table);
-    write_text(path, fmt::format(sbatch, fmt::arg("name", study.name), fmt::arg("file", shell_word(path.string())),
-                                 fmt::arg("wrap", shell_word(gathering)), fmt::arg("job", study.name),
-                                 fmt::arg("count", count), fmt::arg("threads", options.threads),
-                                 fmt::arg("directory", directory), fmt::arg("quoted_directory", shell_word(directory)),
+    write_text(path, fmt::format(sbatch, fmt::arg("name", printable(study.name)),
+                                 fmt::arg("file", shell_word(path.string())), fmt::arg("wrap", shell_word(gathering)),
+                                 fmt::arg("job", job_name(study.name)), fmt::arg("count", count),
+                                 fmt::arg("threads", options.threads), fmt::arg("directory", printable(directory)),
+                                 fmt::arg("quoted_directory", shell_word(directory)),
                                  fmt::arg("program", shell_word(program())), fmt::arg("code", exit_code_file)));
     return fmt::format("{}: {} runs; `sbatch {}` runs them, then `{}` gathers the results\n", study.name, count,
                        shell_word(path.string()), gathering);

@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::array plot_names{"contact", "reactions", "energies", "steps"};
+
 struct Curve {
     std::size_t column; ///< of history.csv, from 1
     std::string title;
@@ -97,15 +99,16 @@ std::string script(const output::NumberTable& history) {
            "rgb '#dddddd'\n"
            "set key tmargin center horizontal samplen 2 noenhanced\nset title noenhanced\nset ylabel noenhanced\nset "
            "xlabel 'time, s'\n" +
-           plot(history, "contact", "Contact forces: sums of the nodes'", "N", contact) +
-           plot(history, "reactions", "Reactions", "N", reactions) +
-           plot(history, "energies", "Energies", "J", energies) +
-           plot(history, "steps", "dt of the accepted steps", "s", steps, "steps lw 1.5");
+           plot(history, plot_names[0], "Contact forces: sums of the nodes'", "N", contact) +
+           plot(history, plot_names[1], "Reactions", "N", reactions) +
+           plot(history, plot_names[2], "Energies", "J", energies) +
+           plot(history, plot_names[3], "dt of the accepted steps", "s", steps, "steps lw 1.5");
 }
 
 } // namespace
 
-std::string write_report_plots(const fs::path& run_folder) {
+std::string write_report_plots(output::OutputFolder& run) {
+    const fs::path& run_folder = run.path();
     output::NumberTable history;
     try {
         history = output::read_numbers(run_folder / "history.csv");
@@ -114,6 +117,10 @@ std::string write_report_plots(const fs::path& run_folder) {
     }
     if (history.names.empty() || history.columns.front().empty()) return "";
     const fs::path folder = run_folder / "report";
+    std::vector<std::string> files{"report/plots.gp"};
+    for (const char* name : plot_names)
+        for (const char* ending : {".svg", ".png"}) files.push_back(std::string("report/") + name + ending);
+    run.claim(files);
     {
         std::ofstream file(folder / "plots.gp", std::ios::binary);
         file << script(history);

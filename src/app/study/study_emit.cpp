@@ -1,5 +1,6 @@
 #include "app/study/study_emit.hpp"
 
+#include "app/study/run_folder.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/core/printable.hpp"
 
@@ -41,9 +42,9 @@ std::string line_of(const std::vector<std::string>& words) {
     return line;
 }
 
-std::string line_of(const StudyCase& c, int threads) {
+std::string line_of(const StudyCase& c, const StudyRunOptions& options) {
     return line_of(
-        run_words(c, fs::absolute(c.scene_path).lexically_normal().string(), fs::path("runs") / c.id, threads));
+        run_words(c, fs::absolute(c.scene_path).lexically_normal().string(), fs::path("runs") / c.id, options));
 }
 
 std::string program() {
@@ -67,7 +68,7 @@ std::vector<const StudyCase*> announced(const std::vector<StudyCase>& cases, con
     std::vector<const StudyCase*> list;
     for (const StudyCase& c : cases) {
         if (!is_chosen(c, options) || (c.record.finished() && !finished)) continue;
-        announce(c);
+        announce(c, options.force);
         list.push_back(&c);
     }
     return list;
@@ -151,7 +152,7 @@ std::string emit_snakemake(const scene::Study& study, const std::vector<StudyCas
     for (const StudyCase* c : announced(cases, options, true)) {
         const std::string run = "runs/" + c->id, summary = literal(run + "/summary.json");
         inputs += fmt::format("        {},\n", summary);
-        const std::string line = line_of(*c, options.threads) + " > " + shell_word(run + "/messages.txt") + " 2>&1";
+        const std::string line = line_of(*c, options) + " > " + shell_word(run + "/messages.txt") + " 2>&1";
         rules +=
             fmt::format(snake_rule, fmt::arg("number", ++number), fmt::arg("id", c->id), fmt::arg("output", summary),
                         fmt::arg("threads", options.threads), fmt::arg("line", literal(unformatted(line))),
@@ -176,7 +177,7 @@ std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& 
     std::string table;
     int count = 0;
     for (const StudyCase* c : announced(cases, options, false)) {
-        table += c->id + "\t" + line_of(*c, options.threads) + "\n";
+        table += c->id + "\t" + line_of(*c, options) + "\n";
         ++count;
     }
     if (count == 0) return fmt::format("{}: every run is finished; `{}` gathers the results\n", study.name, gathering);

@@ -194,8 +194,17 @@ std::string gnuplot_script(const scene::SurfaceStudy& study, const StudyResult& 
 
 } // namespace
 
+std::vector<std::string> surface_study_files(const scene::SurfaceStudy& study) {
+    std::vector<std::string> files{"study.csv", "study.md", "study.gp"};
+    for (const auto& [name, surface] : study.surfaces)
+        for (const char* ending : {".svg", ".png"}) files.push_back("study_" + name + ending);
+    return files;
+}
+
 std::string write_surface_study(const scene::SurfaceStudy& study, const StudyResult& result,
-                                const std::filesystem::path& folder) {
+                                output::OutputFolder& files) {
+    const std::filesystem::path& folder = files.path();
+    files.claim(surface_study_files(study));
     write_csv(result, folder / "study.csv");
     write_text(folder / "study.md", markdown(study, result));
     write_text(folder / "study.gp", gnuplot_script(study, result));

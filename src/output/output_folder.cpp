@@ -82,7 +82,8 @@ bool fits(std::string_view name, std::string_view pattern) {
     const std::size_t star = pattern.find('*');
     if (star == std::string_view::npos) return name == pattern;
     const std::string_view before = pattern.substr(0, star), after = pattern.substr(star + 1);
-    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) return false;
+    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
+        return false;
     const std::string_view number = name.substr(before.size(), name.size() - before.size() - after.size());
     return std::ranges::all_of(number, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
@@ -146,10 +147,11 @@ void OutputFolder::refuse_strangers() const {
     std::error_code none;
     if (!fs::is_directory(directory_, none)) return; // absent, or a file, which cannot be written into
     if (const std::vector<std::string> names = strangers(directory_); !names.empty())
-        refuse(directory_, fmt::format("a folder that is absent, is empty or holds the {} of an earlier run", manifest),
-               fmt::format("{}; -o names another folder, --new takes {}-2 or the next one that is free, --force goes in "
-                           "and deletes nothing that osculate did not write",
-                           some_of(names), printable(directory_.lexically_normal().string())));
+        refuse(
+            directory_, fmt::format("a folder that is absent, is empty or holds the {} of an earlier run", manifest),
+            fmt::format("{}; -o names another folder, --new takes {}-2 or the next one that is free, --force goes in "
+                        "and deletes nothing that osculate did not write",
+                        some_of(names), printable(directory_.lexically_normal().string())));
 }
 
 /// Files that are there, fit one of the patterns and are not in the list; sorted.
@@ -188,15 +190,17 @@ void OutputFolder::lock() {
             if (errno == EWOULDBLOCK) {
                 const auto theirs = output::read_manifest(path);
                 refuse(directory_, "a folder that no other process of osculate writes into",
-                       theirs ? fmt::format("process {} at work in it; -o names another folder, --new takes the next one "
-                                            "that is free",
-                                            theirs->process)
-                              : "one at work in it");
+                       theirs
+                           ? fmt::format("process {} at work in it; -o names another folder, --new takes the next one "
+                                         "that is free",
+                                         theirs->process)
+                           : "one at work in it");
             }
             fmt::print(stderr, "{} cannot be locked on this file system: see that no second run writes into it\n",
                        directory_.string());
         }
-        struct stat mine {}, there {};
+        struct stat mine {
+        }, there{};
         if (fstat(file_, &mine) == 0 && stat(path.c_str(), &there) == 0 && mine.st_ino == there.st_ino &&
             mine.st_dev == there.st_dev)
             return;

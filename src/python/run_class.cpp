@@ -320,7 +320,8 @@ only. Those said to be views are the run's own memory: they change as it goes on
         .def("run", run_all, py::arg("on_step") = py::none(),
              "Takes all steps that are left; what `on_step` raises ends the run and comes out.\n\nRaises RunFailure.")
         .def("write", write, py::arg("folder"), py::arg("checkpoint_every") = py::none(), py::arg("force") = false,
-             "Has the run write the files of `osculate run` while it goes. To be called before the first step. The folder "
+             "Has the run write the files of `osculate run` while it goes. To be called before the first step. The "
+             "folder "
              "is absent, empty or that of an earlier run; `force`: whatever is in it, as --force does.")
         .def("close", close, "Ends the run where it is; `for` and run() then find no more steps.")
         .def("__enter__", [](py::object self) { return self; })

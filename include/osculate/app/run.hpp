@@ -48,7 +48,8 @@ struct RunOptions {
     bool heed_signals =
         true; ///< SIGINT and SIGTERM end the run between two steps; false: they are the caller's business
     FolderOptions folder{};
-    std::function<void(const std::filesystem::path&)> entered{}; ///< told the folder before the first step; null: nobody
+    std::function<void(const std::filesystem::path&)>
+        entered{}; ///< told the folder before the first step; null: nobody
 };
 
 /// A run that was asked to end by a signal, and did between two steps, with a checkpoint written.

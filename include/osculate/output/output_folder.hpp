@@ -16,9 +16,9 @@ class OutputFolder {
 public:
     enum class Entry {
         careful, ///< a folder that is absent, or empty, or holds a manifest; files that it does not list are not overwritten
-        adopt,   ///< of a run, as a checkpoint in it shows. Where its first wanted file is unlisted, no list was kept: all are listed
-        force,   ///< any folder; files that are written take the place of those of their names
-        beside,  ///< a folder that is there, without a lock: another process may be at work. Without a manifest as `force`
+        adopt, ///< of a run, as a checkpoint in it shows. Where its first wanted file is unlisted, no list was kept: all are listed
+        force, ///< any folder; files that are written take the place of those of their names
+        beside, ///< a folder that is there, without a lock: another process may be at work. Without a manifest as `force`
     };
 
     static constexpr const char* manifest = "osculate_manifest.txt";

@@ -47,8 +47,9 @@ struct Arguments {
     deck::DeckUnits units = deck::DeckUnits::si;
 
     [[nodiscard]] RunOptions run_options() const {
-        return {output, threads, quiet,
-                checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every), true, folder};
+        return {output, threads,
+                quiet,  checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every),
+                true,   folder};
     }
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> result;
@@ -71,8 +72,9 @@ void print(const std::string& text) {
 
 void add_folder(CLI::App* command, Arguments& arguments, const std::string& what) {
     command->add_option("-o,--output", arguments.output, what)->type_name("DIR");
-    CLI::Option* force = command->add_flag("--force", arguments.folder.force,
-                                           "Go into a folder that holds other files; overwrite, but delete none of them");
+    CLI::Option* force =
+        command->add_flag("--force", arguments.folder.force,
+                          "Go into a folder that holds other files; overwrite, but delete none of them");
     command->add_flag("--new", arguments.folder.numbered, "Where something is in DIR, take DIR-2, DIR-3, ...")
         ->excludes(force);
 }

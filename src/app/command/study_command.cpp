@@ -90,11 +90,12 @@ long count(const std::vector<StudyCase>& cases, const char* status) {
 std::string run_study(const std::string& path, const StudyOptions& options) {
     const scene::Study study = scene::read_study(path, study_functions(), options.overrides);
     const std::vector<std::vector<std::size_t>> only = chosen(study, options.only);
-    const fs::path folder = chosen_folder(
-        options.directory.empty() ? fs::path("out") / study.name : options.directory, options.folder);
+    const fs::path folder =
+        chosen_folder(options.directory.empty() ? fs::path("out") / study.name : options.directory, options.folder);
     std::vector<StudyCase> cases = make_cases(study, folder, options.overrides);
-    const StudyRunOptions run{options.jobs,  std::max(1, options.threads), options.repeats > 0 ? options.repeats : study.repeats,
-                              only, options.quiet, options.folder.force};
+    const StudyRunOptions run{
+        options.jobs,  std::max(1, options.threads), options.repeats > 0 ? options.repeats : study.repeats, only,
+        options.quiet, options.folder.force};
     const std::vector<std::string> names = files_of(study, cases, run.repeats);
     output::OutputFolder files(folder, entry_of(options.folder), names);
     files.claim(names);

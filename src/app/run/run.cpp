@@ -40,8 +40,8 @@ bool is_complete(const fs::path& folder) {
 
 /// Folder of a run's files, where the resolved scene must not take the place of the one a user wrote.
 fs::path folder_of(const LoadedScene& loaded, const RunOptions& options) {
-    fs::path folder = chosen_folder(
-        options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory, options.folder);
+    fs::path folder = chosen_folder(options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory,
+                                    options.folder);
     std::error_code none;
     if (!loaded.path.empty() && fs::equivalent(folder / "scene.yaml", loaded.path, none))
         refuse(loaded.path, "another output folder",
@@ -154,17 +154,19 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
     LoadedScene loaded = load(scene_path, overrides, options.threads, timings);
-    OutputFolder folder(folder_of(loaded, options), entry_of(options.folder), RunRecorder::files(loaded.scene, loaded.plan));
+    OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
+                        RunRecorder::files(loaded.scene, loaded.plan));
     if (options.entered) options.entered(folder.path());
     return run(loaded, {&folder, options.threads, options.quiet, begin, options.checkpoint_every}, timings);
 }
 
 output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings, const RunOptions& options,
                     time::StepObserver* beside) {
-    OutputFolder folder(folder_of(loaded, options), entry_of(options.folder), RunRecorder::files(loaded.scene, loaded.plan));
+    OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
+                        RunRecorder::files(loaded.scene, loaded.plan));
     if (options.entered) options.entered(folder.path());
-    const RunRecorder::Settings settings{&folder, options.threads, options.quiet,
-                                         std::chrono::steady_clock::now(), options.checkpoint_every};
+    const RunRecorder::Settings settings{&folder, options.threads, options.quiet, std::chrono::steady_clock::now(),
+                                         options.checkpoint_every};
     return run(loaded, stepper, timings, settings, beside, options.heed_signals);
 }
 

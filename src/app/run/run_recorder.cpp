@@ -355,8 +355,7 @@ void RunRecorder::write_pictures() {
         fmt::print(stderr, "{}\n", note);
     if (!scene_.output.report) return;
     try {
-        for (const std::string& note : write_report(*settings_.folder).notes)
-            fmt::print(stderr, "report: {}\n", note);
+        for (const std::string& note : write_report(*settings_.folder).notes) fmt::print(stderr, "report: {}\n", note);
     } catch (const std::exception& error) { // a run is no worse for a report that cannot be written
         fmt::print(stderr, "report: {}\n", error.what());
     }

@@ -18,7 +18,8 @@ void make_run_folder(const fs::path& folder, bool force) {
     OutputFolder run(folder, force ? OutputFolder::Entry::force : OutputFolder::Entry::careful);
     run.remove_all_but({});
     std::error_code none;
-    for (const char* file : {messages_file, exit_code_file}) fs::remove(folder / file, none); // the study's list has them
+    for (const char* file : {messages_file, exit_code_file})
+        fs::remove(folder / file, none); // the study's list has them
     for (std::size_t repeat = 2; OutputFolder::has_manifest(folder / repeat_folder(repeat)); ++repeat)
         remove_run_folder(folder / repeat_folder(repeat)); // of a study that was killed
 }

@@ -1,11 +1,11 @@
 #include "app/study/study_case.hpp"
 
 #include "app/study/run_folder.hpp"
-#include "osculate/output/output_folder.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/file_content.hpp"
 #include "osculate/output/csv_reader.hpp"
 #include "osculate/output/frame_reader.hpp"
+#include "osculate/output/output_folder.hpp"
 #include "osculate/scene/writer.hpp"
 #include "osculate/study/formulas.hpp"
 #include "osculate/study/work_precision.hpp"

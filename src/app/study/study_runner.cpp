@@ -94,8 +94,7 @@ void Runner::start(StudyCase& c) {
         job.folder /= repeat_folder(job.repeat + 1);
         make_run_folder(job.folder, options_.force);
     }
-    running_.emplace(
-        start_program(run_words(c, c.scene_path, job.folder, options_), job.folder / messages_file), job);
+    running_.emplace(start_program(run_words(c, c.scene_path, job.folder, options_), job.folder / messages_file), job);
 }
 
 void Runner::ended(const Job& job, int status) {

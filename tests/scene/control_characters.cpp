@@ -37,6 +37,14 @@ TEST(ControlCharacters, AreAllOfThoseOfAscii) {
     }
 }
 
+TEST(ControlCharacters, ButLineBreaksAreInADescription) {
+    EXPECT_THAT(messages(faults_of("description: |\n  Two\n  lines.\n" + small_scene)), IsEmpty());
+    EXPECT_THAT(
+        messages(faults_of("description: \"a\\tb\"\n" + small_scene)),
+        ElementsAre("bad.yaml:1:14: description: expected a text without control characters but line breaks, found "
+                    "'a\\tb' (a tab, 2. character)"));
+}
+
 TEST(ControlCharacters, AreRefusedInNamesUnitsWordsAndLists) {
     for (const auto& [from, to] :
          {std::pair{"cap:\n", "\"cap\\t\":\n"}, std::pair{"30 MPa", "\"30\\tMPa\""},

@@ -221,7 +221,7 @@ def fresh(name):
 
 def run_osculate(program, scene, name, changes=()):
     folder = fresh(name)
-    run = measured([program, "run", str(scene.resolve()), "-o", str(folder), "--quiet", "--threads", "1",
+    run = measured([program, "run", str(scene.resolve()), "-o", str(folder), "--force", "--quiet", "--threads", "1",
                     *(word for change in changes for word in ("--set", change))], folder)
     summary = json.loads((folder / "summary.json").read_text()) if (folder / "summary.json").exists() else {}
     if run["exit"] or summary.get("status") != "done":

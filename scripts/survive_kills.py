@@ -20,13 +20,14 @@ RUNS = {
               "--set", "contact.floor.surface=blend", "--set", "stages.fall.duration=0.13",
               "--set", "stages.fall.steps=65", "--set", "output.iterations=true", "--threads", "2"],
 }
+MANIFEST = "osculate_manifest.txt"
 TABLES = ("history.csv", "steps.csv", "iterations.csv")
 
 
 def contents(run):
     """Bytes by path of all that a run decides."""
     return {str(path.relative_to(run)): path.read_bytes() for path in sorted(run.rglob("*"))
-            if path.is_file() and path.name != "summary.json" and path.suffix != ".part"
+            if path.is_file() and path.name not in ("summary.json", MANIFEST) and path.suffix != ".part"
             and "checkpoint" not in path.relative_to(run).parts}
 
 
@@ -40,6 +41,11 @@ def faults(run, whole):
             found.append(f"{path} ends within a row")
         elif path.startswith("frames/") and data != whole.get(path):
             found.append(f"{path} differs")
+    listed = set((run / MANIFEST).read_text().split("\n")[1:]) if (run / MANIFEST).exists() else set()
+    for path in run.rglob("*"):
+        name = str(path.relative_to(run)).removesuffix(".part")
+        if path.is_file() and name not in listed and not name.startswith(MANIFEST):
+            found.append(f"{MANIFEST} does not list {name}")
     series = run / "series.pvd"
     if series.exists():
         for entry in xml.parse(series).getroot().iter("DataSet"):

@@ -1,6 +1,5 @@
 #include "output/files.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <fcntl.h>
@@ -17,19 +16,6 @@ void make_folder_of(const std::filesystem::path& path) {
     std::error_code error;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
     if (error) throw_unwritable(path, error);
-}
-
-void remove_files(const std::filesystem::path& folder, const std::vector<std::string>& extensions) {
-    std::error_code error;
-    if (!std::filesystem::is_directory(folder, error)) return;
-    std::vector<std::filesystem::path> old;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-        if (std::ranges::count(extensions, entry.path().extension().string()) > 0) old.push_back(entry.path());
-    for (const std::filesystem::path& path : old) {
-        std::filesystem::remove(path, error);
-        if (error) throw_unwritable(path, error);
-    }
-    if (std::filesystem::is_empty(folder, error)) std::filesystem::remove(folder, error);
 }
 
 void sync(const std::filesystem::path& path) {

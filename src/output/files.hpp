@@ -2,10 +2,8 @@
 /// Writing files of a run: one wording of errors, and whole files at once.
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 namespace osculate::output {
 
@@ -15,10 +13,6 @@ namespace osculate::output {
 /// Makes the folder a file is to lie in, when it is missing.
 /// @throws std::runtime_error with path and reason
 void make_folder_of(const std::filesystem::path& path);
-
-/// Removes the files of a folder that end so, and the folder where nothing else is in it; no folder: nothing to do.
-/// @throws std::runtime_error with path and reason
-void remove_files(const std::filesystem::path& folder, const std::vector<std::string>& extensions);
 
 /// Writes `content` to a file beside `path` and renames it: a reader sees the file of before or the whole new one.
 /// Makes the folder when it is missing.

@@ -19,21 +19,6 @@ std::vector<const Field*> chosen(FieldPlace where, const std::vector<std::string
     return fields;
 }
 
-/// @param kept  paths that stay, ascending
-void remove_frames(const fs::path& folder, const std::vector<fs::path>& kept = {}) {
-    std::error_code error;
-    if (!fs::is_directory(folder, error)) return;
-    std::vector<fs::path> old;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-        if (const fs::path kind = entry.path().extension();
-            (kind == ".vtu" || kind == ".vtp" || kind == ".part") && !std::ranges::binary_search(kept, entry.path()))
-            old.push_back(entry.path());
-    for (const fs::path& path : old) {
-        fs::remove(path, error);
-        if (error) throw_unwritable(path, error);
-    }
-}
-
 Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& u) {
     Array array{"displacement", 3, {}, false, "m"};
     for (const Index node : nodes) array.values.insert(array.values.end(), u[node].data(), u[node].data() + 3);
@@ -46,10 +31,8 @@ Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model
                std::vector<SeriesEntry> kept)
     : directory_(std::move(directory)), body_fields_(chosen(FieldPlace::body, fields.body)),
       series_(directory_, std::move(kept)), beside_(beside) {
-    std::vector<fs::path> stay;
-    for (const SeriesEntry& entry : series_.entries()) stay.push_back(directory_ / entry.file);
-    std::ranges::sort(stay);
-    remove_frames(directory_ / "frames", stay); // after series.pvd has forgotten them
+    if (!body_fields_.empty())
+        for (const model::Body& body : model.bodies) bodies_.push_back(body.name);
     const auto slave = chosen(FieldPlace::slave, fields.slave), master = chosen(FieldPlace::master, fields.master);
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         const model::ContactTerm& pair = *model.pairs[p];
@@ -64,13 +47,11 @@ Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model
     }
 }
 
-void Frames::remove(const fs::path& directory) {
-    remove_frames(directory / "frames");
-    std::error_code error;
-    fs::remove(directory / "series.pvd", error);
-    if (error) throw_unwritable(directory / "series.pvd", error);
-    for (const fs::path& folder : {directory / "frames", directory})
-        if (fs::is_directory(folder, error) && fs::is_empty(folder, error)) fs::remove(folder, error);
+std::vector<std::string> Frames::files(long number) const {
+    std::vector<std::string> names;
+    for (const std::string& body : bodies_) names.push_back(file(body, number, "vtu"));
+    for (const Surface& surface : surfaces_) names.push_back(file(surface.name, number, "vtp"));
+    return names;
 }
 
 void Frames::add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
@@ -98,7 +79,7 @@ void Frames::write(const Snapshot& snapshot, long number) {
     const double time = snapshot.state().time;
     const model::Model& model = snapshot.model();
     std::vector<File> files; // values are taken here: the state does not wait
-    for (std::size_t b = 0; b < model.bodies.size() && !body_fields_.empty(); ++b) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
         const model::Body& body = model.bodies[b];
         File& one = files.emplace_back(File{nullptr, &body, body.name, file(body.name, number, "vtu"), {}});
         for (const Field* f : body_fields_) one.arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));

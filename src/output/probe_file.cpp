@@ -1,7 +1,5 @@
 #include "osculate/output/probe_file.hpp"
 
-#include "output/files.hpp"
-
 #include <cmath>
 
 namespace osculate::output {
@@ -32,10 +30,6 @@ void ProbeFile::write(const Snapshot& snapshot) {
         for (const double value : row) cells.push_back(std::isnan(value) ? Cell{std::string()} : Cell{value});
         table_.row(cells);
     }
-}
-
-void ProbeFile::remove(const fs::path& folder) {
-    remove_files(folder / probe_folder, {".csv"});
 }
 
 } // namespace osculate::output

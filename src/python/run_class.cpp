@@ -202,7 +202,7 @@ std::unique_ptr<Session> make_run(const SceneFile& file, int threads) {
     return std::make_unique<Session>(file.path, file.overrides, threads);
 }
 
-void write(Session& run, const std::filesystem::path& folder, const py::object& checkpoint_every) {
+void write(Session& run, const std::filesystem::path& folder, const py::object& checkpoint_every, bool force) {
     if (run.phase() != Session::Phase::created)
         throw std::runtime_error("files are written from the start: call write() before the first step");
     app::RunOptions options;
@@ -210,6 +210,7 @@ void write(Session& run, const std::filesystem::path& folder, const py::object& 
     options.threads = run.threads();
     options.quiet = true;
     if (!checkpoint_every.is_none()) options.checkpoint_every = app::parse_checkpoint_every(py::str(checkpoint_every));
+    options.folder.force = force;
     run.write(std::move(options));
 }
 
@@ -318,8 +319,10 @@ only. Those said to be views are the run's own memory: they change as it goes on
              })
         .def("run", run_all, py::arg("on_step") = py::none(),
              "Takes all steps that are left; what `on_step` raises ends the run and comes out.\n\nRaises RunFailure.")
-        .def("write", write, py::arg("folder"), py::arg("checkpoint_every") = py::none(),
-             "Has the run write the files of `osculate run` while it goes. To be called before the first step.")
+        .def("write", write, py::arg("folder"), py::arg("checkpoint_every") = py::none(), py::arg("force") = false,
+             "Has the run write the files of `osculate run` while it goes. To be called before the first step. The "
+             "folder "
+             "is absent, empty or that of an earlier run; `force`: whatever is in it, as --force does.")
         .def("close", close, "Ends the run where it is; `for` and run() then find no more steps.")
         .def("__enter__", [](py::object self) { return self; })
         .def("__exit__", [](Session& self, const py::args&) { close(self); })

@@ -1,5 +1,7 @@
 #include "scene/overrides.hpp"
 
+#include "osculate/core/printable.hpp"
+
 namespace osculate::scene {
 
 namespace {
@@ -85,6 +87,11 @@ void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
 
 void apply(const Override& change, Tree& scene, std::vector<Fault>& faults) {
     const Place place{override_file, 0, 0};
+    if (find_control(change.key) != std::string::npos) {
+        faults.push_back(
+            fault_at(place, "", "key.path=value without control characters", "'" + printable(change.key) + "'"));
+        return;
+    }
     const std::vector<std::string> path = split_path(change.key);
     for (const std::string& part : path)
         if (part.empty()) {

@@ -17,6 +17,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// What people read of a scene, and no table or script holds.
+const std::vector<std::string> texts_with_lines{"description"};
+
 Words keys_under(const Tree& tree, const char* name) {
     Words keys;
     if (const Tree* map = tree.find(name))
@@ -83,7 +86,7 @@ void throw_unreadable(const Tree& tree, std::vector<Fault>& faults) {
 
 Scene read_scene(const std::string& path, const std::vector<Override>& overrides) {
     std::vector<Fault> faults;
-    Tree tree = read_yaml(path, faults);
+    Tree tree = read_yaml(path, faults, texts_with_lines);
     throw_unreadable(tree, faults);
     const fs::path directory = fs::absolute(path).lexically_normal().parent_path();
     return build(std::move(tree), path, directory, overrides, std::move(faults));
@@ -91,7 +94,7 @@ Scene read_scene(const std::string& path, const std::vector<Override>& overrides
 
 Scene parse_scene(const std::string& yaml_text, const std::string& name, const std::vector<Override>& overrides) {
     std::vector<Fault> faults;
-    Tree tree = parse_yaml(yaml_text, name, faults);
+    Tree tree = parse_yaml(yaml_text, name, faults, texts_with_lines);
     throw_unreadable(tree, faults);
     return build(std::move(tree), name, fs::current_path(), overrides, std::move(faults));
 }

@@ -350,7 +350,7 @@ void StudyReader::document() {
 
 Study read_study(const std::string& path, const NamedFunctions& functions, const std::vector<Override>& command_line) {
     std::vector<Fault> faults;
-    const Tree tree = read_yaml(path, faults);
+    const Tree tree = read_yaml(path, faults, {"problem", "defects"}); // Markdown, which study.md alone holds
     if (!faults.empty()) throw SceneError(std::move(faults));
     Study study = StudyReader(tree, path, functions, faults).read();
     check_study(study, functions, command_line, faults);

@@ -1,7 +1,9 @@
 #include "scene/tree.hpp"
 
 #include "osculate/core/file_content.hpp"
+#include "osculate/core/printable.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <yaml-cpp/eventhandler.h>
@@ -17,7 +19,8 @@ constexpr int max_nodes = 200000; ///< aliases of aliases grow without bound
 /// Copies yaml-cpp's nodes into a Tree.
 class Copier {
 public:
-    Copier(const std::string& file, std::vector<Fault>& faults) : file_(file), faults_(faults) {}
+    Copier(const std::string& file, const std::vector<std::string>& with_lines, std::vector<Fault>& faults)
+        : file_(file), with_lines_(with_lines), faults_(faults) {}
 
     Tree copy(const YAML::Node& node, const std::string& path, int depth = 0) {
         Tree tree;
@@ -34,7 +37,7 @@ public:
         switch (node.Type()) {
         case YAML::NodeType::Scalar:
             tree.kind = Tree::Kind::scalar;
-            tree.scalar = node.Scalar();
+            tree.scalar = checked(node.Scalar(), tree.place, path, std::ranges::count(with_lines_, path) > 0);
             break;
         case YAML::NodeType::Sequence:
             tree.kind = Tree::Kind::list;
@@ -56,6 +59,22 @@ private:
         return {file_, mark.line + 1, mark.column + 1};
     }
 
+    /// A text, or a fault and what can be shown of it: names and titles reach terminals, tables and scripts, where a
+    /// control character ends the line or the string that they stand in.
+    std::string checked(const std::string& text, const Place& place, const std::string& path, bool lines) {
+        const std::size_t at = find_control(text, lines ? "\n" : "");
+        if (at == std::string::npos) return text;
+        std::string shown = printable(text);
+        constexpr std::size_t longest = 80;
+        if (shown.size() > longest) shown = shown.substr(0, longest) + "...";
+        faults_.push_back(
+            fault_at(place, path,
+                     lines ? "a text without control characters but line breaks"
+                           : "a text on one line, without control characters",
+                     "'" + shown + "' (" + control_name(text[at]) + ", " + std::to_string(at + 1) + ". character)"));
+        return printable(text);
+    }
+
     void copy_map(const YAML::Node& node, Tree& tree, const std::string& path, int depth) {
         tree.kind = Tree::Kind::map;
         for (const auto& entry : node) {
@@ -65,7 +84,7 @@ private:
                 faults_.push_back(fault_at(key_place, path, "a name as a key", "something else"));
                 continue;
             }
-            const std::string& key = entry.first.Scalar();
+            const std::string key = checked(entry.first.Scalar(), key_place, path, false);
             const std::string inside = path.empty() ? key : path + "." + key;
             if (const Tree* first = tree.find(key)) {
                 faults_.push_back(
@@ -81,6 +100,7 @@ private:
     }
 
     const std::string& file_;
+    const std::vector<std::string>& with_lines_;
     std::vector<Fault>& faults_;
     int nodes_ = 0;
     bool overflow_ = false;
@@ -143,7 +163,8 @@ std::string join(const std::vector<std::string>& words, const char* separator) {
     return text;
 }
 
-Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fault>& faults) {
+Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fault>& faults,
+                const std::vector<std::string>& with_lines) {
     try {
         std::istringstream stream(text);
         YAML::Parser parser(stream);
@@ -155,7 +176,7 @@ Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fa
                                       "the end of the document", "more text"));
             return {.place = {file, 1, 1}};
         }
-        Tree tree = Copier(file, faults).copy(YAML::Load(text), "");
+        Tree tree = Copier(file, with_lines, faults).copy(YAML::Load(text), "");
         if (tree.place.line == 0) tree.place = {file, 1, 1};
         return tree;
     } catch (const YAML::Exception& error) {
@@ -168,7 +189,7 @@ Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fa
     return {.place = {file, 1, 1}};
 }
 
-Tree read_yaml(const std::string& path, std::vector<Fault>& faults) {
+Tree read_yaml(const std::string& path, std::vector<Fault>& faults, const std::vector<std::string>& with_lines) {
     const Tree nothing{.place = {path, 0, 0}};
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
@@ -181,7 +202,7 @@ Tree read_yaml(const std::string& path, std::vector<Fault>& faults) {
         faults.push_back(fault_at({path, 0, 0}, "", "a readable file", error.message()));
         return nothing;
     }
-    return parse_yaml(text, path, faults);
+    return parse_yaml(text, path, faults, with_lines);
 }
 
 } // namespace osculate::scene

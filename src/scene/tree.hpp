@@ -34,11 +34,15 @@ struct Tree {
 /// Name by which places of overrides go.
 inline constexpr const char* override_file = "--set";
 
-/// Parses one document. Syntax errors, duplicate keys and keys that are no scalars become faults; the rest is kept.
-[[nodiscard]] Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fault>& faults);
+/// Parses one document. Syntax errors, duplicate keys, keys that are no scalars and texts with control characters become
+/// faults; the rest is kept.
+/// @param with_lines  keys whose texts may have line breaks
+[[nodiscard]] Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fault>& faults,
+                              const std::vector<std::string>& with_lines = {});
 
 /// The same for a file; an unreadable file becomes a fault.
-[[nodiscard]] Tree read_yaml(const std::string& path, std::vector<Fault>& faults);
+[[nodiscard]] Tree read_yaml(const std::string& path, std::vector<Fault>& faults,
+                             const std::vector<std::string>& with_lines = {});
 
 /// Fault at a place.
 [[nodiscard]] Fault fault_at(const Place& place, std::string key, std::string expected, std::string found,

@@ -107,7 +107,7 @@ TEST_F(Probes, PlotsAreDrawnFromTheRunsTables) {
     EXPECT_EQ(forces.text(4, "curve"), "contact") << "the one pair needs no name";
     EXPECT_NEAR(forces.number(7, "y"), p, 1e-9 * p);
     EXPECT_EQ(Csv(files / "profile.csv").rows.size(), 4U) << "places below 0.9 m, of the last time alone";
-    EXPECT_THAT(content(files / "forces.gp"), HasSubstr("set title 'the section''s force'"));
+    EXPECT_THAT(content(files / "forces.gp"), HasSubstr("set title \"the section\\047s force\""));
 }
 
 TEST_F(Probes, PlotsOfAQuietRunSayNothing) {

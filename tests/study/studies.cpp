@@ -153,7 +153,8 @@ TEST_F(StudyFiles, HoldARowForEveryMethodAndMesh) {
                                                  "meshes: {refined: {coarsest: 4, levels: 2}}\n"
                                                  "methods: [facets, rpim_1]\npoints: 1\n");
     const scene::SurfaceStudy study = scene::read_surface_study(path, study::method_names());
-    const std::string said = write_surface_study(study, run_surface_study(study, threads), folder / "out");
+    output::OutputFolder files(folder / "out", output::OutputFolder::Entry::careful);
+    const std::string said = write_surface_study(study, run_surface_study(study, threads), files);
     EXPECT_THAT(said, ::testing::HasSubstr("plots"));
     const std::string csv = content(folder / "out/study.csv");
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);

@@ -1,6 +1,8 @@
 #pragma once
 /// The report of a run: one HTML file for a colleague, and its pictures and plots as files.
 
+#include "osculate/output/output_folder.hpp"
+
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -24,5 +26,8 @@ struct WrittenReport {
 /// @throws SceneError where the folder is none of a run
 /// @throws ReportFailure with path and reason where a file cannot be read or written
 [[nodiscard]] WrittenReport write_report(const std::filesystem::path& run_folder);
+
+/// The same from within the run.
+[[nodiscard]] WrittenReport write_report(output::OutputFolder& run);
 
 } // namespace osculate::app

@@ -1,10 +1,10 @@
 #pragma once
 /// Studies of surface approximations: errors of every method on every mesh of every surface, as tables and plots.
 
+#include "osculate/output/output_folder.hpp"
 #include "osculate/scene/surface_study.hpp"
 #include "osculate/study/errors.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -43,9 +43,12 @@ struct ErrorKind {
 /// @throws SceneError where the meshes of a file do not fit
 [[nodiscard]] StudyResult run_surface_study(const scene::SurfaceStudy& study, int threads);
 
-/// Writes folder/study.csv, study.md, study.gp and, with gnuplot, the plots study_<surface>.svg and .png.
+/// What write_surface_study() may write.
+[[nodiscard]] std::vector<std::string> surface_study_files(const scene::SurfaceStudy& study);
+
+/// Writes study.csv, study.md, study.gp and, with gnuplot, the plots study_<surface>.svg and .png.
 /// @returns what there is to say about the plots
 std::string write_surface_study(const scene::SurfaceStudy& study, const StudyResult& result,
-                                const std::filesystem::path& folder);
+                                output::OutputFolder& files);
 
 } // namespace osculate::app

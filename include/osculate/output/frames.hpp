@@ -20,16 +20,15 @@ struct FrameFields {
 /// positions; surfaces bring the displacement along, so that they warp as bodies do.
 class Frames {
 public:
-    /// Removes the frames of an earlier run in `directory`, and no other file.
+    /// Starts series.pvd anew.
     /// @param beside  files are written on a thread of their own, the next step goes on meanwhile
     /// @param kept    frames that stay, see written()
     /// @throws std::runtime_error with path and reason, as write() and finish() do
     Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model, bool beside = false,
            std::vector<SeriesEntry> kept = {});
 
-    /// Removes the frames in `directory` and their series, and the folders where nothing else is in them.
-    /// @throws std::runtime_error with path and reason
-    static void remove(const std::filesystem::path& directory);
+    /// Files that make frame `number`, relative to the directory.
+    [[nodiscard]] std::vector<std::string> files(long number) const;
 
     /// Writes frame number `number` and lists it in series.pvd: at the latest when the next one is written, or finish() called.
     void write(const Snapshot& snapshot, long number);
@@ -59,10 +58,11 @@ private:
     void write_files(const std::vector<File>& files, const Vec3& origin, double time);
     void add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
                      const std::vector<mesh::Facet>& facets, std::vector<const Field*> fields);
-    [[nodiscard]] std::string file(const std::string& part, long number, const char* extension);
+    [[nodiscard]] static std::string file(const std::string& part, long number, const char* extension);
 
     std::filesystem::path directory_;
     std::vector<const Field*> body_fields_;
+    std::vector<std::string> bodies_; ///< that have files
     std::vector<Surface> surfaces_;
     Series series_;
     bool beside_;

@@ -30,8 +30,6 @@ public:
     [[nodiscard]] static std::filesystem::path path(const std::filesystem::path& folder, const std::string& name) {
         return folder / relative_path(name);
     }
-    /// Removes the tables of an earlier run, and the folder where nothing else is in it.
-    static void remove(const std::filesystem::path& folder);
 
 private:
     const Probe& probe_;

@@ -13,6 +13,8 @@ namespace osculate::output {
 
 /// Members carry the names they have in the file; see write_summary for the two that differ.
 struct Summary {
+    std::filesystem::path folder; ///< of the run's files, of which summary.json is one; not in the file
+
     struct Body {
         std::string name;
         long nodes = 0, elements = 0;

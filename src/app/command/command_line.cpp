@@ -36,6 +36,7 @@ enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4, lossy_import = 5 
 struct Arguments {
     std::string scene, output, key_path, run_folder, checkpoint_every, from, schema = "scene";
     std::vector<std::string> changes;
+    FolderOptions folder;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     bool quiet = false;
     SurfaceOptions surface;
@@ -46,8 +47,9 @@ struct Arguments {
     bool allow_loss = false;
 
     [[nodiscard]] RunOptions run_options() const {
-        return {output, threads, quiet,
-                checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every)};
+        return {output, threads,
+                quiet,  checkpoint_every.empty() ? CheckpointEvery{} : parse_checkpoint_every(checkpoint_every),
+                true,   folder};
     }
     [[nodiscard]] std::vector<scene::Override> overrides() const {
         std::vector<scene::Override> result;
@@ -62,6 +64,24 @@ struct Arguments {
 std::string assignment(const std::string& text) {
     const std::size_t equals = text.find('=');
     return equals != std::string::npos && equals > 0 ? "" : "expected name=value, found '" + text + "'";
+}
+
+void print(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void add_folder(CLI::App* command, Arguments& arguments, const std::string& what) {
+    command->add_option("-o,--output", arguments.output, what)->type_name("DIR");
+    CLI::Option* force =
+        command->add_flag("--force", arguments.folder.force,
+                          "Go into a folder that holds other files; overwrite, but delete none of them");
+    command->add_flag("--new", arguments.folder.numbered, "Where something is in DIR, take DIR-2, DIR-3, ...")
+        ->excludes(force);
+}
+
+/// Says which folder was taken, where it had to be chosen.
+void show_numbered(const Arguments& arguments, const std::filesystem::path& folder) {
+    if (arguments.folder.numbered) print(fmt::format("{}\n", folder.string()));
 }
 
 void add_changes(CLI::App* command, Arguments& arguments) {
@@ -86,8 +106,7 @@ CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
     command->alias("surface-study");
     command->add_option("STUDY", arguments.scene, "Study file");
     command->add_flag("--formulas", arguments.formulas, "List the formulas that studies may call");
-    command->add_option("-o,--output", arguments.output, "Folder of the tables and plots [out/<study name>]")
-        ->type_name("DIR");
+    add_folder(command, arguments, "Folder of the tables and plots [out/<study name>]");
     const CLI::Range positive(1, 1024);
     command->add_option("--jobs", arguments.study.jobs, "Runs at a time [1]")->type_name("N")->check(positive);
     command->add_option("--threads", arguments.study.threads, "Threads of every run [1]; of a study of surfaces [all]")
@@ -114,10 +133,6 @@ CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
     return command;
 }
 
-void print(const std::string& text) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-}
-
 void add_run_options(CLI::App* run, Arguments& arguments) {
     run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
         ->type_name("N")
@@ -128,8 +143,9 @@ void add_run_options(CLI::App* run, Arguments& arguments) {
     run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
 }
 
-void show_run(const output::Summary& summary, const Arguments& arguments, const std::string& folder) {
+void show_run(const output::Summary& summary, const Arguments& arguments) {
     if (arguments.quiet) return;
+    const std::string folder = summary.folder.string();
     const bool frames = std::ranges::count(summary.plan, "frames") > 0;
     print(fmt::format("{}: {} steps, {} Newton iterations, {:.1f} s; see {}{}/history.csv\n", summary.scene,
                       summary.steps.accepted, summary.iterations, summary.total_seconds,
@@ -161,6 +177,7 @@ void run_study(Arguments arguments) {
     if (scene::is_run_study(arguments.scene)) {
         arguments.study.directory = arguments.output;
         arguments.study.overrides = arguments.overrides();
+        arguments.study.folder = arguments.folder;
         print(run_study(arguments.scene, arguments.study));
         return;
     }
@@ -173,8 +190,12 @@ void run_study(Arguments arguments) {
     }
     const int threads = arguments.study.threads > 0 ? arguments.study.threads : arguments.threads;
     const scene::SurfaceStudy study = scene::read_surface_study(arguments.scene, study::method_names());
-    const std::string folder = arguments.output.empty() ? "out/" + study.name : arguments.output;
-    const std::string plots = write_surface_study(study, run_surface_study(study, threads), folder);
+    output::OutputFolder files(
+        chosen_folder(arguments.output.empty() ? "out/" + study.name : arguments.output, arguments.folder),
+        entry_of(arguments.folder), surface_study_files(study));
+    const std::string folder = files.path().string();
+    show_numbered(arguments, folder);
+    const std::string plots = write_surface_study(study, run_surface_study(study, threads), files);
     print(fmt::format("{}: see {}/study.md and study.csv; {}\n", study.name, folder, plots));
 }
 
@@ -215,7 +236,7 @@ ExitCode run_command(int argc, char** argv) {
     program.set_version_flag("--version", std::string("osculate ") + version);
     program.require_subcommand(1);
     CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
-    run->add_option("-o,--output", arguments.output, "Folder of the run's files [out/<scene name>]")->type_name("DIR");
+    add_folder(run, arguments, "Folder of the run's files [out/<scene name>]");
     add_run_options(run, arguments);
     CLI::App* resume = program.add_subcommand("resume", "Go on with a run from its last checkpoint");
     resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
@@ -227,8 +248,7 @@ ExitCode run_command(int argc, char** argv) {
     CLI::App* surface = add_scene_command(
         program, "surface", "Write the master surfaces as the solver sees them, before any run", arguments);
     surface->add_option("--pair", arguments.surface.pair, "Only this contact pair")->type_name("NAME");
-    surface->add_option("-o,--output", arguments.output, "Folder of the files [out/<scene name>/surface]")
-        ->type_name("DIR");
+    add_folder(surface, arguments, "Folder of the files [out/<scene name>/surface]");
     surface->add_option("--refine", arguments.surface.refine, "Cut every facet into N x N cells [8]")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
@@ -279,14 +299,18 @@ ExitCode run_command(int argc, char** argv) {
     }
 
     if (*run) {
-        const output::Summary summary = app::run(arguments.scene, arguments.overrides(), arguments.run_options());
-        show_run(summary, arguments, arguments.output.empty() ? "out/" + summary.scene : arguments.output);
+        RunOptions options = arguments.run_options();
+        options.entered = [&](const std::filesystem::path& folder) { show_numbered(arguments, folder); };
+        show_run(app::run(arguments.scene, arguments.overrides(), options), arguments);
     } else if (*resume) {
-        show_run(app::resume(arguments.run_folder, arguments.from, arguments.run_options()), arguments,
-                 arguments.run_folder);
+        if (const auto summary = app::resume(arguments.run_folder, arguments.from, arguments.run_options()))
+            show_run(*summary, arguments);
+        else if (!arguments.quiet)
+            print(fmt::format("the run in {} is complete; there is nothing left to do\n", arguments.run_folder));
     } else if (*surface) {
         arguments.surface.directory = arguments.output;
         arguments.surface.threads = arguments.threads;
+        arguments.surface.folder = arguments.folder;
         print(write_surfaces(arguments.scene, arguments.overrides(), arguments.surface));
     } else if (*study) {
         run_study(arguments);

@@ -1,5 +1,6 @@
 #include "app/command/study_command.hpp"
 
+#include "app/study/run_folder.hpp"
 #include "app/study/study_emit.hpp"
 #include "app/study/study_files.hpp"
 #include "app/study/study_runner.hpp"
@@ -8,6 +9,7 @@
 #include "osculate/study/formulas.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 #include <sstream>
 
@@ -64,6 +66,21 @@ std::vector<std::vector<std::size_t>> chosen(const scene::Study& study, const st
     return values;
 }
 
+/// Every file that the study itself may write, its runs' own apart, relative to its folder.
+std::vector<std::string> files_of(const scene::Study& study, const std::vector<StudyCase>& cases, int repeats) {
+    std::vector<std::string> names{"study.csv", "study.md", "study.gp", "Snakefile", "cases.txt", "study.sbatch"};
+    for (const scene::StudyQuantity& q : study.quantities)
+        for (const char* plot : {"_work", "_convergence"})
+            for (const char* ending : {".svg", ".png"}) names.push_back(q.name + plot + ending);
+    for (const StudyCase& c : cases) {
+        const std::string run = "runs/" + c.id + "/";
+        for (const char* file : {record_file, messages_file, exit_code_file}) names.push_back(run + file);
+        for (int repeat = 2; repeat <= repeats; ++repeat)
+            names.push_back(run + repeat_folder(static_cast<std::size_t>(repeat)) + "/" + messages_file);
+    }
+    return names;
+}
+
 long count(const std::vector<StudyCase>& cases, const char* status) {
     return std::ranges::count_if(cases, [&](const StudyCase& c) { return c.record.status == status; });
 }
@@ -72,12 +89,17 @@ long count(const std::vector<StudyCase>& cases, const char* status) {
 
 std::string run_study(const std::string& path, const StudyOptions& options) {
     const scene::Study study = scene::read_study(path, study_functions(), options.overrides);
-    const fs::path folder = options.directory.empty() ? fs::path("out") / study.name : options.directory;
+    const std::vector<std::vector<std::size_t>> only = chosen(study, options.only);
+    const fs::path folder =
+        chosen_folder(options.directory.empty() ? fs::path("out") / study.name : options.directory, options.folder);
     std::vector<StudyCase> cases = make_cases(study, folder, options.overrides);
-    fs::create_directories(folder);
-    const StudyRunOptions run{options.jobs, std::max(1, options.threads),
-                              options.repeats > 0 ? options.repeats : study.repeats, chosen(study, options.only),
-                              options.quiet};
+    const StudyRunOptions run{
+        options.jobs,  std::max(1, options.threads), options.repeats > 0 ? options.repeats : study.repeats, only,
+        options.quiet, options.folder.force};
+    const std::vector<std::string> names = files_of(study, cases, run.repeats);
+    output::OutputFolder files(folder, entry_of(options.folder), names);
+    files.claim(names);
+    if (options.folder.numbered) std::fputs((folder.string() + "\n").c_str(), stdout);
     if (!options.emit.empty()) {
         check_cases(study, cases, run);
         return options.emit == "slurm" ? emit_slurm(study, cases, run, folder, gather_words(path, folder, options))

@@ -1,6 +1,7 @@
 #pragma once
 /// The command `osculate study`.
 
+#include "osculate/app/run.hpp"
 #include "osculate/scene/reader.hpp"
 
 #include <filesystem>
@@ -17,6 +18,7 @@ struct StudyOptions {
     int repeats = 0;               ///< 0: those of the study
     std::vector<std::string> only; ///< "axis=value,value": runs nothing else
     bool report_only = false, quiet = false;
+    FolderOptions folder{};
     std::string emit; ///< "snakemake" or "slurm": writes files that run it elsewhere, and runs nothing
 };
 

@@ -189,9 +189,15 @@ std::string write_surfaces(const std::string& scene_path, const std::vector<scen
     const LoadedScene loaded = load(scene_path, overrides, options.threads, unused);
     const fs::path folder =
         options.directory.empty() ? fs::path("out") / loaded.scene.name / "surface" : options.directory;
+    const std::vector<const model::ContactTerm*> pairs = chosen_pairs(loaded.plan, options);
+    std::vector<std::string> names;
+    for (const model::ContactTerm* pair : pairs)
+        names.insert(names.end(), {pair->name() + ".vtp", pair->name() + "_edges.vtp"});
+    output::OutputFolder files(chosen_folder(folder, options.folder), entry_of(options.folder), names);
+    files.claim(names);
     std::string text;
-    for (const model::ContactTerm* pair : chosen_pairs(loaded.plan, options))
-        text += write_pair(*pair, loaded.plan.model, folder, options.refine, options.threads);
+    for (const model::ContactTerm* pair : pairs)
+        text += write_pair(*pair, loaded.plan.model, files.path(), options.refine, options.threads);
     return text;
 }
 

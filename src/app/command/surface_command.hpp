@@ -1,6 +1,7 @@
 #pragma once
 /// Master surfaces of a scene as the solver sees them, before any run.
 
+#include "osculate/app/run.hpp"
 #include "osculate/scene/reader.hpp"
 
 #include <filesystem>
@@ -14,6 +15,7 @@ struct SurfaceOptions {
     std::filesystem::path directory; ///< of the files; out/<scene name>/surface/ when empty
     int refine = 8;                  ///< every facet is cut into refine x refine cells
     int threads = 1;
+    FolderOptions folder{};
 };
 
 /// Writes <pair>.vtp, the master surface of every pair as a fine tessellation, and <pair>_edges.vtp, its boundary and

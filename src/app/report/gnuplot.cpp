@@ -1,16 +1,31 @@
 #include "app/report/gnuplot.hpp"
 
+#include "osculate/core/printable.hpp"
+
 #include <cerrno>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace osculate::app {
 
-std::string gnuplot_text(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
+/// Between double quotes, with octal codes for all that means anything to any of gnuplot's readers, which look at lines one
+/// after another: quotes, escapes, commands of the shell in backticks, macros, comments, braces of blocks. Single quotes would not
+/// do: gnuplot ends such a string at a doubled quote that it begins with.
+std::string gnuplot_text(std::string_view text) {
+    constexpr std::string_view meaningful = "\"'\\`@#{}";
+    std::string result = "\"";
+    bool after_code = false;
+    for (const char c : text) {
+        // gnuplot takes a fourth digit for part of a code that begins with 0
+        const bool code = meaningful.find(c) != std::string_view::npos || (after_code && c >= '0' && c <= '9');
+        result += is_control(c) ? std::string(" ")
+                  : code        ? fmt::format("\\{:03o}", static_cast<unsigned char>(c))
+                                : std::string(1, c);
+        after_code = code;
+    }
+    return result + "\"";
 }
 
 Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script, bool quiet) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace osculate::app {
 
@@ -11,8 +12,9 @@ namespace osculate::app {
 inline constexpr std::array gnuplot_colours{"#d55e00", "#0072b2", "#111111", "#009e73", "#cc79a7", "#e69f00",
                                             "#56b4e9", "#882255", "#44aa99", "#999933", "#332288", "#808080"};
 
-/// Text within single quotes of gnuplot.
-[[nodiscard]] std::string gnuplot_text(const std::string& text);
+/// A text as gnuplot's scripts hold it, quotes included: the one way that a text gets into a script. What gnuplot prints of it
+/// is the text, byte for byte, with a space for every control character.
+[[nodiscard]] std::string gnuplot_text(std::string_view text);
 
 enum class Gnuplot { drawn, missing, failed };
 

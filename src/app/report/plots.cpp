@@ -134,9 +134,8 @@ std::string script_of(const std::string& name, const scene::Plot& plot, const st
                         gnuplot_text(plot.x_label.empty() ? plot.curves.front().second.x : plot.x_label),
                         gnuplot_text(plot.y_label.empty() ? plot.curves.front().second.y : plot.y_label));
     for (const auto& [terminal, ending] : {std::pair{"svg", "svg"}, {"pngcairo", "png"}})
-        text +=
-            fmt::format("set terminal {} size 900,600 background 'white'\nset output '{}.{}'\nplot {}\nunset output\n",
-                        terminal, name, ending, lines);
+        text += fmt::format("set terminal {} size 900,600 background 'white'\nset output {}\nplot {}\nunset output\n",
+                            terminal, gnuplot_text(name + "." + ending), lines);
     return text;
 }
 
@@ -158,20 +157,18 @@ void check_plots(const scene::Scene& scene, const Plan& plan, std::vector<Fault>
             check_curve(scene, plan, "output.plots." + plot_name + ".curves." + name, curve, faults);
 }
 
-void remove_plots(const fs::path& folder) {
-    std::error_code error;
-    std::vector<fs::path> old;
-    for (const auto& entry : fs::directory_iterator(folder / plot_folder, error)) {
-        const std::string ending = entry.path().extension();
-        if (ending == ".csv" || ending == ".gp" || ending == ".svg" || ending == ".png") old.push_back(entry.path());
-    }
-    for (const fs::path& path : old) fs::remove(path);
-    if (fs::is_directory(folder / plot_folder, error) && fs::is_empty(folder / plot_folder, error))
-        fs::remove(folder / plot_folder, error);
+std::vector<std::string> plot_files(const scene::Scene& scene) {
+    std::vector<std::string> files;
+    for (const auto& [name, plot] : scene.output.plots)
+        for (const char* ending : {".csv", ".gp", ".svg", ".png"})
+            files.push_back(std::string(plot_folder) + "/" + name + ending);
+    return files;
 }
 
-std::string write_plots(const scene::Scene& scene, const fs::path& folder) noexcept {
+std::string write_plots(const scene::Scene& scene, output::OutputFolder& files) noexcept {
     try {
+        const fs::path& folder = files.path();
+        files.claim(plot_files(scene));
         std::map<std::string, scene::Rows> tables;
         for (const auto& [name, plot] : scene.output.plots)
             for (const auto& [curve_name, curve] : plot.curves)

@@ -3,8 +3,8 @@
 
 #include "osculate/app/compile.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/output/output_folder.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,11 +14,11 @@ namespace osculate::app {
 /// @param faults  gets names of tables that are none, and formulas that are none over their columns
 void check_plots(const scene::Scene& scene, const Plan& plan, std::vector<Fault>& faults);
 
-/// Removes what an earlier run left. @throws std::runtime_error with path and reason
-void remove_plots(const std::filesystem::path& folder);
+/// Files of the scene's plots, relative to the folder of a run.
+[[nodiscard]] std::vector<std::string> plot_files(const scene::Scene& scene);
 
 /// Writes plots/NAME.csv and plots/NAME.gp of every plot that has a curve, and lets gnuplot draw them, where there is one.
 /// @returns  a line for the user, empty where all went well; never throws, as a picture is no reason to lose a run
-[[nodiscard]] std::string write_plots(const scene::Scene& scene, const std::filesystem::path& folder) noexcept;
+[[nodiscard]] std::string write_plots(const scene::Scene& scene, output::OutputFolder& files) noexcept;
 
 } // namespace osculate::app

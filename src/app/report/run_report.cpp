@@ -63,12 +63,22 @@ report::PageOptions options_for(const fs::path& folder) {
 WrittenReport write_report(const fs::path& run_folder) {
     check_folder(run_folder);
     try {
+        output::OutputFolder run(run_folder, output::OutputFolder::Entry::beside);
+        return write_report(run);
+    } catch (const RunFailure& error) {
+        throw ReportFailure(error.what());
+    }
+}
+
+WrittenReport write_report(output::OutputFolder& run) {
+    const fs::path& run_folder = run.path();
+    try {
         report::Page page = report::make_page(run_folder, options_for(run_folder));
         const fs::path beside = run_folder / "report";
         fs::create_directories(beside);
-        for (const auto& [name, content] : page.pictures) write_whole(beside / name, content);
-        if (std::string plots = write_report_plots(run_folder); !plots.empty()) page.notes.push_back(std::move(plots));
-        const fs::path path = run_folder / "report.html";
+        for (const auto& [name, content] : page.pictures) write_whole(run.path_of("report/" + name), content);
+        if (std::string plots = write_report_plots(run); !plots.empty()) page.notes.push_back(std::move(plots));
+        const fs::path path = run.path_of("report.html");
         write_whole(path, page.html);
         return {path, std::move(page.notes)};
     } catch (const SceneError&) {

@@ -17,17 +17,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::array plot_names{"contact", "reactions", "energies", "steps"};
+
 struct Curve {
     std::size_t column; ///< of history.csv, from 1
     std::string title;
 };
-
-/// Text within single quotes of gnuplot.
-std::string in_quotes(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
-}
 
 double largest(const std::vector<double>& column) {
     double found = 0;
@@ -67,15 +62,14 @@ std::string plot(const output::NumberTable& history, const std::string& name, co
     for (std::size_t c = 0; c < curves.size(); ++c)
         lines += fmt::format("{} '../history.csv' using 1:(column({})/{:g}) with {} lc rgb '{}' title {}",
                              c == 0 ? "" : ", \\\n    ", curves[c].column, scale, style, colours[c % colours.size()],
-                             in_quotes(curves[c].title));
-    std::string text = fmt::format("set title {}\nset ylabel {}\nset xrange {}\nset yrange {}\n", in_quotes(title),
-                                   in_quotes(prefixes[static_cast<std::size_t>(thousands + 4)] + unit),
+                             gnuplot_text(curves[c].title));
+    std::string text = fmt::format("set title {}\nset ylabel {}\nset xrange {}\nset yrange {}\n", gnuplot_text(title),
+                                   gnuplot_text(prefixes[static_cast<std::size_t>(thousands + 4)] + unit),
                                    range_of(history, {{1, ""}}, 1), range_of(history, curves, scale));
     for (const auto& [terminal, ending] : {std::pair{"svg", "svg"}, std::pair{"pngcairo", "png"}})
-        text +=
-            fmt::format("set terminal {} size 1000,560 font 'sans,13' background 'white'\nset output '{}.{}'\nplot{}\n"
-                        "unset output\n",
-                        terminal, name, ending, lines);
+        text += fmt::format("set terminal {} size 1000,560 font 'sans,13' background 'white'\nset output {}\nplot{}\n"
+                            "unset output\n",
+                            terminal, gnuplot_text(name + "." + ending), lines);
     return text;
 }
 
@@ -105,15 +99,16 @@ std::string script(const output::NumberTable& history) {
            "rgb '#dddddd'\n"
            "set key tmargin center horizontal samplen 2 noenhanced\nset title noenhanced\nset ylabel noenhanced\nset "
            "xlabel 'time, s'\n" +
-           plot(history, "contact", "Contact forces: sums of the nodes'", "N", contact) +
-           plot(history, "reactions", "Reactions", "N", reactions) +
-           plot(history, "energies", "Energies", "J", energies) +
-           plot(history, "steps", "dt of the accepted steps", "s", steps, "steps lw 1.5");
+           plot(history, plot_names[0], "Contact forces: sums of the nodes'", "N", contact) +
+           plot(history, plot_names[1], "Reactions", "N", reactions) +
+           plot(history, plot_names[2], "Energies", "J", energies) +
+           plot(history, plot_names[3], "dt of the accepted steps", "s", steps, "steps lw 1.5");
 }
 
 } // namespace
 
-std::string write_report_plots(const fs::path& run_folder) {
+std::string write_report_plots(output::OutputFolder& run) {
+    const fs::path& run_folder = run.path();
     output::NumberTable history;
     try {
         history = output::read_numbers(run_folder / "history.csv");
@@ -122,6 +117,10 @@ std::string write_report_plots(const fs::path& run_folder) {
     }
     if (history.names.empty() || history.columns.front().empty()) return "";
     const fs::path folder = run_folder / "report";
+    std::vector<std::string> files{"report/plots.gp"};
+    for (const char* name : plot_names)
+        for (const char* ending : {".svg", ".png"}) files.push_back(std::string("report/") + name + ending);
+    run.claim(files);
     {
         std::ofstream file(folder / "plots.gp", std::ios::binary);
         file << script(history);

@@ -1,7 +1,8 @@
 #pragma once
 /// Plots of a run as files, by gnuplot.
 
-#include <filesystem>
+#include "osculate/output/output_folder.hpp"
+
 #include <string>
 
 namespace osculate::app {
@@ -10,6 +11,6 @@ namespace osculate::app {
 /// and .png of what the run has.
 /// @returns  a sentence where plots are missing; empty: all are drawn
 /// @throws std::runtime_error where the script cannot be written
-[[nodiscard]] std::string write_report_plots(const std::filesystem::path& run_folder);
+[[nodiscard]] std::string write_report_plots(output::OutputFolder& run);
 
 } // namespace osculate::app

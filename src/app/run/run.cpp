@@ -6,11 +6,13 @@
 #include "osculate/app/report.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/scene/units.hpp"
 #include "osculate/scene/writer.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace osculate::app {
@@ -27,9 +29,19 @@ namespace {
     throw SceneError({fault});
 }
 
+using output::OutputFolder;
+
+/// Whether the run of a folder has come to its end.
+bool is_complete(const fs::path& folder) {
+    std::error_code none;
+    const auto summary = nlohmann::json::parse(file_content(folder / "summary.json", none), nullptr, false);
+    return summary.is_object() && summary.value("status", nlohmann::json()) == "done";
+}
+
 /// Folder of a run's files, where the resolved scene must not take the place of the one a user wrote.
 fs::path folder_of(const LoadedScene& loaded, const RunOptions& options) {
-    fs::path folder = options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory;
+    fs::path folder = chosen_folder(options.directory.empty() ? fs::path("out") / loaded.scene.name : options.directory,
+                                    options.folder);
     std::error_code none;
     if (!loaded.path.empty() && fs::equivalent(folder / "scene.yaml", loaded.path, none))
         refuse(loaded.path, "another output folder",
@@ -142,23 +154,37 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
     LoadedScene loaded = load(scene_path, overrides, options.threads, timings);
-    const fs::path folder = folder_of(loaded, options);
-    return run(loaded, {folder, options.threads, options.quiet, begin, options.checkpoint_every}, timings);
+    OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
+                        RunRecorder::files(loaded.scene, loaded.plan));
+    if (options.entered) options.entered(folder.path());
+    return run(loaded, {&folder, options.threads, options.quiet, begin, options.checkpoint_every}, timings);
 }
 
 output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings, const RunOptions& options,
                     time::StepObserver* beside) {
-    const RunRecorder::Settings settings{folder_of(loaded, options), options.threads, options.quiet,
-                                         std::chrono::steady_clock::now(), options.checkpoint_every};
+    OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
+                        RunRecorder::files(loaded.scene, loaded.plan));
+    if (options.entered) options.entered(folder.path());
+    const RunRecorder::Settings settings{&folder, options.threads, options.quiet, std::chrono::steady_clock::now(),
+                                         options.checkpoint_every};
     return run(loaded, stepper, timings, settings, beside, options.heed_signals);
 }
 
-output::Summary resume(const fs::path& directory, const fs::path& from, const RunOptions& options) {
+OutputFolder::Entry entry_of(const FolderOptions& options) {
+    return options.force ? OutputFolder::Entry::force : OutputFolder::Entry::careful;
+}
+
+fs::path chosen_folder(const fs::path& directory, const FolderOptions& options) {
+    return options.numbered ? OutputFolder::numbered(directory) : directory;
+}
+
+std::optional<output::Summary> resume(const fs::path& directory, const fs::path& from, const RunOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     const fs::path scene_path = directory / "scene.yaml", state = from.empty() ? directory / checkpoint_path : from;
     std::error_code none;
     if (!fs::is_regular_file(scene_path, none))
         refuse(directory, "the folder of a run", fs::exists(directory, none) ? "no scene.yaml in it" : "nothing there");
+    if (from.empty() && is_complete(directory)) return {};
     if (!fs::is_regular_file(state, none))
         refuse(state, "a checkpoint", "nothing there; `osculate run --checkpoint-every 20` writes one every 20 steps");
     output::CheckpointFile file;
@@ -179,7 +205,8 @@ output::Summary resume(const fs::path& directory, const fs::path& from, const Ru
         refuse(scene_path, "the scene the checkpoint was written for", "another one");
     if (output::fingerprint(loaded.plan.model) != file.meshes)
         refuse(scene_path, "the meshes the checkpoint was written for", "others");
-    return run(loaded, {directory, options.threads, options.quiet, begin, options.checkpoint_every, &file}, timings);
+    OutputFolder folder(directory, OutputFolder::Entry::adopt, RunRecorder::files(loaded.scene, loaded.plan));
+    return run(loaded, {&folder, options.threads, options.quiet, begin, options.checkpoint_every, &file}, timings);
 }
 
 } // namespace osculate::app

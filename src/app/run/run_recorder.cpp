@@ -14,6 +14,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <set>
 #include <sys/resource.h>
 #include <utility>
 
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* failed_folder = "failed"; ///< of the last iterate of a run that gave up
+constexpr const char* series_file = "series.pvd";
 
 /// Runs `write`, at the expense of output. A file that cannot be written ends the run as a failure, not as a bug.
 template <class F> void on_disk(Timings& timings, F&& write) {
@@ -55,7 +57,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
                 settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)),
       checks_(plan.model, scene.expect) {
     const scene::Output& out = scene.output;
-    const fs::path& folder = settings_.directory;
+    const fs::path& folder = directory();
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
     history_reactions_ = reactions;
     frame_reactions_ = std::ranges::count(out.body_fields, "reaction") > 0;
@@ -63,24 +65,24 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
         std::ranges::any_of(plan.probes, [](const PlannedProbe& probe) { return probe.probe->reads("reaction"); });
     describe_plan();
     on_disk(timings_, [&] {
+        output::OutputFolder& files = *settings_.folder;
         if (!resumed()) {
-            fs::create_directories(folder);
-            write_text(folder / "scene.yaml", scene::write_scene(scene));
-            fs::remove_all(folder / checkpoint_folder);
+            files.remove_all_but({});
+            files.claim(tables());
+            write_text(files.path_of("scene.yaml"), scene::write_scene(scene));
         }
-        fs::remove(folder / output::post_mortem_file);
-        output::Frames::remove(folder / failed_folder);
-        if (out.frame_every > 0)
+        files.claim({"summary.json"});
+        if (out.frame_every > 0) {
+            files.claim({series_file});
             frames_ = std::make_unique<output::Frames>(
                 folder, output::FrameFields{out.body_fields, out.slave_fields, out.master_fields}, plan.model,
                 settings_.threads > 1, resumed() ? settings_.from->frames : std::vector<output::SeriesEntry>{});
-        else
-            output::Frames::remove(folder);
-        fs::remove(folder / output::paraview_script_file);
-        if (out.frame_every > 0 && out.paraview)
+        }
+        if (resumed()) remove_what_is_written_anew(); // after series.pvd has forgotten it
+        if (out.frame_every > 0 && out.paraview) {
+            files.claim({output::paraview_script_file});
             output::write_paraview_script(folder, plan.model, {out.body_fields, out.slave_fields, out.master_fields});
-        if (!resumed()) output::ProbeFile::remove(folder);
-        remove_plots(folder);
+        }
         for (const PlannedProbe& probe : plan.probes)
             probes_.emplace_back(folder, probe.name, *probe.probe, kept(output::ProbeFile::relative_path(probe.name)));
         history_ = std::make_unique<output::History>(
@@ -94,7 +96,6 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
                                                                              "reason", "body", "node", "value",
                                                                              "lambda", "iterations"},
                                                     kept("steps.csv"));
-        if (!out.iterations) fs::remove(folder / "iterations.csv");
         if (out.iterations)
             iterations_ = std::make_unique<output::CsvTable>(
                 folder / "iterations.csv",
@@ -109,7 +110,47 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
     write_summary();
 }
 
+std::vector<std::string> RunRecorder::tables() const {
+    std::vector<std::string> names{"history.csv", "steps.csv"};
+    if (scene_.output.iterations) names.emplace_back("iterations.csv");
+    for (const PlannedProbe& probe : plan_.probes) names.push_back(output::ProbeFile::relative_path(probe.name));
+    return names;
+}
+
+std::vector<std::string> RunRecorder::files(const scene::Scene& scene, const Plan& plan) {
+    std::vector<std::string> names{"scene.yaml", "history.csv", "steps.csv", "iterations.csv", "summary.json"};
+    names.insert(names.end(), {output::post_mortem_file, checkpoint_path, previous_checkpoint_path});
+    for (const PlannedProbe& probe : plan.probes) names.push_back(output::ProbeFile::relative_path(probe.name));
+    const auto frames = [&](const std::string& folder) {
+        names.push_back(folder + series_file);
+        for (const model::Body& body : plan.model.bodies) names.push_back(folder + "frames/" + body.name + "_*.vtu");
+        for (const auto& pair : plan.model.pairs)
+            for (const char* side : {".slave", ".master"})
+                names.push_back(folder + "frames/" + pair->name() + side + "_*.vtp");
+    };
+    if (scene.output.failed_iterate) frames(std::string(failed_folder) + "/");
+    if (scene.output.frame_every > 0) {
+        frames("");
+        names.emplace_back(output::paraview_script_file);
+    }
+    const std::vector<std::string> plots = plot_files(scene);
+    names.insert(names.end(), plots.begin(), plots.end());
+    if (scene.output.report) names.emplace_back("report.html");
+    return names;
+}
+
+void RunRecorder::remove_what_is_written_anew() {
+    const std::vector<std::string> rows = tables();
+    std::set<std::string> kept(rows.begin(), rows.end());
+    kept.insert({"scene.yaml", "summary.json", checkpoint_path, previous_checkpoint_path});
+    if (frames_) kept.insert(series_file);
+    for (const output::SeriesEntry& frame : settings_.from->frames) kept.insert(frame.file);
+    settings_.folder->claim(rows);
+    settings_.folder->remove_all_but(kept);
+}
+
 void RunRecorder::describe_plan() {
+    summary_.folder = directory();
     summary_.version = version;
     summary_.scene = scene_.name;
     summary_.status = "running";
@@ -134,6 +175,7 @@ void RunRecorder::write_initial_frame() {
         for (const auto& pair : plan_.model.pairs)
             (void)initial_gaps(*pair, plan_.model.X, timings_, settings_.threads); // evaluates the contact points
     on_disk(timings_, [&] {
+        settings_.folder->claim(frames_->files(0));
         std::vector<Vec3> none;
         if (frame_reactions_) none.assign(plan_.model.X.size(), Vec3::Zero());
         frames_->write({plan_.model, stepper_.state(), std::move(none)}, 0);
@@ -166,7 +208,10 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
             reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
         const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions), {}, step.dt, step.audit);
         history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
-        if (frame) frames_->write(snapshot, summary_.steps.accepted);
+        if (frame) {
+            settings_.folder->claim(frames_->files(summary_.steps.accepted));
+            frames_->write(snapshot, summary_.steps.accepted);
+        }
         write_probes(snapshot, last);
     });
     write_summary();
@@ -192,7 +237,7 @@ void RunRecorder::between_steps(const std::function<time::Checkpoint()>& checkpo
     on_disk(timings_, [&] { write_checkpoint(checkpoint()); });
     checkpoint_step_ = summary_.steps.accepted;
     checkpoint_time_ = std::chrono::steady_clock::now();
-    if (signal != 0) throw Interrupted(signal, stepper_.state().time, settings_.directory);
+    if (signal != 0) throw Interrupted(signal, stepper_.state().time, directory());
 }
 
 void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
@@ -221,7 +266,8 @@ void RunRecorder::write_checkpoint(const time::Checkpoint& checkpoint) {
     for (std::size_t part = 0; part < static_cast<std::size_t>(Part::count); ++part)
         file.seconds.push_back(timings_[static_cast<Part>(part)]);
     file.checks = checks_.memory();
-    output::write_checkpoint(settings_.directory / checkpoint_path, file);
+    settings_.folder->claim({checkpoint_path, previous_checkpoint_path});
+    output::write_checkpoint(directory() / checkpoint_path, file);
 }
 
 std::optional<std::uintmax_t> RunRecorder::kept(const std::string& table) const {
@@ -254,7 +300,7 @@ void RunRecorder::gave_up(const time::PostMortem& found, const time::FailedItera
     post_mortem_ = output::in_words(found);
     try {
         on_disk(timings_, [&] {
-            output::write_post_mortem(settings_.directory / output::post_mortem_file, found);
+            output::write_post_mortem(settings_.folder->path_of(output::post_mortem_file), found);
             if (iterate != nullptr && scene_.output.failed_iterate) write_failed(*iterate);
         });
     } catch (const RunFailure&) { // a full disk: the first failure is the one to tell
@@ -268,7 +314,9 @@ void RunRecorder::write_failed(const time::FailedIterate& iterate) {
         return fields;
     };
     const scene::Output& out = scene_.output;
-    output::Frames frames(settings_.directory / failed_folder,
+    const std::string in = std::string(failed_folder) + "/";
+    settings_.folder->claim({in + series_file});
+    output::Frames frames(directory() / failed_folder,
                           {with(out.body_fields, {"displacement", "out_of_balance"}),
                            with(out.slave_fields, {"gap", "status", "contact_force"}), out.master_fields},
                           plan_.model);
@@ -276,7 +324,11 @@ void RunRecorder::write_failed(const time::FailedIterate& iterate) {
     const std::vector<Vec3> reactions = output::nodal_reactions(iterate.equilibrium.constraints(), unbalanced);
     std::vector<Vec3> rest = unbalanced;
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= reactions[i];
-    frames.write({plan_.model, iterate.state, reactions, std::move(rest)}, summary_.steps.accepted + 1);
+    const long number = summary_.steps.accepted + 1;
+    std::vector<std::string> names = frames.files(number);
+    for (std::string& name : names) name.insert(0, in);
+    settings_.folder->claim(names);
+    frames.write({plan_.model, iterate.state, reactions, std::move(rest)}, number);
 }
 
 void RunRecorder::wait_for_frames() {
@@ -300,12 +352,11 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
 
 void RunRecorder::write_pictures() {
     for (const std::string& warning : summary_.warnings) fmt::print(stderr, "warning: {}\n", warning);
-    if (const std::string note = write_plots(scene_, settings_.directory); !note.empty())
+    if (const std::string note = write_plots(scene_, *settings_.folder); !note.empty())
         fmt::print(stderr, "{}\n", note);
     if (!scene_.output.report) return;
     try {
-        for (const std::string& note : write_report(settings_.directory).notes)
-            fmt::print(stderr, "report: {}\n", note);
+        for (const std::string& note : write_report(*settings_.folder).notes) fmt::print(stderr, "report: {}\n", note);
     } catch (const std::exception& error) { // a run is no worse for a report that cannot be written
         fmt::print(stderr, "report: {}\n", error.what());
     }
@@ -327,7 +378,7 @@ void RunRecorder::write_summary() {
         summary_.audit->on = plan_.stepper.audit;
     }
     summary_.warnings = checks_.warnings();
-    on_disk(timings_, [&] { output::write_summary(settings_.directory / "summary.json", summary_); });
+    on_disk(timings_, [&] { output::write_summary(directory() / "summary.json", summary_); });
 }
 
 } // namespace osculate::app

@@ -9,6 +9,7 @@
 #include "osculate/output/csv_table.hpp"
 #include "osculate/output/frames.hpp"
 #include "osculate/output/history.hpp"
+#include "osculate/output/output_folder.hpp"
 #include "osculate/output/probe_file.hpp"
 #include "osculate/output/progress.hpp"
 #include "osculate/output/summary.hpp"
@@ -28,7 +29,7 @@ namespace osculate::app {
 class RunRecorder final : public time::StepObserver {
 public:
     struct Settings {
-        std::filesystem::path directory;
+        output::OutputFolder* folder = nullptr;
         int threads = 1;
         bool quiet = false;
         std::chrono::steady_clock::time_point begin; ///< of the run, its reading included
@@ -37,10 +38,13 @@ public:
         const Interruption* interruption = nullptr;   ///< null: nothing to heed
     };
 
-    /// Replaces what an earlier run left in the folder, writes the resolved scene and the state before the first step; or
+    /// Removes what an earlier run left in the folder, writes the resolved scene and the state before the first step; or
     /// takes files and counts back to those of a checkpoint. Scene, plan, stepper and timings must outlive it.
     RunRecorder(const scene::Scene& scene, const Plan& plan, const time::Stepper& stepper, Timings& timings,
                 Settings settings);
+
+    /// Every file that a run of this scene may write, relative to its folder, `*` standing for a number.
+    [[nodiscard]] static std::vector<std::string> files(const scene::Scene& scene, const Plan& plan);
 
     void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override;
     void accepted(const time::AcceptedStep& step) override;
@@ -60,6 +64,9 @@ public:
     [[nodiscard]] const std::string& post_mortem() const { return post_mortem_; }
 
 private:
+    [[nodiscard]] const std::filesystem::path& directory() const { return settings_.folder->path(); }
+    [[nodiscard]] std::vector<std::string> tables() const;
+    void remove_what_is_written_anew();
     [[nodiscard]] bool resumed() const { return settings_.from != nullptr; }
     /// Bytes to keep of a table in the run's folder; not given: it starts anew.
     [[nodiscard]] std::optional<std::uintmax_t> kept(const std::string& table) const;

@@ -1,9 +1,11 @@
 #include "app/study/study_case.hpp"
 
+#include "app/study/run_folder.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/file_content.hpp"
 #include "osculate/output/csv_reader.hpp"
 #include "osculate/output/frame_reader.hpp"
+#include "osculate/output/output_folder.hpp"
 #include "osculate/scene/writer.hpp"
 #include "osculate/study/formulas.hpp"
 #include "osculate/study/work_precision.hpp"
@@ -27,7 +29,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* record_file = "study_run.json";
 
 /// FNV-1a, 64 bits: tells apart what changed, not what was forged.
 std::string hash_of(const std::string& text) {
@@ -292,7 +293,7 @@ bool add_repeat(StudyRecord& record, const fs::path& folder) {
 }
 
 void add_failure(StudyRecord& record, const fs::path& folder, int code, int signal) {
-    const std::string words = last_words(folder / "messages.txt");
+    const std::string words = last_words(folder / messages_file);
     record.status = code == 3 ? "gave_up" : code == 2 ? "refused" : "bug";
     record.reason = words;
     if (signal != 0)
@@ -301,8 +302,10 @@ void add_failure(StudyRecord& record, const fs::path& folder, int code, int sign
         record.reason = fmt::format("exit code {}: {}", code, words);
 }
 
-void announce(const StudyCase& c) {
-    if (read_record(c.folder).hash != c.record.hash) fs::remove_all(c.folder);
+void announce(const StudyCase& c, bool force) {
+    // that of a run which may be going on is left alone
+    if (read_record(c.folder).hash != c.record.hash || !output::OutputFolder::has_manifest(c.folder))
+        make_run_folder(c.folder, force);
     if (!c.record.finished()) write_record(c);
 }
 

@@ -84,11 +84,9 @@ bool add_repeat(StudyRecord& record, const std::filesystem::path& folder);
 /// @param signal  that ended it; 0: none did
 void add_failure(StudyRecord& record, const std::filesystem::path& folder, int exit_code, int signal = 0);
 
-/// In a run's folder: the exit code, where something else than `osculate study` started it.
-inline constexpr const char* exit_code_file = "exit_code";
-
-/// Makes the folder of a run that something else will start; empties it unless it belongs to a run of the same hash.
-void announce(const StudyCase& study_case);
+/// Makes the folder of a run that something else will start; takes an earlier run out of it unless that is one of the same hash.
+/// @param force  whatever else is in it
+void announce(const StudyCase& study_case, bool force);
 
 /// What formulas of a study may call.
 [[nodiscard]] const scene::NamedFunctions& study_functions();

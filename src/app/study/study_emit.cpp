@@ -1,6 +1,8 @@
 #include "app/study/study_emit.hpp"
 
+#include "app/study/run_folder.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/printable.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -40,9 +42,9 @@ std::string line_of(const std::vector<std::string>& words) {
     return line;
 }
 
-std::string line_of(const StudyCase& c, int threads) {
+std::string line_of(const StudyCase& c, const StudyRunOptions& options) {
     return line_of(
-        run_words(c, fs::absolute(c.scene_path).lexically_normal().string(), fs::path("runs") / c.id, threads));
+        run_words(c, fs::absolute(c.scene_path).lexically_normal().string(), fs::path("runs") / c.id, options));
 }
 
 std::string program() {
@@ -66,7 +68,7 @@ std::vector<const StudyCase*> announced(const std::vector<StudyCase>& cases, con
     std::vector<const StudyCase*> list;
     for (const StudyCase& c : cases) {
         if (!is_chosen(c, options) || (c.record.finished() && !finished)) continue;
-        announce(c);
+        announce(c, options.force);
         list.push_back(&c);
     }
     return list;
@@ -125,6 +127,13 @@ echo $code > "$folder/{code}"
 [ $code -eq 0 ] || [ $code -eq 3 ] # a run that gives up is a result
 )sh";
 
+/// A name for SLURM, whose comments know neither quotes nor line breaks.
+std::string job_name(std::string name) {
+    for (char& c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != '.') c = '_';
+    return name;
+}
+
 /// A text within a string that Snakemake formats.
 std::string unformatted(const std::string& text) {
     std::string doubled;
@@ -143,14 +152,15 @@ std::string emit_snakemake(const scene::Study& study, const std::vector<StudyCas
     for (const StudyCase* c : announced(cases, options, true)) {
         const std::string run = "runs/" + c->id, summary = literal(run + "/summary.json");
         inputs += fmt::format("        {},\n", summary);
-        const std::string line = line_of(*c, options.threads) + " > " + shell_word(run + "/messages.txt") + " 2>&1";
+        const std::string line = line_of(*c, options) + " > " + shell_word(run + "/messages.txt") + " 2>&1";
         rules +=
             fmt::format(snake_rule, fmt::arg("number", ++number), fmt::arg("id", c->id), fmt::arg("output", summary),
                         fmt::arg("threads", options.threads), fmt::arg("line", literal(unformatted(line))),
                         fmt::arg("code", literal(unformatted(shell_word(run + "/" + exit_code_file)))));
     }
     if (!inputs.empty()) inputs.pop_back();
-    write_text(path, fmt::format(snakefile, fmt::arg("name", study.name), fmt::arg("file", shell_word(path.string())),
+    write_text(path, fmt::format(snakefile, fmt::arg("name", printable(study.name)),
+                                 fmt::arg("file", shell_word(path.string())),
                                  fmt::arg("directory", literal(fs::absolute(folder).lexically_normal().string())),
                                  fmt::arg("program", literal(program())), fmt::arg("inputs", inputs),
                                  fmt::arg("gather", literal(unformatted(line_of(gather))))) +
@@ -167,15 +177,16 @@ std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& 
     std::string table;
     int count = 0;
     for (const StudyCase* c : announced(cases, options, false)) {
-        table += c->id + "\t" + line_of(*c, options.threads) + "\n";
+        table += c->id + "\t" + line_of(*c, options) + "\n";
         ++count;
     }
     if (count == 0) return fmt::format("{}: every run is finished; `{}` gathers the results\n", study.name, gathering);
     write_text(folder / "cases.txt", table);
-    write_text(path, fmt::format(sbatch, fmt::arg("name", study.name), fmt::arg("file", shell_word(path.string())),
-                                 fmt::arg("wrap", shell_word(gathering)), fmt::arg("job", study.name),
-                                 fmt::arg("count", count), fmt::arg("threads", options.threads),
-                                 fmt::arg("directory", directory), fmt::arg("quoted_directory", shell_word(directory)),
+    write_text(path, fmt::format(sbatch, fmt::arg("name", printable(study.name)),
+                                 fmt::arg("file", shell_word(path.string())), fmt::arg("wrap", shell_word(gathering)),
+                                 fmt::arg("job", job_name(study.name)), fmt::arg("count", count),
+                                 fmt::arg("threads", options.threads), fmt::arg("directory", printable(directory)),
+                                 fmt::arg("quoted_directory", shell_word(directory)),
                                  fmt::arg("program", shell_word(program())), fmt::arg("code", exit_code_file)));
     return fmt::format("{}: {} runs; `sbatch {}` runs them, then `{}` gathers the results\n", study.name, count,
                        shell_word(path.string()), gathering);

@@ -70,9 +70,9 @@ public:
                                 x_.tics(), y_.tics());
         for (const auto& [terminal, font, ending] :
              {std::tuple{"svg", "sans,14", "svg"}, std::tuple{"pngcairo", "sans,12", "png"}})
-            text += fmt::format("set terminal {} size 1000,{} font '{}' background 'white'\nset output '{}.{}'\n"
+            text += fmt::format("set terminal {} size 1000,{} font '{}' background 'white'\nset output {}\n"
                                 "plot {}\nunset output\n",
-                                terminal, height, font, name_, ending, lines_);
+                                terminal, height, font, gnuplot_text(name_ + "." + ending), lines_);
         return text;
     }
 

@@ -118,10 +118,16 @@ std::string markdown(const scene::SurfaceStudy& study, const StudyResult& result
     return text;
 }
 
+/// Name of a block of data, where gnuplot wants no '-'.
+std::string block_of(std::string surface, const ErrorKind& kind) {
+    std::ranges::replace(surface, '-', '_');
+    return fmt::format("${}_{}", surface, kind.name);
+}
+
 /// Means of one surface, a line a mesh: number or size, then the methods' errors, per kind.
 std::string data_block(const scene::SurfaceStudy& study, const StudyResult& result, const std::string& surface,
                        const ErrorKind& kind) {
-    std::string text = fmt::format("${}_{} << END\n", surface, kind.name);
+    std::string text = block_of(surface, kind) + " << END\n";
     for (int m = 1; m <= result.meshes(); ++m) {
         const StudyRow& first = result.row(surface, m, study.methods.front());
         text += refined(study) ? fmt::format("{:.8g}", first.size) : fmt::format("{}", m);
@@ -142,13 +148,14 @@ int number_of(const std::string& method) {
 
 std::string plot(const scene::SurfaceStudy& study, const std::string& surface, const scene::PublishedRatios& published,
                  const ErrorKind& kind) {
-    const std::string data = fmt::format("${}_{}", surface, kind.name);
-    std::string text = refined(study) ? fmt::format("set ylabel 'mean error, {}'\n", kind.unit)
-                                      : std::string("set ylabel 'mean error / that of the facets'\n");
-    text += fmt::format("set title '{}: {}'\nplot ", surface, kind.name);
+    const std::string data = block_of(surface, kind);
+    std::string text = refined(study)
+                           ? fmt::format("set ylabel {}\n", gnuplot_text("mean error, " + std::string(kind.unit)))
+                           : std::string("set ylabel 'mean error / that of the facets'\n");
+    text += fmt::format("set title {} noenhanced\nplot ", gnuplot_text(surface + ": " + kind.name));
     for (std::size_t i = 0; i < study.methods.size(); ++i)
-        text += fmt::format("{} using 1:{} with linespoints linetype {} title '{}', ", data, i + 2,
-                            number_of(study.methods[i]), study.methods[i]);
+        text += fmt::format("{} using 1:{} with linespoints linetype {} title {}, ", data, i + 2,
+                            number_of(study.methods[i]), gnuplot_text(study.methods[i]));
     if (refined(study)) {
         for (const int order : {1, 2, 3, 4}) // through the facets' coarsest error
             text += fmt::format("e0*(x/h0)**{} with lines dashtype 3 linecolor 'grey' title '{}', ", order,
@@ -176,8 +183,8 @@ std::string gnuplot_script(const scene::SurfaceStudy& study, const StudyResult& 
         for (const ErrorKind& kind : error_kinds()) text += data_block(study, result, name, kind);
         for (const auto& [terminal, ending] :
              {std::pair{"svg size 1500,600 background 'white'", "svg"}, std::pair{"pngcairo size 1500,600", "png"}}) {
-            text += fmt::format("set terminal {}\nset output 'study_{}.{}'\nset multiplot layout 1,3\n", terminal, name,
-                                ending);
+            text += fmt::format("set terminal {}\nset output {}\nset multiplot layout 1,3\n", terminal,
+                                gnuplot_text("study_" + name + "." + ending));
             for (const ErrorKind& kind : error_kinds()) text += plot(study, name, surface.published, kind);
             text += "unset multiplot\nunset output\n";
         }
@@ -187,8 +194,17 @@ std::string gnuplot_script(const scene::SurfaceStudy& study, const StudyResult& 
 
 } // namespace
 
+std::vector<std::string> surface_study_files(const scene::SurfaceStudy& study) {
+    std::vector<std::string> files{"study.csv", "study.md", "study.gp"};
+    for (const auto& [name, surface] : study.surfaces)
+        for (const char* ending : {".svg", ".png"}) files.push_back("study_" + name + ending);
+    return files;
+}
+
 std::string write_surface_study(const scene::SurfaceStudy& study, const StudyResult& result,
-                                const std::filesystem::path& folder) {
+                                output::OutputFolder& files) {
+    const std::filesystem::path& folder = files.path();
+    files.claim(surface_study_files(study));
     write_csv(result, folder / "study.csv");
     write_text(folder / "study.md", markdown(study, result));
     write_text(folder / "study.gp", gnuplot_script(study, result));

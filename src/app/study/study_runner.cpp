@@ -1,6 +1,7 @@
 #include "app/study/study_runner.hpp"
 
 #include "app/study/child_process.hpp"
+#include "app/study/run_folder.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/core/file_content.hpp"
@@ -87,15 +88,13 @@ StudyCase* Runner::next() {
 void Runner::start(StudyCase& c) {
     Job job{&c, c.record.repeats.size(), c.folder};
     if (job.repeat == 0) {
-        fs::remove_all(c.folder);
+        make_run_folder(c.folder, options_.force);
         write_record(c); // whose hash says what the files to come follow from
     } else {
-        job.folder /= fmt::format("repeat_{}", job.repeat + 1);
-        fs::remove_all(job.folder);
-        fs::create_directories(job.folder);
+        job.folder /= repeat_folder(job.repeat + 1);
+        make_run_folder(job.folder, options_.force);
     }
-    running_.emplace(
-        start_program(run_words(c, c.scene_path, job.folder, options_.threads), job.folder / "messages.txt"), job);
+    running_.emplace(start_program(run_words(c, c.scene_path, job.folder, options_), job.folder / messages_file), job);
 }
 
 void Runner::ended(const Job& job, int status) {
@@ -114,7 +113,7 @@ void Runner::ended(const Job& job, int status) {
     }
     if (!record.finished()) failed_.insert(job.of);
     write_record(*job.of);
-    if (job.repeat > 0) fs::remove_all(job.folder);
+    if (job.repeat > 0) remove_run_folder(job.folder);
     ++done_;
     job.of->results.clear();
     finished_();
@@ -187,9 +186,10 @@ Json faults_of(const scene::Study& study, const std::vector<const StudyCase*>& c
 } // namespace
 
 std::vector<std::string> run_words(const StudyCase& c, const std::string& scene_path, const fs::path& folder,
-                                   int threads) {
+                                   const StudyRunOptions& options) {
     std::vector<std::string> words{
-        "run", scene_path, "-o", folder.string(), "--quiet", "--threads", std::to_string(threads)};
+        "run", scene_path, "-o", folder.string(), "--quiet", "--threads", std::to_string(options.threads)};
+    if (options.force) words.emplace_back("--force");
     for (const scene::Override& change : c.overrides)
         words.insert(words.end(), {"--set", change.key + "=" + change.value});
     return words;

@@ -10,12 +10,12 @@ namespace osculate::app {
 struct StudyRunOptions {
     int jobs = 1, threads = 1, repeats = 1;
     std::vector<std::vector<std::size_t>> only; ///< by axis: values to run; empty stands for all
-    bool quiet = false;
+    bool quiet = false, force = false;          ///< force: see FolderOptions
 };
 
 /// Arguments of the program for a case.
 [[nodiscard]] std::vector<std::string> run_words(const StudyCase& study_case, const std::string& scene_path,
-                                                 const std::filesystem::path& folder, int threads);
+                                                 const std::filesystem::path& folder, const StudyRunOptions& options);
 
 /// Whether a case is among those to be run.
 [[nodiscard]] bool is_chosen(const StudyCase& study_case, const StudyRunOptions& options);

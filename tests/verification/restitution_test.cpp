@@ -99,5 +99,27 @@ TEST(TwoBars, TouchForTwiceTheWaveTimeInStepsThatTheDefaultsChoose) {
     EXPECT_NEAR(left, 0, 0.02 * momentum);
 }
 
+/// Ten falls of 10 mm, each contact as long as the first: a tenth of the shipped scene's steps, which would each hold half a
+/// contact.
+TEST(TenBounces, ComeAtTheirTimesInStepsThatTheDefaultsChoose) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("validation/ten_bounces.yaml"), {{"stages.bounces.steps", "100"}});
+    std::vector<double> touch, release;
+    double before = 0;
+    for (const support::RunStep& step : run.steps) {
+        const bool touches = step.pairs[0].normal > 0;
+        if (touches && touch.size() == release.size()) touch.push_back(before);
+        if (!touches && touch.size() > release.size()) release.push_back(before);
+        before = step.time;
+    }
+    ASSERT_GE(touch.size(), 9u);
+    const double fall = std::sqrt(2 * 0.01 / 9.81), contact = release[0] - touch[0], bound = 0.03;
+    for (std::size_t k = 0; k < touch.size(); ++k) {
+        const double exact = fall + static_cast<double>(k) * (2 * fall + contact);
+        EXPECT_NEAR(touch[k], exact, bound * exact) << "bounce " << k;
+    }
+    EXPECT_LT(-run.steps.back().ledger.contact, 0.06 * 0.016); // J: of the quarter's weight times where it fell from
+}
+
 } // namespace
 } // namespace osculate

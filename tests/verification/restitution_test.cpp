@@ -99,7 +99,7 @@ TEST(TwoBars, TouchForTwiceTheWaveTimeInStepsThatTheDefaultsChoose) {
     EXPECT_NEAR(left, 0, 0.02 * momentum);
 }
 
-/// Ten falls of 10 mm, each contact as long as the first: a tenth of the shipped scene's steps, which would each hold half a
+/// Ten falls of 10 mm, each contact as long as the first: a twentieth of the shipped scene's steps, which would each hold half a
 /// contact.
 TEST(TenBounces, ComeAtTheirTimesInStepsThatTheDefaultsChoose) {
     support::SceneRun run;

@@ -196,7 +196,7 @@ bodies:
   bar:
     mesh: {block: {origin: [-50 mm, -10 mm, -10 mm], size: [100 mm, 20 mm, 20 mm], divisions: [10, 2, 2]}}
     material: {linear_elastic: {E: 1 GPa, nu: 0.3, density: 8000 kg/m^3}}
-    initial_spin: [100 Hz, 0 Hz, 0 Hz]
+    initial_spin: [100 rad/s, 0 rad/s, 0 rad/s]
   wall:
     mesh: {block: {origin: [-1 m, -1 m, -2 m], size: [2 m, 2 m, 1 m], divisions: [1, 1, 1]}}
     material: {linear_elastic: {E: 1 GPa, nu: 0.3, density: 8000 kg/m^3}}

@@ -287,8 +287,8 @@ struct StepControl {
     std::optional<RelativeLength> allowed_interpenetration;
     /// Whether dynamic steps are cut for what they lose: velocity_error and closing_energy, or error_tolerance.
     StepSize step_size = StepSize::controlled;
-    double velocity_error = 0.02;  ///< of the bodies' centres in one step, of the speed that all energy would give
-    double closing_energy = 0.005; ///< that gaps which close may take in one dynamic step, of all energy there has been
+    double velocity_error = 0.002; ///< of the bodies' centres in one step, of the speed that all energy would give
+    double closing_energy = 0.001; ///< that gaps which close may take in one dynamic step, of all energy there has been
     std::optional<double> error_tolerance; ///< of the displacement, in one dynamic step, m; given: not velocity_error
     double energy_tolerance = 0.01; ///< rise beyond external work in one dynamic step, of kinetic plus strain energy
     double growth = 2;              ///< of dt after an easy step, up to the stage's step

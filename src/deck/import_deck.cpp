@@ -165,6 +165,7 @@ private:
             const DeckStep& step = model_.steps[s];
             given.clear();
             for (const DeckValues& values : step.held) add(values, static_cast<int>(s));
+            for (const auto& one : given) let_go.erase(one);
             if (!step.forget_held) continue;
             std::size_t released = 0; // what an earlier step let go of is listed there
             for (const auto& [p, holdings] : by_point)

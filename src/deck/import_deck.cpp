@@ -141,7 +141,7 @@ private:
 
     std::string write_supports() {
         std::map<Index, Holdings> by_point;
-        std::set<std::pair<Index, std::size_t>> given; // points and components, by the step under way
+        std::set<std::pair<Index, std::size_t>> given, let_go; // points and components, by the step under way; by any
         const auto add = [&](const DeckValues& values, int step) {
             std::size_t without = 0;
             for (const Index p : values.points) {
@@ -165,11 +165,12 @@ private:
             const DeckStep& step = model_.steps[s];
             given.clear();
             for (const DeckValues& values : step.held) add(values, static_cast<int>(s));
+            for (const auto& one : given) let_go.erase(one);
             if (!step.forget_held) continue;
-            std::size_t released = 0;
+            std::size_t released = 0; // what an earlier step let go of is listed there
             for (const auto& [p, holdings] : by_point)
                 for (std::size_t d = 0; d < holdings.size(); ++d)
-                    if (!holdings[d].empty() && !given.contains({p, d})) ++released;
+                    if (!holdings[d].empty() && !given.contains({p, d}) && let_go.insert({p, d}).second) ++released;
             if (released > 0)
                 model_.lose(step.place, fmt::format("*BOUNDARY, OP=NEW, which lets go of {} components", released),
                             "what is held stays held");

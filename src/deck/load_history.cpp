@@ -90,6 +90,11 @@ std::string LoadHistory::end_step(double duration, bool ramped) {
     return course;
 }
 
+bool LoadHistory::gives(std::string_view origin) const {
+    const auto at = origins_.find(origin);
+    return at != origins_.end() && !at->second.given.empty();
+}
+
 double LoadHistory::standing(std::string_view origin) const {
     const auto at = origins_.find(origin);
     return at == origins_.end() ? 0 : at->second.start;

@@ -25,6 +25,8 @@ public:
     /// @param ramped  loads without an amplitude change linearly over the step, in place of at once
     std::string end_step(double duration, bool ramped);
 
+    /// Whether an origin gives a load in the step that is under way.
+    [[nodiscard]] bool gives(std::string_view origin) const;
     /// What an origin gave at the end of the last step that has ended.
     [[nodiscard]] double standing(std::string_view origin) const;
     [[nodiscard]] double standing() const; ///< of all origins

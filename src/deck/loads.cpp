@@ -35,7 +35,7 @@ void DeckLoads::write(std::vector<StageLoads>& stages) {
     for (std::size_t s = 0; s < model_.steps.size(); ++s) {
         const DeckStep& step = model_.steps[s];
         forget(step);
-        for (const DeckPressure& p : step.pressures) add_pressure(step, p);
+        add_pressures(step);
         add_forces(step);
         add_gravity(step);
         end_step(s, stages[s]);
@@ -68,8 +68,9 @@ DeckLoads::FacetLoad& DeckLoads::facet_load(const FacetKey& key, const std::stri
     return load;
 }
 
-void DeckLoads::add_pressure(const DeckStep& step, const DeckPressure& p) {
-    std::set<std::pair<std::size_t, Index>> facets; // a line loads a face once
+/// On the outside of bodies, each once.
+std::set<std::pair<std::size_t, Index>> DeckLoads::facets_of(const DeckPressure& p) {
+    std::set<std::pair<std::size_t, Index>> facets;
     std::size_t inside = 0;
     for (const mesh::RawFace& face : p.faces) {
         static constexpr int quarters[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
@@ -89,16 +90,29 @@ void DeckLoads::add_pressure(const DeckStep& step, const DeckPressure& p) {
     if (inside > 0)
         model_.lose(p.place, fmt::format("pressure on {} faces within '{}'", inside, p.name),
                     "they are not on the outside");
-    const char* const other = p.keyword == on_surfaces ? on_elements : on_surfaces;
-    const bool forgotten = p.keyword == on_surfaces ? step.forget_on_elements : step.forget_on_surfaces;
-    std::size_t both = 0;
-    for (const auto& [body, facet] : facets) {
-        FacetLoad& load = facet_load({follow_, body, facet}, "pressed_" + p.name, p.place);
-        if (!forgotten && load.history.standing(other) != 0) ++both;
-        load.history.add(p.keyword, units_.stress * p.value, model_.amplitude(p.amplitude));
+    return facets;
+}
+
+void DeckLoads::add_pressures(const DeckStep& step) {
+    Repeated again, beside;
+    for (const DeckPressure& p : step.pressures) {
+        const bool of_surface = p.keyword == on_surfaces;
+        const char* const other = of_surface ? on_elements : on_surfaces;
+        const bool forgotten = of_surface ? step.forget_on_elements : step.forget_on_surfaces;
+        for (const auto& [body, facet] : facets_of(p)) {
+            FacetLoad& load = facet_load({follow_, body, facet}, "pressed_" + p.name, p.place);
+            if (load.history.gives(p.keyword)) again.count(p.place);
+            if (!forgotten && load.history.standing(other) != 0) beside.count(p.place);
+            load.history.add(p.keyword, units_.stress * p.value, model_.amplitude(p.amplitude));
+        }
     }
-    if (both > 0)
-        model_.note(p.place, fmt::format("*{} on {} faces that *{} of an earlier step loads", p.keyword, both, other),
+    if (again.faces > 0)
+        model_.note(again.place, fmt::format("pressure on {} faces that the step loads already", again.faces),
+                    "they add, as in Abaqus and CalculiX; early versions of CalculiX keep the last");
+    if (beside.faces > 0)
+        model_.note(beside.place,
+                    fmt::format("pressure by *DLOAD and *DSLOAD on {} faces that an earlier step loads by the other",
+                                beside.faces),
                     "they add, as in Abaqus; in CalculiX the later takes the place of the earlier");
 }
 

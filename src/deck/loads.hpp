@@ -62,8 +62,18 @@ private:
         std::string origin;
     };
 
+    /// Faces that are loaded more than once, and where the first of these loads stands.
+    struct Repeated {
+        std::size_t faces = 0;
+        std::string place;
+        void count(const std::string& where) {
+            if (faces++ == 0) place = where;
+        }
+    };
+
     void forget(const DeckStep& step);
-    void add_pressure(const DeckStep& step, const DeckPressure& p);
+    void add_pressures(const DeckStep& step);
+    [[nodiscard]] std::set<std::pair<std::size_t, Index>> facets_of(const DeckPressure& p);
     void add_forces(const DeckStep& step);
     void press_like(const Forces& forces, std::size_t body, const std::string& amplitude, double duration);
     void add_gravity(const DeckStep& step);

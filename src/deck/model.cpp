@@ -16,8 +16,7 @@ using mesh::to_number;
 constexpr int components = 3;
 
 /// What these say is in the mesh, or has nothing to say.
-const std::set<std::string> read_elsewhere{"NODE",    "ELEMENT", "NSET",     "ELSET",
-                                           "SURFACE", "HEADING", "PREPRINT", "END STEP"};
+const std::set<std::string> read_elsewhere{"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "HEADING", "PREPRINT"};
 
 /// Why a keyword has no counterpart, and whether bodies would move otherwise with it.
 struct Reason {
@@ -29,42 +28,44 @@ constexpr Reason output{"what is written is chosen under output", false},
     settings{"the solver has settings of its own", false}, equations{"there are no equations between nodes", true},
     elastic_only{"all bodies are elastic", true}, heat{"there are no temperatures", false};
 
+/// By keywords without blanks.
 const std::map<std::string, Reason> reasons{
-    {"NODE PRINT", output},
-    {"EL PRINT", output},
-    {"NODE FILE", output},
-    {"EL FILE", output},
-    {"ELEMENT FILE", output},
-    {"NODE OUTPUT", output},
-    {"ELEMENT OUTPUT", output},
-    {"CONTACT FILE", output},
-    {"CONTACT OUTPUT", output},
-    {"CONTACT PRINT", output},
-    {"ENERGY FILE", output},
-    {"ENERGY OUTPUT", output},
-    {"ENERGY PRINT", output},
-    {"SECTION PRINT", output},
+    {"NODEPRINT", output},
+    {"ELPRINT", output},
+    {"NODEFILE", output},
+    {"ELFILE", output},
+    {"ELEMENTFILE", output},
+    {"NODEOUTPUT", output},
+    {"ELEMENTOUTPUT", output},
+    {"CONTACTFILE", output},
+    {"CONTACTOUTPUT", output},
+    {"CONTACTPRINT", output},
+    {"ENERGYFILE", output},
+    {"ENERGYOUTPUT", output},
+    {"ENERGYPRINT", output},
+    {"SECTIONPRINT", output},
     {"OUTPUT", output},
     {"PRINT", output},
     {"MONITOR", output},
-    {"FILE FORMAT", output},
+    {"FILEFORMAT", output},
     {"CONTROLS", settings},
-    {"CONTACT CONTROLS", settings},
-    {"SOLVER CONTROLS", settings},
+    {"CONTACTCONTROLS", settings},
+    {"SOLVERCONTROLS", settings},
     {"EQUATION", equations},
     {"MPC", equations},
     {"TIE", {"there is no tied contact", true}},
-    {"RIGID BODY", elastic_only},
+    {"RIGIDBODY", elastic_only},
     {"PLASTIC", elastic_only},
-    {"CYCLIC HARDENING", elastic_only},
+    {"CYCLICHARDENING", elastic_only},
     {"CREEP", elastic_only},
+    {"ORIENTATION", {"materials are isotropic", false}},
     {"EXPANSION", heat}, // without a *TEMPERATURE it does nothing
     {"CONDUCTIVITY", heat},
-    {"SPECIFIC HEAT", heat},
-    {"GAP CONDUCTANCE", heat},
-    {"PHYSICAL CONSTANTS", heat},
+    {"SPECIFICHEAT", heat},
+    {"GAPCONDUCTANCE", heat},
+    {"PHYSICALCONSTANTS", heat},
     {"TEMPERATURE", {"there are no temperatures", true}},
-    {"TIME POINTS", {"frames are chosen under output", false}},
+    {"TIMEPOINTS", {"frames are chosen under output", false}},
     {"RESTART", {"runs begin at the beginning", false}},
 };
 
@@ -107,9 +108,9 @@ private:
     }
 
     void take(const DeckCard& card) {
-        const std::string& word = card.keyword;
+        const std::string word = without_blanks(card.keyword);
         if (word == "STEP") return begin_step(card);
-        if (word == "END STEP") {
+        if (word == "ENDSTEP") {
             if (step_ != nullptr && !step_taken_) drop_step("it has no analysis");
             step_ = nullptr;
             return;
@@ -120,44 +121,44 @@ private:
         }
         if (word == "MATERIAL") return begin_material(card);
         if (word == "ELASTIC" || word == "DENSITY" || word == "HYPERELASTIC") return material_data(card);
-        if (word == "SOLID SECTION") return section(card);
-        if (word == "SURFACE INTERACTION") {
+        if (word == "SOLIDSECTION") return section(card);
+        if (word == "SURFACEINTERACTION") {
             interaction_ = capitals_of(card, "NAME");
             model_.friction.try_emplace(interaction_, 0.0);
             return;
         }
         if (word == "FRICTION") return friction(card);
-        if (word == "CONTACT PAIR") return pair(card);
+        if (word == "CONTACTPAIR") return pair(card);
         if (word == "AMPLITUDE") return amplitude(card);
         if (word == "BOUNDARY") return boundary(card);
         if (word == "CLOAD" && step_ != nullptr) return forces(card);
         if ((word == "DLOAD" || word == "DSLOAD") && step_ != nullptr) return pressures(card);
         if ((word == "STATIC" || word == "DYNAMIC") && step_ != nullptr) return analysis(card);
         if (step_ != nullptr && !step_taken_ && is_analysis(word))
-            return drop_step("*" + word + " has no counterpart: statics and implicit dynamics do");
-        if (word == "SURFACE BEHAVIOR") return surface_behavior(card);
+            return drop_step("*" + card.keyword + " has no counterpart: statics and implicit dynamics do");
+        if (word == "SURFACEBEHAVIOR") return surface_behavior(card);
         const auto known = reasons.find(word);
         const Reason reason = known != reasons.end() ? known->second : Reason{"it has no counterpart", true};
-        const bool of_heat = word == "INITIAL CONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE";
+        const bool of_heat = word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE";
         model_.left_out.push_back(
-            {deck_.place(card), "*" + word, of_heat ? heat.why : reason.why, reason.lost && !of_heat});
+            {deck_.place(card), "*" + card.keyword, of_heat ? heat.why : reason.why, reason.lost && !of_heat});
     }
 
     static bool is_analysis(const std::string& word) {
         static const std::set<std::string> others{"FREQUENCY",
                                                   "BUCKLE",
-                                                  "MODAL DYNAMIC",
-                                                  "STEADY STATE DYNAMICS",
-                                                  "HEAT TRANSFER",
+                                                  "MODALDYNAMIC",
+                                                  "STEADYSTATEDYNAMICS",
+                                                  "HEATTRANSFER",
                                                   "VISCO",
-                                                  "NO ANALYSIS",
-                                                  "COMPLEX FREQUENCY",
+                                                  "NOANALYSIS",
+                                                  "COMPLEXFREQUENCY",
                                                   "ELECTROMAGNETICS",
                                                   "GREEN",
                                                   "CFD",
-                                                  "UNCOUPLED TEMPERATURE-DISPLACEMENT",
+                                                  "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
                                                   "SENSITIVITY",
-                                                  "COUPLED TEMPERATURE-DISPLACEMENT"};
+                                                  "COUPLEDTEMPERATURE-DISPLACEMENT"};
         return others.contains(word);
     }
 

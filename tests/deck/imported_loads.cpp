@@ -7,7 +7,9 @@
 namespace osculate::deck {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -59,6 +61,7 @@ std::string step(const std::string& loads, const std::string& parameters = "") {
 
 TEST_F(ImportedLoads, AddOnAFaceThatAStepLoadsTwice) {
     EXPECT_NEAR(at_end(plan(step("*DSLOAD\nTop,P,5.\nTop,P,5.\n")), 0).z(), -30, round_off) << "10 MPa on 3 mm^2";
+    EXPECT_THAT(imported.notes, ElementsAre(AllOf(HasSubstr(".inp:49: pressure on 3 faces"), HasSubstr("they add"))));
     EXPECT_NEAR(at_end(plan(step("*DSLOAD\nTop,P,5.\n*DSLOAD\nMiddle,P,2.\n")), 0).z(), -17, round_off);
     EXPECT_NEAR(at_end(plan(step("*DSLOAD\nTop,P,5.\n*DLOAD\n2,P2,3.\nRow,P2,1.\n")), 0).z(), -21, round_off);
     EXPECT_NEAR(at_end(plan(step("*DSLOAD\nTop,P,5.\n*CLOAD\n12,3,-.25\n13,3,-.25\n16,3,-.25\n17,3,-.25\n")), 0).z(),
@@ -80,7 +83,7 @@ TEST_F(ImportedLoads, OfAnotherStepAreForgottenWhereItSaysSo) {
     const std::string first = step("*DSLOAD\nTop,P,5.\n");
     EXPECT_NEAR(at_end(plan(first + step("*DSLOAD, OP=NEW\nMiddle,P,2.\n")), 1).z(), -2, round_off);
     EXPECT_NEAR(at_end(plan(first + step("*DLOAD, OP=NEW\n2,P2,2.\n")), 1).z(), -17, round_off) << "another keyword's";
-    EXPECT_THAT(imported.notes, Contains(HasSubstr("*DLOAD on 1 faces that *DSLOAD of an earlier step loads")));
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("on 1 faces that an earlier step loads by the other")));
     EXPECT_NEAR(at_end(plan(first + step("")), 1).z(), -15, round_off) << "a step that gives none";
 }
 

@@ -74,7 +74,8 @@ TEST(GnuplotText, NoTextLeavesItsString) {
 TEST(GnuplotText, TheOracleSeesWhatLeavesItsString) {
     for (const char* wrong : {"\"a\" b\"", "\"a\\\"", "\"a", "\"a`date`\"", "\"a\n!date\"", "'a'", "\"a\\\"b\""})
         EXPECT_EQ(string_of(wrong), std::nullopt) << wrong;
-    EXPECT_EQ(string_of("\"a\\042\\0601\""), "a\"01");
+    EXPECT_EQ(string_of("\"a\\042\\060b\""), "a\"0b");
+    EXPECT_NE(string_of("\"a\\0421\""), "a\"1") << "a fourth digit counts";
 }
 
 /// gnuplot prints the texts into a file, as it would set them beside a plot.

@@ -23,7 +23,7 @@ std::string with_plot(const std::string& title) {
 
 TEST(ControlCharacters, AreRefusedInATextWithPlaceAndKey) {
     EXPECT_THAT(messages(faults_of(with_plot("\"forces\\n!touch mine\""))),
-                ElementsAre("bad.yaml:28:27: output.plots.force.title: expected a text on one line, without control "
+                ElementsAre("bad.yaml:28:26: output.plots.force.title: expected a text on one line, without control "
                             "characters, found 'forces\\n!touch mine' (a line break, 7. character)"));
     EXPECT_THAT(messages(faults_of(with_plot("'forces, kN $ % \\ µ'"))), IsEmpty());
 }
@@ -102,7 +102,7 @@ TEST_F(ControlCharactersInFiles, OfStudiesAreRefusedButForLinesOfMarkdown) {
     const auto faults = [](const std::string& text) { return said([&] { (void)read_study(study_file(text), {}); }); };
     EXPECT_EQ(faults(study_text), "");
     EXPECT_THAT(faults(replaced(study_text, "LABEL", "\"F\\n!date\"")),
-                HasSubstr("study.yaml:9:70: quantities.force.label: expected a text on one line"));
+                HasSubstr("study.yaml:9:69: quantities.force.label: expected a text on one line"));
     EXPECT_THAT(faults(replaced(study_text, "title: Small", "title: \"Small\\r\"")),
                 HasSubstr("study.yaml:1:8: title: expected"));
     EXPECT_THAT(faults(replaced(study_text, "title: Small", "abscissa_label: \"a\\nb\"")),

@@ -31,11 +31,12 @@ namespace {
 
 using output::OutputFolder;
 
-/// Whether the run of a folder has come to its end.
+/// Whether the run of a folder has come to its end, its report included.
 bool is_complete(const fs::path& folder) {
     std::error_code none;
     const auto summary = nlohmann::json::parse(file_content(folder / "summary.json", none), nullptr, false);
-    return summary.is_object() && summary.value("status", nlohmann::json()) == "done";
+    if (!summary.is_object() || summary.value("status", nlohmann::json()) != "done") return false;
+    return fs::exists(folder / "report.html") || !scene::read_scene((folder / "scene.yaml").string()).output.report;
 }
 
 /// Folder of a run's files, where the resolved scene must not take the place of the one a user wrote.

@@ -340,8 +340,11 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
     summary_.status = status;
     summary_.failure = failure;
     if (status != "interrupted") summary_.expectation = checks_.judge(failure); // it may still come to what is expected
-    write_summary();
-    if (status != "interrupted") write_pictures();
+    count_up();
+    // a run that is killed as it draws is not done: the summary says so last, but for the report, which reads it
+    if (status != "interrupted") draw_plots();
+    on_disk(timings_, [&] { output::write_summary(directory() / "summary.json", summary_); });
+    if (status != "interrupted") report();
     if (!summary_.expectation) return;
     const std::vector<std::string>& misses = summary_.expectation->misses;
     if (!misses.empty())
@@ -350,10 +353,13 @@ void RunRecorder::finish(const std::string& status, const std::string& failure) 
         fmt::print(stderr, "as expected\n");
 }
 
-void RunRecorder::write_pictures() {
+void RunRecorder::draw_plots() {
     for (const std::string& warning : summary_.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (const std::string note = write_plots(scene_, *settings_.folder); !note.empty())
         fmt::print(stderr, "{}\n", note);
+}
+
+void RunRecorder::report() {
     if (!scene_.output.report) return;
     try {
         for (const std::string& note : write_report(*settings_.folder).notes) fmt::print(stderr, "report: {}\n", note);
@@ -363,6 +369,11 @@ void RunRecorder::write_pictures() {
 }
 
 void RunRecorder::write_summary() {
+    count_up();
+    on_disk(timings_, [&] { output::write_summary(directory() / "summary.json", summary_); });
+}
+
+void RunRecorder::count_up() {
     const Spent spent = spent_so_far();
     summary_.total_seconds = spent.total;
     summary_.cpu_seconds = spent.cpu;
@@ -378,7 +389,6 @@ void RunRecorder::write_summary() {
         summary_.audit->on = plan_.stepper.audit;
     }
     summary_.warnings = checks_.warnings();
-    on_disk(timings_, [&] { output::write_summary(directory() / "summary.json", summary_); });
 }
 
 } // namespace osculate::app

@@ -82,8 +82,10 @@ private:
     void write_failed(const time::FailedIterate& iterate);
     void write_probes(const output::Snapshot& snapshot, bool last);
     void write_summary();
-    /// Plots and what else is made of the run's files once they are complete; says what could not be, and goes on.
-    void write_pictures();
+    void count_up(); ///< what the summary says by now
+    /// Plots, then the report, of the run's files once they are complete; they say what could not be made, and go on.
+    void draw_plots();
+    void report();
 
     const scene::Scene& scene_;
     const Plan& plan_;

@@ -65,7 +65,7 @@ private:
         if (examined_.stiffness_ratio < much_stiffer) return;
         say(".slave",
             fmt::format("its body is {:.2g} times as stiff as the master's: take the softer side as slave, and "
-                        "mesh it as finely; the solver takes many times the iterations as it is",
+                        "mesh it as finely; as it is the solver may take many times as long",
                         examined_.stiffness_ratio));
     }
 

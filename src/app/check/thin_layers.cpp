@@ -189,7 +189,7 @@ std::vector<Warning> thin_layers(const scene::Scene& scene, const Plan& plan) {
                  locking.thin, locking.hexahedra, locking.factor,
                  std::holds_alternative<scene::LinearElastic>(body.material)
                      ? "incompatible_modes bends as it should"
-                     : "take several elements through the thickness, and none longer than the body is thick")});
+                     : "take elements half as long as the body is thick, and two or more through it")});
     }
     return found;
 }

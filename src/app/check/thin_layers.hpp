@@ -15,6 +15,8 @@ namespace osculate::app {
 /// How many times too stiff a rectangular `full` element is in bending: the energy of its one shape for that, u = c x y
 /// (axial strain c y, none across; shear strain c x, which should not be there), over a beam's:
 ///     (1-nu) / ((1+nu)(1-2nu)) + (a/t)^2 / (2(1+nu)).
+/// A cantilever of 3 to 20 elements is 1.12 to 6.3 times too stiff under its load, this says 1.13 to 6.6; with nu = 0.3 up to
+/// 15 % more than it is, as elements narrow a little where they are stretched.
 /// @param slenderness  a/t, length over thickness of the element
 [[nodiscard]] double too_stiff_in_bending(double slenderness, double nu);
 

@@ -64,6 +64,7 @@ TEST_F(CheckWarnings, OneFullHexahedronThroughAPlateThatBendsIsNamed) {
         << "elements shorter than thick do not lock";
     EXPECT_THAT(with("supports.top={fix: [z]}"), Not(HasSubstr(silent))) << "a plate that lies on a bed is not bent";
     EXPECT_THAT(checked("configs/tutorials/two_bars.yaml"), Not(HasSubstr(silent))) << "bars that meet head on";
+    EXPECT_THAT(checked("configs/extreme/stack_of_20.yaml"), Not(HasSubstr(silent))) << "plates between plates";
 }
 
 TEST_F(CheckWarnings, FacetsThatTwoPairsKeepApartAreNamed) {

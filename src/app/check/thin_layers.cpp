@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 
 namespace osculate::app {
 
@@ -47,6 +48,8 @@ public:
                     add(c.direction);
                 }
         for (const auto& pair : plan.model.pairs) {
+            contact_.insert(pair->slaves().node.begin(), pair->slaves().node.end());
+            contact_.insert(pair->master_nodes().begin(), pair->master_nodes().end());
             for (const mesh::Facet& facet : pair->slaves().facets)
                 if (own(facet.nodes[0])) add(mesh::facet_normal(facet, plan.model.X));
             if (own(pair->master_nodes().front())) add_master(*pair);
@@ -119,6 +122,11 @@ private:
         return std::ranges::any_of(acting_, [&](const auto& a) { return std::abs(a.second.dot(direction)) > share; });
     }
 
+    [[nodiscard]] bool in_contact(const mesh::Facet& facet) const {
+        return std::all_of(facet.begin(), facet.end(),
+                           [&](Index node) { return contact_.contains(body_.first_node + node); });
+    }
+
     [[nodiscard]] bool held(const mesh::Facet& facet, const Vec3& direction) const {
         return std::all_of(facet.begin(), facet.end(), [&](Index node) {
             const auto at = held_.find(node);
@@ -140,6 +148,7 @@ private:
         double worst = 0;
         for (const Through& t : through) {
             if (held(*t.sides[0], t.direction) || held(*t.sides[1], t.direction) || !bends(t.direction)) continue;
+            if (in_contact(*t.sides[0]) && in_contact(*t.sides[1])) continue; // squeezed, as in a stack
             if (size_ < slender * t.thickness) continue;
             double length = 0;
             for (const Vec3& side : middle_lines(*t.sides[0])) {
@@ -164,6 +173,7 @@ private:
     double nu_;
     double size_ = 0;                           ///< of the body, m
     std::map<std::array<int, 3>, Vec3> acting_; ///< which way loads, supports and contact act on the body
+    std::set<Index> contact_;                   ///< global nodes of all slaves and masters
     std::map<Index, std::vector<Vec3>> held_;   ///< by the body's node, in the first stage
 };
 

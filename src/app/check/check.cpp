@@ -2,7 +2,11 @@
 
 #include "app/check/facing.hpp"
 #include "app/check/free_motions.hpp"
+#include "app/check/pair_warnings.hpp"
 #include "app/check/pairing_advice.hpp"
+#include "app/check/support_warnings.hpp"
+#include "app/check/thin_layers.hpp"
+#include "app/check/twice_paired.hpp"
 #include "app/check/unit_warnings.hpp"
 #include "app/plan/gaps.hpp"
 #include "osculate/app/estimate.hpp"
@@ -46,33 +50,34 @@ double modulus(const LoadedScene& loaded, Index node) {
     return scene::elastic(scene::find(loaded.scene.bodies, owner(loaded.plan.model, node).name)->material).E;
 }
 
-/// Contact at the nodes lets a coarser side sink in between; the harder one does not give way to it.
-void advise_on_stiffness(const LoadedScene& loaded, const Pairing& found, PairCheck& check) {
-    constexpr double much = 3;
-    const double ratio =
-        modulus(loaded, check.pair->slaves().node.front()) / modulus(loaded, check.pair->master_nodes().front());
-    if (found.near == 0 || found.discretisation == model::Discretisation::mortar || ratio < much) return;
+double stiffness_ratio(const LoadedScene& loaded, const model::ContactTerm& pair) {
+    return modulus(loaded, pair.slaves().node.front()) / modulus(loaded, pair.master_nodes().front());
+}
+
+/// Contact at the nodes lets a coarser side sink in between; the harder one does not give way to it. Where it is much harder,
+/// pair_warnings() say so.
+void advise_on_stiffness(double ratio, const Pairing& found, PairCheck& check) {
+    constexpr double stiffer = 3;
+    if (found.near == 0 || found.discretisation == model::Discretisation::mortar) return;
+    if (ratio < stiffer || ratio >= much_stiffer) return;
     if (found.slave_spacing < 0.9 * found.master_spacing) return; // the finer side is the slave: that weighs more
     check.advice.push_back(fmt::format(
         "the slave is {:.2g} times as stiff as the master: the softer side is usually the better slave", ratio));
 }
 
-void warn_of_facing(const model::Model& model, const PairCheck& check, std::vector<Warning>& warnings) {
-    const Facing& f = check.facing;
-    const std::string key = "contact." + check.pair->name();
-    if (f.sides_wrong()) {
-        warnings.push_back({key + ".master.set",
-                            fmt::format("{} of {} slave facets do not look towards the master: it is the wrong side "
-                                        "of its body, or the slave is",
-                                        f.turned, f.facets)});
-    } else if (!f.away.empty()) {
-        const Vec3 at = mesh::facet_centroid(check.pair->slaves().facets[f.away.front()], model.X) + model.origin;
-        warnings.push_back(
-            {key + ".slave",
-             fmt::format("{} of {} facets are near the master and look away from it, the first at ({:.4g}, "
-                         "{:.4g}, {:.4g}) m: leave them out of the set",
-                         f.away.size(), f.facets, at.x(), at.y(), at.z())});
-    }
+bool finite_strain(const LoadedScene& loaded, Index node) {
+    return !std::holds_alternative<scene::LinearElastic>(
+        scene::find(loaded.scene.bodies, owner(loaded.plan.model, node).name)->material);
+}
+
+/// Bodies at small strain do not turn, and without inertia bodies turn as they are driven.
+bool may_tumble(const LoadedScene& loaded, const model::ContactTerm& pair) {
+    return std::ranges::any_of(loaded.plan.stages, [](const time::Stage& s) { return s.dynamics.has_value(); }) &&
+           (finite_strain(loaded, pair.slaves().node.front()) || finite_strain(loaded, pair.master_nodes().front()));
+}
+
+void append(std::vector<Warning>& warnings, std::vector<Warning> more) {
+    std::ranges::move(more, std::back_inserter(warnings));
 }
 
 Check examine(const LoadedScene& loaded, int threads) {
@@ -81,15 +86,20 @@ Check examine(const LoadedScene& loaded, int threads) {
     check.dofs = degrees_of_freedom(plan);
     check.cost = estimate(loaded.scene, plan);
     check.warnings = unit_warnings(loaded.scene, plan);
+    append(check.warnings, support_warnings(loaded.scene));
+    append(check.warnings, thin_layers(loaded.scene, plan));
+    append(check.warnings, twice_paired(loaded.scene, plan));
     Timings unused;
     for (const auto& pair : plan.model.pairs) {
         PairCheck& p = check.pairs.emplace_back(PairCheck{pair.get()});
         p.gaps = initial_gaps(*pair, plan.model.X, unused, threads);
         const Pairing found = pairing(*pair, plan.model.X);
         p.advice = advice(found);
-        advise_on_stiffness(loaded, found, p);
+        const double ratio = stiffness_ratio(loaded, *pair);
+        advise_on_stiffness(ratio, found, p);
         p.facing = facing(*pair, plan.model.X);
-        warn_of_facing(plan.model, p, check.warnings);
+        append(check.warnings, pair_warnings(plan.model, {*pair, *scene::find(loaded.scene.contact, pair->name()),
+                                                          p.facing, found, ratio, may_tumble(loaded, *pair)}));
         if (p.gaps.above == 0)
             check.warnings.push_back({"contact." + pair->name(), "no slave node is above or below the master"});
     }

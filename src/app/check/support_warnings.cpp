@@ -1,0 +1,23 @@
+#include "app/check/support_warnings.hpp"
+
+#include <algorithm>
+
+namespace osculate::app {
+
+std::vector<Warning> support_warnings(const scene::Scene& scene) {
+    std::vector<Warning> found;
+    for (const auto& [name, support] : scene.supports) {
+        if (support.symmetry || std::ranges::count(support.fixed, true) > 0) continue;
+        const bool moved = std::ranges::any_of(scene.stages, [&name = name](const auto& stage) {
+            const auto* motion = scene::find(stage.second.displacement, name);
+            return motion != nullptr &&
+                   std::ranges::any_of(*motion, [](const auto& component) { return component.has_value(); });
+        });
+        if (!moved)
+            found.push_back({"supports." + name, "it holds nothing, and no stage moves it: name components, as in fix: "
+                                                 "[x, y, z], or leave it out"});
+    }
+    return found;
+}
+
+} // namespace osculate::app

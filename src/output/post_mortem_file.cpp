@@ -164,7 +164,9 @@ time::PostMortem parsed(const Json& j) {
     f.changing = j.at("nodes_that_changed_status");
     for (const Json& one : j.at("status_changes")) f.changes.push_back(changes(one));
     for (const Json& one : j.at("bodies")) f.bodies.push_back(hold(one));
-    for (const Json& one : j.at("advice")) f.advice.push_back({one.at("key"), one.at("text")});
+    for (const Json& one : j.at("advice"))
+        f.advice.push_back({one.at("key"), one.at("text"), one.value("set", std::vector<std::string>())});
+    f.no_remedy = j.value("no_remedy", "");
     return f;
 }
 
@@ -205,7 +207,9 @@ void write_post_mortem(const std::filesystem::path& path, const time::PostMortem
     j["status_changes"] = listed(f.changes);
     j["bodies"] = listed(f.bodies);
     j["advice"] = Json::array();
-    for (const time::Advice& one : f.advice) j["advice"].push_back({{"key", one.key}, {"text", one.text}});
+    for (const time::Advice& one : f.advice)
+        j["advice"].push_back({{"key", one.key}, {"text", one.text}, {"set", one.set}});
+    j["no_remedy"] = f.no_remedy;
     write_json_atomic(path, j);
 }
 

@@ -109,6 +109,17 @@ void say_bodies(std::string& text, const time::PostMortem& f) {
     }
 }
 
+void say_advice(std::string& text, const time::PostMortem& f) {
+    if (!f.no_remedy.empty()) say(text, "try", "no remedy is known: " + f.no_remedy);
+    for (std::size_t i = 0; i < f.advice.size(); ++i) {
+        const time::Advice& one = f.advice[i];
+        say(text, i == 0 && f.no_remedy.empty() ? "try" : "", fmt::format("{}: {}", one.key, one.text));
+        std::string options;
+        for (const std::string& change : one.set) options += " --set '" + change + "'";
+        if (!options.empty()) say(text, "", " " + options);
+    }
+}
+
 } // namespace
 
 std::string in_words(const time::PostMortem& f) {
@@ -119,8 +130,7 @@ std::string in_words(const time::PostMortem& f) {
     say_place(text, f);
     say_solve(text, f);
     say_bodies(text, f);
-    for (std::size_t i = 0; i < f.advice.size(); ++i)
-        say(text, i == 0 ? "try" : "", fmt::format("{}: {}", f.advice[i].key, f.advice[i].text));
+    say_advice(text, f);
     return text;
 }
 

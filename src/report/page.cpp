@@ -73,8 +73,13 @@ std::string failure_section(const RunFiles& files) {
     std::string text = failure.empty() ? "" : element("p class=\"lead\"", escaped(failure));
     if (files.post_mortem) {
         std::string advice;
-        for (const auto& [key, what] : files.post_mortem->advice)
-            advice += element("li", element("code", escaped(key)) + " " + escaped(what));
+        if (const std::string& why = files.post_mortem->no_remedy; !why.empty())
+            advice += element("li", "No remedy is known: " + escaped(why));
+        for (const time::Advice& one : files.post_mortem->advice) {
+            std::string item = element("code", escaped(one.key)) + " " + escaped(one.text);
+            for (const std::string& change : one.set) item += " " + element("code", escaped("--set '" + change + "'"));
+            advice += element("li", item);
+        }
         if (!advice.empty()) text += element("h3", "What to try") + element("ul", advice);
         text += element("details", element("summary", "Everything that was found") +
                                        element("pre", escaped(output::in_words(*files.post_mortem))));

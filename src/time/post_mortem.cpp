@@ -239,7 +239,7 @@ PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium) {
         std::tie(p, j) = slave_of(model, global_node(model, first.body, first.node));
     }
     if (p >= 0) found.contact = place(model, p, j, state.contact[p].status[j]);
-    found.advice = advise(found, failed);
+    advise(found, failed);
     return found;
 }
 

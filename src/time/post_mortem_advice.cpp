@@ -1,29 +1,48 @@
-/// What to change after a failure. Every piece names a key of the scene.
+/// What to change after a failure. Every piece names a key of the scene, and where a value can be told, `--set` takes it.
 
+#include "osculate/core/without_traps.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/body_hold.hpp"
 #include "time/number.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace osculate::time {
 
 namespace {
 
+/// A round number for an override.
+std::string rounded(double value) {
+    std::ostringstream text;
+    text << std::setprecision(2) << value;
+    return text.str();
+}
+
+/// The numbers of all nodes of facets, ascending.
+std::vector<Index> nodes_of(const std::vector<mesh::Facet>& facets) {
+    std::vector<Index> nodes;
+    for (const mesh::Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
+    std::ranges::sort(nodes);
+    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+    return nodes;
+}
+
 /// Gathers advice for one failure.
 class Adviser {
 public:
-    Adviser(const PostMortem& found, const FailedAttempt& failed)
+    Adviser(PostMortem& found, const FailedAttempt& failed)
         : found_(found), failed_(failed), stage_("stages." + failed.stage.name) {}
 
-    std::vector<Advice> take() {
+    void advise() {
         switch (found_.cause) {
         case Cause::unsupported_body: unsupported(); break;
         case Cause::singular_tangent: contradiction(); break;
         case Cause::linear_system:
-            add("solver.linear_solver",
-                "iterative instead of multigrid, where there is memory for the bodies' factors");
+            add("solver.linear_solver", "iterative instead of multigrid, where there is memory for the bodies' factors",
+                {"solver.linear_solver=iterative"});
             break;
         case Cause::diverged: diverged(); break;
         case Cause::status_cycle: cycle(); break;
@@ -40,11 +59,18 @@ public:
         case Cause::energy: energy(); break;
         case Cause::load_not_finite: break;
         }
-        return std::move(list_);
     }
 
 private:
-    void add(std::string key, std::string text) { list_.push_back({std::move(key), std::move(text)}); }
+    static constexpr double margin = 2; ///< of values that are set beyond a limit, which a longer run may need again
+
+    void add(std::string key, std::string text, std::vector<std::string> set = {}) {
+        found_.advice.push_back({std::move(key), std::move(text), std::move(set)});
+    }
+    /// Advice that is one value of its key.
+    void change(const std::string& key, const std::string& value, std::string text) {
+        add(key, std::move(text), {key + "=" + value});
+    }
     [[nodiscard]] std::string in_stage(const std::string& key) const { return stage_ + "." + key; }
     [[nodiscard]] const model::ContactTerm* pair(const std::string& name) const {
         for (const auto& one : failed_.model.pairs)
@@ -56,11 +82,25 @@ private:
     /// More cuts, where that is what was missing; more steps otherwise.
     void smaller_steps(const std::string& why) {
         const double smallest = found_.smallest_dt / whole_step();
-        if (found_.dt <= found_.smallest_dt * (1 + 1e-6))
-            add("solver.smallest_step", number(smallest / 100) + " instead of " + number(smallest) +
-                                            ", so that the step may be cut further: " + why);
-        add(in_stage("steps"), number(4 * failed_.stage.steps) + " instead of " + number(failed_.stage.steps) +
-                                   ", so that every step asks for less");
+        if (at_smallest())
+            change("solver.smallest_step", number(smallest / 100),
+                   number(smallest / 100) + " instead of " + number(smallest) +
+                       ", so that the step may be cut further: " + why);
+        const int steps = 4 * failed_.stage.steps;
+        change(in_stage("steps"), std::to_string(steps),
+               std::to_string(steps) + " instead of " + number(failed_.stage.steps) +
+                   ", so that every step asks for less");
+    }
+    [[nodiscard]] bool at_smallest() const { return found_.dt <= found_.smallest_dt * (1 + 1e-6); }
+
+    /// The same where it is known by how much: nothing where a run would not come to its end with such steps.
+    /// @param share  of the last attempt's step that would do
+    /// @param least  of the stage's steps, steps that a run can do with
+    void steps_smaller_by(double share, double least, const std::string& why) {
+        const double smallest = found_.smallest_dt / whole_step(), wanted = found_.dt / whole_step() * share / margin;
+        if (!at_smallest() || !(wanted > least)) return;
+        change("solver.smallest_step", rounded(wanted),
+               rounded(wanted) + " instead of " + number(smallest) + ", so that the step may be cut further: " + why);
     }
 
     static std::string listed(const std::vector<std::string>& words) {
@@ -96,22 +136,30 @@ private:
                 "is " +
                     number(loose.nearest_gap) + " m away");
             if (failed_.ladder.stabilisation.share == nullptr)
-                add("solver.stabilisation", "true, so that the body's load may lead it until it meets something");
+                change("solver.stabilisation", "true",
+                       "true, so that the body's load may lead it until it meets something");
             else if (loose.nearest_gap < loose.facet && !adrift) // else the load does not lead there
-                add("contact." + loose.nearest_pair + ".closing_tolerance",
-                    "above " + number(loose.nearest_gap / loose.facet) +
-                        ", so that nodes this close count as touching in the first solve");
+                change("contact." + loose.nearest_pair + ".closing_tolerance",
+                       rounded(std::min(1.0, margin * loose.nearest_gap / loose.facet)),
+                       "above " + number(loose.nearest_gap / loose.facet) +
+                           ", so that nodes this close count as touching in the first solve");
         }
         if (loose.pressed > 0)
             for (const auto& one : failed_.model.pairs)
                 if (one->name() == loose.nearest_pair && one->options().friction == 0)
-                    add("contact." + one->name() + ".friction",
-                        "above 0 where the surfaces are not smooth: without friction contact holds the body along its "
-                        "normals only");
-        add(in_stage("analysis"),
-            "dynamic, if body '" + loose.body +
-                "' is really meant to move freely: inertia carries it then, and every body needs a "
-                "density");
+                    change("contact." + one->name() + ".friction", "0.3",
+                           "above 0, say 0.3, where the surfaces are not smooth: without friction contact holds the "
+                           "body along its normals only");
+        dynamics("if body '" + loose.body + "' is really meant to move freely: inertia carries it then");
+    }
+
+    void dynamics(const std::string& why) {
+        const std::string key = in_stage("analysis");
+        const auto has_density = [](const model::Body& body) { return body.density > 0; };
+        if (std::ranges::all_of(failed_.model.bodies, has_density))
+            change(key, "dynamic", "dynamic, " + why);
+        else
+            add(key, "dynamic, " + why + ", and every body needs a density");
     }
 
     void contradiction() {
@@ -126,25 +174,24 @@ private:
     }
 
     void diverged() {
-        smaller_steps("Newton starts nearer to the solution");
+        constexpr std::size_t few = 3; // attempts; where so many cuts changed nothing, more of them do not help
+        if (found_.attempts.size() < few) smaller_steps("Newton starts nearer to the solution");
         add(stage_,
             "less load than at " + number(found_.last_time) +
                 " s, the last equilibrium, or a displacement instead of the load: a body that gives way under a "
                 "load can be led past that point");
-        if (!failed_.stage.dynamics)
-            add(in_stage("analysis"),
-                "dynamic: inertia carries the bodies from one equilibrium to the next, and every body needs a density");
-        if (!found_.body.empty() && !failed_.model.finite_strain)
-            add("bodies." + found_.body + ".material", "neo_hookean, which stiffens as it is compressed: under loads "
-                                                       "near its modulus a linear one is not true");
     }
 
-    /// Where the residual is so near the tolerance that round-off rather than the contact may hold it there.
+    /// Where the residual is so small that round-off rather than the contact may hold it there.
     void larger_tolerance() {
         constexpr double near = 100; // times the tolerance
-        if (found_.residual < near * failed_.ladder.tolerance)
-            add("solver.tolerance", "above " + number(found_.residual) + " instead of " +
-                                        number(failed_.ladder.tolerance) + ": the residual rests at round-off there");
+        constexpr double harmless = 1e-6;
+        if (found_.residual < std::max(near * failed_.ladder.tolerance, harmless)) tolerance_above_residual();
+    }
+    void tolerance_above_residual() {
+        change("solver.tolerance", rounded(margin * found_.residual),
+               "above " + number(found_.residual) + " instead of " + number(failed_.ladder.tolerance) +
+                   ": the residual rests at round-off there");
     }
 
     void cycle() {
@@ -152,6 +199,12 @@ private:
         smaller_steps("fewer nodes change their status at once");
         const model::ContactTerm* const one = found_.contact ? pair(found_.contact->pair) : nullptr;
         if (one == nullptr) return;
+        if (failed_.stage.dynamics && failed_.stage.dynamics->stiffness_damping == 0 && one->options().friction > 0) {
+            constexpr double share = 0.1; // of a step: what swings faster than steps can follow dies out
+            const std::string value = rounded(share * whole_step()) + " s";
+            change(in_stage("analysis.dynamic.stiffness_damping"), value,
+                   value + ": bodies that rock on friction stick and slip with vibrations that no step follows");
+        }
         if (one->options().friction > 0.3)
             add("contact." + one->name() + ".friction",
                 "below " + number(one->options().friction) +
@@ -169,13 +222,13 @@ private:
         const int most = failed_.ladder.max_iterations;
         constexpr double near = 100; // times the tolerance: round-off rather than a lack of iterations
         constexpr int usual = 30;
-        if (last < near * failed_.ladder.tolerance && !(now < 0.5 * before))
-            add("solver.tolerance", "above " + number(last) + " instead of " + number(failed_.ladder.tolerance) +
-                                        ": the residual rests at round-off there");
-        if (now < 0.5 * before || most < usual)
-            add("solver.max_iterations", number(std::max(usual, 2 * most)) + " instead of " + number(most) +
-                                             (now < 0.5 * before ? ": the residual was still falling" : ""));
-        else
+        if (last < near * failed_.ladder.tolerance && !(now < 0.5 * before)) tolerance_above_residual();
+        if (now < 0.5 * before || most < usual) {
+            const std::string more = std::to_string(std::max(usual, 2 * most));
+            change("solver.max_iterations", more,
+                   more + " instead of " + number(most) +
+                       (now < 0.5 * before ? ": the residual was still falling" : ""));
+        } else
             smaller_steps("the residual did not fall any more, so that iterations alone would not help");
         if (most < usual) return;
         if (found_.contact)
@@ -198,32 +251,77 @@ private:
 
     void inside_out() {
         if (!found_.element) return;
-        smaller_steps("elements bear a little compression at a time");
-        add("bodies." + found_.element->body + ".material",
-            "neo_hookean, if it is saint_venant_kirchhoff, which gives way under strong compression");
-        add(stage_,
-            "a smaller load or motion on body '" + found_.element->body + "', if it cannot stand this one at all");
+        constexpr double crushed = 0.1; // of its volume is left: it is the motion that does it, step by step
+        const bool gradually = volume_left() < crushed;
+        if (!gradually) smaller_steps("elements bear a little compression at a time");
+        add(stage_, "a smaller load or motion on body '" + found_.element->body + "', " +
+                        (gradually ? "which has an element of hardly any volume at the last good time already"
+                                   : "if it cannot stand this one at all"));
+        if (!gradually)
+            add("bodies." + found_.element->body + ".material",
+                "neo_hookean, if it is saint_venant_kirchhoff, which gives way under strong compression");
         add("bodies." + found_.element->body + ".mesh", "a mesh without thin or skewed elements there");
     }
 
+    /// Least det F at the last accepted state.
+    [[nodiscard]] double volume_left() const {
+        const model::Model& model = failed_.model;
+        std::vector<Vec3> f(model.X.size(), Vec3::Zero());
+        return model.finite_strain ? model.finite_strain->add_internal_force(model.X, failed_.last.u, f, 1).J : 1;
+    }
+
     void too_deep() {
-        const StepLimits& limits = failed_.stage.limits;
-        smaller_steps("the node moves a shorter way in it");
-        if (found_.cause == Cause::interpenetration) {
-            const std::string unit = limits.in_metres ? " m" : " (of the facet size)";
-            add(in_stage("control.allowed_interpenetration"), "more than " + number(limits.allowed_interpenetration) +
-                                                                  unit + ", if a trial gap of " +
-                                                                  number(failed_.decision.value) + " m does no harm");
+        constexpr double least = 1e-6; // steps grow again once the surfaces touch
+        const std::string why = "the node moves a shorter way in it";
+        if (found_.cause == Cause::collision) { // shorter still: at the surface its depth is bounded, too
+            constexpr double most = 0.02;
+            return steps_smaller_by(std::min(failed_.decision.value, most), least, why);
         }
+        const StepLimits& limits = failed_.stage.limits;
+        const double depth = std::abs(failed_.decision.value), unit = unit_of_depth();
+        steps_smaller_by(limits.allowed_interpenetration * unit / depth, least, why);
+        const std::string words = limits.in_metres ? " m" : " (of the facet size)";
+        const double enough = margin * depth / unit;
+        const std::string key = in_stage("control.allowed_interpenetration");
+        const std::string text = "more than " + number(limits.allowed_interpenetration) + words +
+                                 ", if a trial gap of " + number(failed_.decision.value) +
+                                 " m does no harm: contact pushes the node back before the step is done";
+        if (limits.in_metres && std::isfinite(enough))
+            change(key, rounded(enough) + " m", text);
+        else if (constexpr double largest = 1; !limits.in_metres && enough <= largest)
+            change(key, rounded(enough), text);
+        else
+            add(key, text);
+    }
+
+    /// What allowed_interpenetration is a share of at the node in question, m.
+    [[nodiscard]] double unit_of_depth() const {
+        if (failed_.stage.limits.in_metres || !found_.contact || found_.contact->master_facet < 0) return 1;
+        return pair(found_.contact->pair)->surface().facet_size(found_.contact->master_facet);
     }
 
     void unseen() {
         if (failed_.decision.intrusion) return inside(*failed_.decision.intrusion);
-        const model::ContactTerm& one = *failed_.model.pairs[static_cast<std::size_t>(failed_.decision.pair)];
-        add("contact." + one.name() + ".discretisation",
-            "node: averages over facets know neither edges against edges nor vertices");
-        add("contact." + one.name() + ".slave",
-            "the side with the finer mesh, if only an edge of the coarser one is unseen");
+        by_nodes(*failed_.model.pairs[static_cast<std::size_t>(failed_.decision.pair)]);
+    }
+    void by_nodes(const model::ContactTerm& pair) {
+        change("contact." + pair.name() + ".discretisation", "node",
+               "node: averages over facets know neither edges against edges nor vertices");
+    }
+
+    /// Overrides that make the master of a pair its slave, where sets of the scene are these surfaces.
+    [[nodiscard]] std::vector<std::string> sides_swapped(const model::ContactTerm& pair) const {
+        const auto named = [&](std::vector<Index> nodes) {
+            std::ranges::sort(nodes);
+            nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+            const auto at = std::ranges::find(failed_.model.sets, nodes,
+                                              [](const model::Set& set) { return nodes_of(set.facets); });
+            return at == failed_.model.sets.end() ? std::string() : at->name;
+        };
+        const std::string slave = named(pair.slaves().node), master = named(pair.master_nodes());
+        if (slave.empty() || master.empty()) return {};
+        const std::string key = "contact." + pair.name();
+        return {key + ".slave=" + master, key + ".master.set=" + slave};
     }
 
     /// What the audit found.
@@ -238,9 +336,9 @@ private:
         };
         const auto pair = std::ranges::find_if(model.pairs, joins);
         if (intrusion.body == intrusion.other) {
-            add("contact", "body '" + body +
-                               "' meets itself, and no contact of a body with itself is modelled: loads and "
-                               "motions must stop before");
+            found_.no_remedy = "body '" + body +
+                               "' meets itself, and no contact of a body with itself is modelled; loads and motions "
+                               "that stop before are all there is";
         } else if (pair == model.pairs.end()) {
             add("contact", "a pair of surfaces of '" + body + "' and '" + other +
                                "' that hold the place: no pair keeps these bodies apart");
@@ -248,47 +346,77 @@ private:
             const model::ContactTerm& one = **pair;
             const std::vector<Index>& slaves = one.slaves().node;
             const bool known = std::ranges::count(slaves, intrusion.node) > 0;
-            if (one.options().discretisation == model::Discretisation::mortar)
-                add("contact." + one.name() + ".discretisation",
-                    "node: averages over facets know neither edges against edges nor vertices");
-            if (!known)
+            if (one.options().discretisation == model::Discretisation::mortar) by_nodes(one);
+            if (intrusion.edge)
+                edges_cross(one, intrusion);
+            else if (!known)
                 add("contact." + one.name() + ".slave",
                     "the other side, or surfaces that hold node " + std::to_string(found_.node) + " of body '" +
-                        found_.body + "', which is no slave node: only slave nodes are kept out of the other body");
-            if (intrusion.edge)
-                add("bodies." + body + ".mesh",
-                    "nodes where the edges meet: contact knows nodes against facets, not edges "
-                    "against edges between their nodes");
-            if (failed_.stage.limits.allowed_interpenetration > 0.05)
-                add(in_stage("control.allowed_interpenetration"), "0.05, so that no node is carried past a surface");
+                        found_.body + "', which is no slave node: only slave nodes are kept out of the other body",
+                    std::ranges::count(one.master_nodes(), intrusion.node) > 0 ? sides_swapped(one)
+                                                                               : std::vector<std::string>{});
+            constexpr double in_dynamics = 0.05; // the default there
+            if (const StepLimits& limits = failed_.stage.limits;
+                known && (limits.in_metres || limits.allowed_interpenetration > in_dynamics))
+                change(in_stage("control.allowed_interpenetration"), number(in_dynamics),
+                       number(in_dynamics) + ", so that no node is carried past a surface");
         }
-        add("solver.audit", "off, if the bodies may lie inside one another there: the summary says that nobody looked");
+    }
+
+    /// Contact knows nodes against facets, so that one of them must come to lie on a facet soon enough.
+    void edges_cross(const model::ContactTerm& pair, const contact::Intrusion& intrusion) {
+        const std::string &slave = body_of(failed_.model, pair.slaves().node.front())->name,
+                          &master = body_of(failed_.model, pair.master_nodes().front())->name;
+        // two edges at right angles: one that is d deep lies inside the other's body over a length of about 2 d
+        const double apart = 2 * failed_.stage.limits.audited_depth * intrusion.length;
+        add("bodies." + slave + ".mesh",
+            "slave nodes at most " + rounded(apart) + " m apart along its edges, and the mesh of '" + master +
+                "' as it is: contact knows nodes against facets, not edges against edges between their nodes, and "
+                "one node comes to lie on a facet then before the edge is too deep");
     }
 
     void time_error() {
-        add(in_stage("control.error_tolerance"), "above " + number(failed_.decision.value) + " m instead of " +
-                                                     number(failed_.stage.limits.error_tolerance) + " m");
-        smaller_steps("the error falls with the third power of the step");
+        const std::string key = in_stage("control.error_tolerance");
+        change(key, rounded(margin * failed_.decision.value) + " m",
+               "above " + number(failed_.decision.value) + " m instead of " +
+                   number(failed_.stage.limits.error_tolerance) + " m");
+        constexpr double least = 1e-3; // the error is there in every step
+        steps_smaller_by(std::cbrt(failed_.stage.limits.error_tolerance / failed_.decision.value), least,
+                         "the error falls with the third power of the step");
     }
 
     void energy() {
-        add(in_stage("control.energy_tolerance"),
-            "above " + number(failed_.decision.value) + " instead of " + number(failed_.stage.limits.energy_tolerance));
-        add(in_stage("analysis.dynamic.contact_mass"),
-            "redistributed, if it is kept: contact nodes without mass neither add nor eat energy");
-        smaller_steps("what a release feeds into the energy falls with the step");
+        const std::string key = in_stage("control.energy_tolerance");
+        change(key, rounded(margin * failed_.decision.value),
+               "above " + number(failed_.decision.value) + " instead of " +
+                   number(failed_.stage.limits.energy_tolerance));
+        if (massless())
+            change(in_stage("analysis.dynamic.contact_mass"), "kept",
+                   "kept: contact nodes with mass take energy away as they touch, and a release feeds in less");
+        constexpr double least = 1e-4;
+        steps_smaller_by(failed_.stage.limits.energy_tolerance / failed_.decision.value, least,
+                         "what a release feeds into the energy falls with the step");
     }
 
-    const PostMortem& found_;
+    /// Whether there are contact nodes without mass.
+    [[nodiscard]] bool massless() const {
+        const model::BlockMatrix& M = failed_.model.mass(failed_.stage.dynamics->lumped_mass);
+        if (M.empty()) return false;
+        const auto none = [&](Index node) { return M.block(M.slot(node, node))(0, 0) == 0; };
+        return std::ranges::any_of(failed_.model.pairs,
+                                   [&](const auto& pair) { return std::ranges::any_of(pair->slaves().node, none); });
+    }
+
+    PostMortem& found_;
     const FailedAttempt& failed_;
     std::string stage_;
-    std::vector<Advice> list_;
 };
 
 } // namespace
 
-std::vector<Advice> advise(const PostMortem& found, const FailedAttempt& failed) {
-    return Adviser(found, failed).take();
+void advise(PostMortem& found, const FailedAttempt& failed) {
+    const WithoutTraps nan; // values of failed solves are compared
+    Adviser(found, failed).advise();
 }
 
 } // namespace osculate::time

@@ -61,7 +61,8 @@ time::PostMortem status_cycle() {
     hold.nearest_gap = -1e-3;
     hold.facet = 0.25;
     f.bodies = {hold};
-    f.advice = {{"stages.slide.steps", "8 instead of 4"}};
+    f.advice = {{"stages.slide.steps", "8 instead of 4", {"stages.slide.steps=8"}}, {"supports", "hold it"}};
+    f.no_remedy = "nothing helps";
     return f;
 }
 
@@ -107,7 +108,8 @@ TEST(PostMortemText, SaysWhereWhyAndWhatToTry) {
           "0.5 of 1e+04 N, in 'frozen statuses'; out of balance at that node (7, 8, 9) N",
           "stick-slip-stick-glide-open at node 4 of body 'cap' in pair 'joint'\n", "and 2 nodes more",
           "'cap' free along x; touches at 5 slave nodes; last good: at 8, smallest gap -0.001 m",
-          "try         stages.slide.steps: 8 instead of 4\n"})
+          "try         no remedy is known: nothing helps\n              stages.slide.steps: 8 instead of 4\n"
+          "                --set 'stages.slide.steps=8'\n              supports: hold it\n"})
         EXPECT_THAT(text, HasSubstr(part));
 }
 

@@ -16,10 +16,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 struct Failure {
-    const char *scene, *cause, *body;
-    double last_time;                ///< s
-    const char* key;                 ///< of one piece of advice
-    std::vector<std::string> remedy; ///< overrides at or below keys that are advised; with them the run ends well
+    const char *scene, *cause, *body; ///< body "": one of two that are alike
+    double last_time;                 ///< s; negative: where cuts of steps end
+    const char* key;                  ///< of one piece of advice
+    std::vector<std::string> remedy;  ///< overrides at or below keys that are advised; with them the run ends well
+    bool in_words = false;            ///< no value can be told: nothing that `--set` takes
 };
 
 /// Whether there is a null, which is what a number that is not finite becomes, but for what may be absent.
@@ -32,7 +33,11 @@ bool has_gaps(const json& value) {
 
 class PostMortem : public Program, public testing::WithParamInterface<Failure> {
 protected:
-    std::string path() const { return scene_file("tests/scenes/failures/" + std::string(GetParam().scene) + ".yaml"); }
+    std::string path() const {
+        const std::string name = std::string(GetParam().scene) + ".yaml",
+                          own = scene_file("tests/scenes/failures/" + name);
+        return fs::exists(own) ? own : scene_file("configs/extreme/" + name);
+    }
     Outcome fail(std::vector<std::string> more = {}) const {
         more.insert(more.begin(), {"run", path(), "-o", "run", "--quiet"});
         return osculate(more);
@@ -46,7 +51,7 @@ TEST_P(PostMortem, NamesCauseBodyLastGoodTimeAndKeysToChange) {
     ASSERT_EQ(outcome.code, 3) << outcome.err;
     const json post_mortem = found();
     EXPECT_EQ(post_mortem["cause"], expected.cause);
-    EXPECT_EQ(post_mortem["body"], expected.body);
+    EXPECT_THAT(post_mortem["body"].get<std::string>(), HasSubstr(expected.body));
     EXPECT_FALSE(has_gaps(post_mortem)) << post_mortem.dump(2);
 
     // times are those of the tables
@@ -54,7 +59,9 @@ TEST_P(PostMortem, NamesCauseBodyLastGoodTimeAndKeysToChange) {
     const double last_time = history.rows.empty() ? 0 : history.number(history.rows.size() - 1, "time");
     constexpr double round_off = 1e-12; // of a sum of steps
     EXPECT_EQ(post_mortem["last_time"], last_time);
-    EXPECT_NEAR(last_time, expected.last_time, round_off * expected.last_time);
+    if (expected.last_time >= 0) {
+        EXPECT_NEAR(last_time, expected.last_time, round_off * expected.last_time);
+    }
     EXPECT_GE(post_mortem["time"], last_time);
     const json& attempts = post_mortem["attempts"];
     for (std::size_t i = 0; i < attempts.size(); ++i) {
@@ -83,9 +90,10 @@ TEST_P(PostMortem, KeepsWhatWasAcceptedAndWritesTheFailedIterateBesideIt) {
     ASSERT_EQ(fail().code, 3);
     const json post_mortem = found(), summary = json::parse(content(folder / "run/summary.json"));
     const long accepted = summary["steps"]["accepted"];
+    const std::string body = post_mortem["body"];
     char name[64];
     for (long frame = 0; frame <= accepted; ++frame) {
-        std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", GetParam().body, frame);
+        std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", body.c_str(), frame);
         EXPECT_TRUE(fs::exists(folder / "run" / name)) << name;
     }
     EXPECT_THAT(content(folder / "run/series.pvd"), Not(HasSubstr("failed")));
@@ -93,7 +101,7 @@ TEST_P(PostMortem, KeepsWhatWasAcceptedAndWritesTheFailedIterateBesideIt) {
         EXPECT_FALSE(fs::exists(folder / "run/failed")) << "there is no iterate";
         return;
     }
-    std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", GetParam().body, accepted + 1);
+    std::snprintf(name, sizeof name, "frames/%s_%05ld.vtu", body.c_str(), accepted + 1);
     EXPECT_THAT(content(folder / "run/failed/series.pvd"), HasSubstr(name));
     EXPECT_THAT(content(folder / "run/failed" / name),
                 testing::AllOf(HasSubstr("\"displacement\""), HasSubstr("\"out_of_balance\"")));
@@ -110,7 +118,9 @@ TEST_P(PostMortem, AdviceHelpsAndTheNextRunLeavesNothingOfIt) {
     std::vector<std::string> changes;
     for (const std::string& change : GetParam().remedy) {
         bool advised = false;
-        for (const json& one : advice) advised = advised || change.starts_with(one["key"].get<std::string>());
+        for (const json& one : advice)
+            advised = advised || change.starts_with(one["key"].get<std::string>()) ||
+                      std::ranges::count(one["set"], json(change)) > 0;
         EXPECT_TRUE(advised) << change;
         changes.insert(changes.end(), {"--set", change});
     }
@@ -121,8 +131,37 @@ TEST_P(PostMortem, AdviceHelpsAndTheNextRunLeavesNothingOfIt) {
     EXPECT_THAT(osculate({"diary", "run"}).out, Not(HasSubstr("post-mortem")));
 }
 
+/// Overrides after what the diary says to try, or the words that none is known.
+TEST_P(PostMortem, OverridesThatAreAdvisedWorkOrThereAreNone) {
+    const Outcome failed = fail();
+    ASSERT_EQ(failed.code, 3);
+    const json post_mortem = found();
+    std::string tried;
+    bool works = false;
+    for (const json& one : post_mortem["advice"]) {
+        if (one["set"].empty()) continue;
+        std::vector<std::string> changes;
+        std::string options;
+        for (const std::string change : one["set"]) {
+            changes.insert(changes.end(), {"--set", change});
+            options += " --set '" + change + "'";
+        }
+        EXPECT_THAT(failed.err, HasSubstr(one["text"].get<std::string>() + "\n"));
+        EXPECT_THAT(failed.err, HasSubstr(options + "\n"));
+        const Outcome mended = fail(changes);
+        EXPECT_THAT(mended.code, testing::AnyOf(0, 3)) << options << " is no override of this scene: " << mended.err;
+        const bool past = mended.code == 0 || found()["last_time"].get<double>() > post_mortem["time"].get<double>();
+        works = works || past;
+        tried += options + (past ? ": works\n" : ": " + mended.err.substr(0, mended.err.find('\n')) + "\n");
+    }
+    if (!post_mortem["no_remedy"].get<std::string>().empty()) return;
+    // what is in words alone is done by hand in the test above
+    EXPECT_TRUE(works || tried.empty()) << tried;
+    EXPECT_EQ(tried.empty(), GetParam().in_words);
+}
+
 INSTANTIATE_TEST_SUITE_P(
-    Thirteen, PostMortem,
+    Sixteen, PostMortem,
     testing::Values(
         Failure{"no_support", "unsupported_body", "cap", 0, "stages.draw", {"stages.draw.pressure.top=10 kPa"}},
         Failure{"torn_off", "unsupported_body", "cap", 3, "stages.pull", {"stages.pull.pressure.top=5 kPa"}},
@@ -137,8 +176,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "punch",
                 0,
                 "stages.drive.displacement",
-                {"stages.drive.displacement={top: {x: 0 m, y: 0 m, z: -0.1 m}}"}},
-        Failure{"given_way", "diverged", "block", 0.05, "stages.press", {"stages.press.pressure.top=1 MPa"}},
+                {"stages.drive.displacement={top: {x: 0 m, y: 0 m, z: -0.1 m}}"},
+                true},
+        Failure{"given_way", "diverged", "block", 0.05, "stages.press", {"stages.press.pressure.top=1 MPa"}, true},
         Failure{"edges_unseen",
                 "unseen_contact",
                 "upper",
@@ -150,17 +190,37 @@ INSTANTIATE_TEST_SUITE_P(
                 "block",
                 0.8229166666666667,
                 "stages.crush",
-                {"stages.crush.displacement.top.z=-0.3 m"}},
+                {"stages.crush.displacement.top.z=-0.3 m"},
+                true},
         Failure{"too_deep",
                 "interpenetration",
                 "block",
                 0.01,
                 "solver.smallest_step",
                 {"stages.fall.control.allowed_interpenetration=0.05"}},
+        Failure{"rocking",
+                "status_cycle",
+                "plate",
+                0.175,
+                "stages.rock.analysis.dynamic.stiffness_damping",
+                {"solver.smallest_step=0.01"}},
+        Failure{"bar_on_table_edge",
+                "unseen_contact",
+                "table",
+                -1,
+                "contact.rest.slave",
+                {"contact.rest.slave=top", "contact.rest.master.set=sole"}},
+        Failure{"bars_crossed_between_nodes",
+                "unseen_contact",
+                "",
+                -1,
+                "bodies.upper.mesh",
+                {"bodies.upper.mesh.block.divisions=[31, 2, 2]"},
+                true},
         Failure{"energy",
                 "energy",
                 "block",
-                0.016,
+                0.0152,
                 "stages.fall.control.energy_tolerance",
                 {"stages.fall.control.energy_tolerance=0.1"}},
         Failure{"time_error",
@@ -176,9 +236,23 @@ INSTANTIATE_TEST_SUITE_P(
                 "block",
                 1,
                 "stages.crush.displacement.top.z",
-                {"stages.crush.displacement.top.z=-0.1 m"}},
+                {"stages.crush.displacement.top.z=-0.1 m"},
+                true},
         Failure{"through_the_plate", "collision", "cube", 0, "solver.smallest_step", {"solver.smallest_step=1e-4"}}),
     [](const auto& test) { return std::string(test.param.scene); });
+
+class NoRemedy : public Program {};
+
+TEST_F(NoRemedy, IsKnownForABodyThatPassesThroughItself) {
+    const Outcome outcome = osculate({"run", scene_file("configs/extreme/ring_through_itself.yaml"), "-o", "run",
+                                      "--quiet", "--set", "bodies.ring.mesh.tube.divisions=[12, 1, 1]"});
+    ASSERT_EQ(outcome.code, 3) << outcome.err;
+    const json post_mortem = json::parse(content(folder / "run/post_mortem.json"));
+    EXPECT_EQ(post_mortem["cause"], "unseen_contact");
+    EXPECT_THAT(post_mortem["no_remedy"], HasSubstr("no contact of a body with itself is modelled"));
+    EXPECT_THAT(post_mortem["advice"], testing::IsEmpty());
+    EXPECT_THAT(outcome.err, HasSubstr("try         no remedy is known: body 'ring' meets itself"));
+}
 
 class FailedIterate : public Program {};
 

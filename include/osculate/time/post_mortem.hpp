@@ -70,8 +70,9 @@ struct ElementPlace {
 
 /// One thing to change.
 struct Advice {
-    std::string key;  ///< of the scene
-    std::string text; ///< to what, and why
+    std::string key;                ///< of the scene
+    std::string text;               ///< to what, and why
+    std::vector<std::string> set{}; ///< KEY=VALUE as `--set` takes them, which do as it says; empty: in words alone
 };
 
 struct PostMortem {
@@ -96,6 +97,7 @@ struct PostMortem {
     Index changing = 0;                      ///< nodes in all; `changes` has the first few
     std::vector<BodyHold> bodies;
     std::vector<Advice> advice;
+    std::string no_remedy; ///< why none is known; empty: `advice` holds one
 };
 
 [[nodiscard]] std::string name(Cause cause);
@@ -136,8 +138,8 @@ private:
 /// @param t_start    of the stage, s  @param last_time  of the last accepted state, s
 [[nodiscard]] PostMortem examine(const LoadNotFinite& failure, const model::Model& model, const Stage& stage,
                                  double t_start, double last_time);
-/// What to change, for an otherwise complete post-mortem.
-[[nodiscard]] std::vector<Advice> advise(const PostMortem& found, const FailedAttempt& failed);
+/// Adds what to change, or why nothing helps, to an otherwise complete post-mortem.
+void advise(PostMortem& found, const FailedAttempt& failed);
 
 /// A failed solve in one sentence; fills in the attempt's body, node and value.
 [[nodiscard]] std::string explain(const model::Model& model, const LadderResult& result, const Equilibrium& equilibrium,

@@ -3,8 +3,8 @@
 namespace osculate::scene {
 
 void describe(Visitor& v, Expectation& expect) {
-    static const std::string bound =
-        "allowed_interpenetration of the stage in dynamics, " + number_text(Expectation::exact) + " in statics";
+    static const std::string bound = "allowed_interpenetration of the stage, " + number_text(Expectation::exact) +
+                                     " in statics where it is not given";
     static const Words outcomes{"completed", "gives_up"};
     word(v, {.name = "outcome", .meaning = "How the run ends."}, outcomes, expect.outcome);
     v.text({.name = "cause", .meaning = "Words that the message of a run that gives up holds."}, expect.cause);

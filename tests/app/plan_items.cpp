@@ -50,7 +50,7 @@ friction                     x . x x . x x x x x x x x x
 smooth master surface        x . x x . x x x x x x x x x
 mirror images                . . . . . . . . . . . . . .
 mortar weighting             . . . . . . . . . . . . . .
-interpenetration control     x x x x x . . . . x x . . .
+interpenetration control     x x x x x x x x x x x x x x
 collision check              x x x x x . . . . x x . . .
 multigrid                    . . . . . . . . . . . . . .
 condensation                 x x x . x . . . x x x x x x

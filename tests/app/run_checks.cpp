@@ -187,6 +187,7 @@ TEST(RunChecks, MeasurePenetrationInFacetSizes) {
         for (const auto& [bound, metres, misses] : {std::tuple{0.021, false, 0U}, std::tuple{0.019, false, 1U},
                                                     std::tuple{0.0101, true, 0U}, std::tuple{0.0099, true, 1U}}) {
             stage.limits.allowed_interpenetration = bound;
+            stage.limits.usual_bound = false;
             stage.limits.in_metres = metres;
             RunChecks bounded(plan.model, expect);
             bounded.accepted({step.state, step.equilibrium, step.dt, step.iterations, stage, nullptr});

@@ -57,5 +57,15 @@ TEST_F(AuditedScene, WritesDepthsIntoFrames) {
     EXPECT_THAT(content(folder / "run/frames/table_00060.vtu"), HasSubstr("\"penetration\""));
 }
 
+TEST_F(AuditedScene, ThatIsDrawnWithAnOverlapKeepsItAndTells) {
+    EXPECT_EQ(osculate({"run", scene_file("tests/scenes/overlap_as_drawn.yaml"), "-o", "run"}).code, 0);
+    constexpr double drawn = 1e-3, round_off = 1e-12;
+    EXPECT_NEAR(summary()["audit"]["depth_m"], drawn, round_off);
+    EXPECT_NEAR(summary()["checks"]["penetration_m"], drawn, round_off);
+    const Csv face(folder / "run/probes/face.csv");
+    EXPECT_NEAR(face.number(0, "penetration.min"), drawn, round_off);
+    EXPECT_NEAR(face.number(0, "penetration.max"), drawn, round_off);
+}
+
 } // namespace
 } // namespace osculate::scenes

@@ -13,7 +13,7 @@ namespace {
 std::vector<scene::Override> size() {
     if (std::getenv("OSCULATE_FULL") != nullptr) return {};
     return {{"bodies.tube.mesh.half_tube.divisions", "[9, 8, 2]"},
-            {"bodies.contactor.mesh.contactor.divisions", "[7, 8, 2]"}};
+            {"bodies.contactor.mesh.contactor.divisions", "[7, 8, 4]"}};
 }
 
 /// Largest step's part of the energies that the ledger does not account for.

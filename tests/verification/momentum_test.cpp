@@ -16,7 +16,7 @@ std::string two_blocks(const std::string& surface, const std::string& friction, 
     return R"(
 bodies:
   flying:
-    mesh: {block: {size: [0.4 m, 0.3 m, 0.3 m], divisions: [2, 2, 2]}, translate: [-0.401 m, 0.07 m, 0.05 m]}
+    mesh: {block: {size: [0.4 m, 0.3 m, 0.3 m], divisions: [5, 2, 2]}, translate: [-0.401 m, 0.07 m, 0.05 m]}
     material: {)" +
            material +
            R"(: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}

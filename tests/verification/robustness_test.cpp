@@ -138,6 +138,7 @@ TEST(InitialOverlap, DeeperThanAllowedIsLiftedByTheFirstStepOfADynamicStage) {
     support::run_scene(run, support::shipped("extreme/overlap_dynamic.yaml"),
                        {{"stages.part.steps", "5"},
                         {"stages.part.duration", "0.005"},
+                        {"stages.part.control.step_size", "fixed"},
                         // the rule that never gains
                         {"stages.part.analysis", "{dynamic: {integrator: {generalised_alpha: {rho_inf: 1}}}}"}});
     EXPECT_EQ(run.attempts, static_cast<int>(run.steps.size())) << "a step was cut";

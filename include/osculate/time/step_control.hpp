@@ -59,6 +59,9 @@ struct StepEvidence {
 
 struct StepLimits {
     double allowed_interpenetration = std::numeric_limits<double>::infinity(); ///< g_p in GapEvidence::length, > 0
+    /// allowed_interpenetration is a default of statics: steps are solved without a trial until one of their size was cut,
+    /// and what is accepted is held to more.
+    bool usual_bound = false;
     bool in_metres = false;       ///< for whoever sets GapEvidence::length: 1 m, else the facet's size
     double smallest_lambda = 0.1; ///< floor of lambda
     double failure_lambda = 0.5;  ///< where nothing tells how much to cut: failed solves, energy jumps

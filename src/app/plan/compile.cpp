@@ -69,6 +69,7 @@ public:
                 }))
                 plan_.model.finite_strain = std::make_unique<model::FiniteStrain>(plan_.model.bodies, plan_.model.K);
             add_mass();
+            leave_steps_where_mass_lands();
             add_gravity();
         }
         plan_.stepper = {scene_.solver.tolerance,
@@ -237,6 +238,7 @@ private:
                 scene::RelativeLength{dynamic ? in_dynamics : in_statics, false});
             stage.limits.allowed_interpenetration = g_p.value;
             stage.limits.in_metres = g_p.metres;
+            stage.limits.usual_bound = !dynamic && !spec.control.allowed_interpenetration;
             if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
             if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
             if (dynamic && spec.control.step_size == scene::StepSize::controlled) {
@@ -366,6 +368,14 @@ private:
                     m.initial_velocity.push_back(spec.initial_velocity + spec.initial_spin.cross(X - centre));
             }
         }
+    }
+
+    /// A node with mass loses its speed in the step in which it lands, however short that is, and rings the faster the
+    /// shorter steps are: cuts for what landing costs would make it worse.
+    void leave_steps_where_mass_lands() {
+        if (plan_.model.kept_contact_mass.empty()) return;
+        for (time::Stage& stage : plan_.stages)
+            stage.limits.velocity_error = stage.limits.closing_energy = std::numeric_limits<double>::infinity();
     }
 
     /// Whose mass a stage weighs: its own, in statics that of the dynamic stage it leads to, or else comes from.

@@ -107,11 +107,14 @@ void add_contact_items(const scene::Scene& scene, const Plan& plan, PlanList& li
     const double slaves = slave_nodes(plan, [](const auto&) { return true; });
     const auto controlled = std::ranges::count_if(
         plan.stages, [](const time::Stage& stage) { return std::isfinite(stage.limits.allowed_interpenetration); });
-    list.say("interpenetration control", contact && controlled > 0,
-             !contact         ? no_pair
-             : controlled > 0 ? fmt::format("{} stage(s) solve a trial first and judge its gaps", controlled)
-                              : "no static stage has control.allowed_interpenetration",
-             {0, 1, "more solve(s) a step"});
+    list.say(
+        "interpenetration control", contact && controlled > 0,
+        !contact ? no_pair
+        : controlled > 0
+            ? fmt::format("{} stage(s) solve a trial first and judge its gaps; static ones by default only after a cut",
+                          controlled)
+            : "no static stage has control.allowed_interpenetration",
+        {0, 1, "more solve(s) a step"});
     double finest = std::numeric_limits<double>::infinity();
     for (const auto& pair : plan.model.pairs) finest = std::min(finest, pair->finest());
     const bool paths = std::ranges::any_of(plan.stages, &time::Stage::follow_paths);

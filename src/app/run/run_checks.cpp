@@ -48,9 +48,9 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             penetration_ = std::max(penetration_, depth);
             penetration_m_ = std::max(penetration_m_, -gap);
             const double allowed = limits.allowed_interpenetration / (limits.in_metres ? size : 1);
-            const double bound = expect_ && expect_->penetration ? *expect_->penetration
-                                 : step.ledger != nullptr        ? allowed
-                                                                 : scene::Expectation::exact;
+            const double bound = expect_ && expect_->penetration                 ? *expect_->penetration
+                                 : !limits.usual_bound && std::isfinite(allowed) ? allowed
+                                                                                 : scene::Expectation::exact;
             if (depth / bound <= excess_) continue;
             excess_ = depth / bound;
             excessive_ = depth;

@@ -38,8 +38,8 @@ finite strain                . . . x . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .
-time error control           x x x x x . . . . x x . . .
-massless contact nodes       . x . x x . . . . x x . . .
+time error control           . x x x x . . . . x x . . .
+massless contact nodes       . x x x x . . . . x x . . .
 gravity                      x x . x . . . . . . . . . .
 follower pressure            . . . . . . . . . . . . . .
 courses over time            x . x . . . . . . x x . . .
@@ -58,6 +58,7 @@ LU factorisation             . . . . . . . . . . . . . .
 Cholesky factorisation       x x x x x x x x x x x x x x
 GMRES                        x x x x x x x x x x x x x x
 stabilisation springs        . . . . . . . . . . . . . .
+audit of geometry            x x x x x x x x x x x x x x
 threads                      . . . . . . . . . . . . . .
 field displacement           x x x x x x x x x x x x x x
 field velocity               . . . . . . . . . . . . . .
@@ -71,6 +72,7 @@ field strain                 . . . . . . . . . . . . . .
 field energy_density         . . . . . . . . . . . . . .
 field reaction               x . x . . x x x x x x x x x
 field out_of_balance         . . . . . . . . . . . . . .
+field penetration            . . . . . . . . . . . . . .
 slave field gap              x . x . . x x x x x x x x x
 slave field contact_force    x . x . . x x x x x x x x x
 slave field normal_stress    x . x . . x x x x x x x x x

@@ -95,7 +95,8 @@ TEST_F(CheckWarnings, CurvedSurfacesThatFitOneAnotherAreNamedOnFacets) {
                       says = "curved surfaces that fit one another",
                       inner = "bodies.inner.mesh.tube.divisions=[80, 1, 2]";
     const auto outer = [](int around) {
-        return "bodies.outer.mesh.tube.divisions=[" + std::to_string(around) + ", 1, 2]";
+        std::string change = "bodies.outer.mesh.tube.divisions=[";
+        return change.append(std::to_string(around)).append(", 1, 2]");
     };
     EXPECT_THAT(checked(tubes, {facets, inner, outer(64)}),
                 HasSubstr("warning: contact.touch.master.surface: facets, and " + says));

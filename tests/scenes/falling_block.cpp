@@ -44,10 +44,11 @@ TEST_F(FallingBlock, IsNeverTakenDeeperThanAllowedByItsFrames) {
     const double touch = std::sqrt(2 * 0.5 / gravity);
     for (const char* allowed : {"1e-2", "1e-4"}) {
         const double g_p = std::stod(allowed) * facet;
-        const Csv history(run(scene_file("configs/validation/falling_block.yaml"),
-                              {std::string("stages.fall.control.allowed_interpenetration=") + allowed,
-                               "stages.fall.duration=0.33", "stages.fall.steps=165"}) /
-                          "history.csv");
+        const Csv history(
+            run(scene_file("configs/validation/falling_block.yaml"),
+                {std::string("stages.fall.control.allowed_interpenetration=") + allowed,
+                 "stages.fall.control.step_size=fixed", "stages.fall.duration=0.33", "stages.fall.steps=165"}) /
+            "history.csv");
         std::vector<Vec3> velocity;
         double deepest_trial = -1, deepest = -1, first_contact = 0;
         Points before = frame("block", 0);

@@ -21,7 +21,8 @@ struct Fall final : time::StepObserver {
 
     /// @param allowed  g_p in facet sizes
     explicit Fall(double allowed, const std::vector<scene::Override>& changes = {}) {
-        std::vector<scene::Override> all{{"stages.fall.control.allowed_interpenetration", std::to_string(allowed)}};
+        std::vector<scene::Override> all{{"stages.fall.control.allowed_interpenetration", std::to_string(allowed)},
+                                         {"stages.fall.control.step_size", "fixed"}}; // (27) and (28) alone
         all.insert(all.end(), changes.begin(), changes.end());
         const scene::Scene scene = scene::read_scene(support::shipped("validation/falling_block.yaml"), all);
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);

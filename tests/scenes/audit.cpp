@@ -63,8 +63,8 @@ TEST_F(AuditedScene, ThatIsDrawnWithAnOverlapKeepsItAndTells) {
     EXPECT_NEAR(summary()["audit"]["depth_m"], drawn, round_off);
     EXPECT_NEAR(summary()["checks"]["penetration_m"], drawn, round_off);
     const Csv face(folder / "run/probes/face.csv");
-    EXPECT_NEAR(face.number(0, "penetration.min"), drawn, round_off);
-    EXPECT_NEAR(face.number(0, "penetration.max"), drawn, round_off);
+    EXPECT_NEAR(face.number(0, "min_penetration [m]"), drawn, round_off);
+    EXPECT_NEAR(face.number(0, "max_penetration [m]"), drawn, round_off);
 }
 
 } // namespace

@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
         Failure{"energy",
                 "energy",
                 "block",
-                0.0152,
+                0.016,
                 "stages.fall.control.energy_tolerance",
                 {"stages.fall.control.energy_tolerance=0.1"}},
         Failure{"time_error",

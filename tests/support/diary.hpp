@@ -64,7 +64,7 @@ inline void expect_same_bits(const Diary& a, const Diary& b) {
 inline const std::vector<scene::Override> impact{{"stages.bounce.duration", "1.1"},
                                                  {"stages.bounce.steps", "215"},
                                                  {"stages.bounce.control.step_size", "fixed"},
-                                                 {"stages.bounce.control.allowed_interpenetration", "1e-3"}};
+                                                 {"stages.bounce.control.allowed_interpenetration", "1e-4"}};
 /// Stick and slip on a smooth master, facets left and entered: half a metre along the half-tube.
 inline const std::vector<scene::Override> slide{{"bodies.tube.mesh.half_tube.divisions", "[7, 6, 1]"},
                                                 {"bodies.contactor.mesh.contactor.divisions", "[5, 6, 1]"},

@@ -150,6 +150,37 @@ TEST(SurfaceAudit, AllowsSmoothSurfacesTheirSagitta) {
     }
 }
 
+TEST(SurfaceAudit, LetsWarpedSurfacesTouch) {
+    // z = x y on both sides, bilinear facets hold it exactly; their triangles do not
+    Bodies bodies;
+    bodies.add(box({1, 1, 1}, {2, 2, 2}));
+    bodies.add(box({1, 1, 1}, {3, 3, 1}), Mat3::Identity(), {0, 0, 1});
+    for (Vec3& X : bodies.X) X.z() += X.x() * X.y();
+    const AuditResult found = bodies.examine();
+    ASSERT_NE(found.worst(), nullptr);
+    EXPECT_GT(found.worst()->depth, 1e-3);
+    EXPECT_EQ(found.worst()->excess, 0);
+}
+
+TEST(SurfaceAudit, LetsTurnsOfACoilLieSideBySide) {
+    // planes of facets cut edges of the next turn, facets do not
+    Bodies bodies;
+    bodies.add(mesh::make_block(Vec3::Zero(), {12, 1, 0.2}, {48, 1, 1}));
+    const SurfaceAudit audit(bodies.facets, bodies.X);
+    const auto coiled = [&](double pitch) {
+        constexpr double radius = 0.9;
+        std::vector<Vec3> x;
+        for (const Vec3& X : bodies.X) {
+            const double angle = X.x() / radius;
+            x.emplace_back((radius - X.z()) * std::sin(angle), X.y() + pitch * angle / (2 * std::numbers::pi),
+                           radius - (radius - X.z()) * std::cos(angle));
+        }
+        return x;
+    };
+    EXPECT_EQ(audit.examine(coiled(1.02)).worst(), nullptr) << "1 m wide";
+    EXPECT_NE(audit.examine(coiled(0.9)).worst(), nullptr);
+}
+
 TEST(SurfaceAudit, SeesABodyThatPassesThroughItself) {
     // a strip rolled up by more than a turn, its ends at the same radius: they overlap
     Bodies bodies;

@@ -273,7 +273,8 @@ repeats: 2
     EXPECT_GE(csv.number(1, "cuts.value"), 1);
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_LT(csv.number(i, "balance.value"), 1e-9);
-        EXPECT_LT(csv.number(i, "penetration.value"), 0.1) << "by geometry: master nodes in coarser slave facets, too";
+        // by geometry: the edge of the base comes between slave nodes where the cap leaves it
+        EXPECT_LT(csv.number(i, "penetration.value"), i == 0 ? 1e-9 : 0.1);
         EXPECT_EQ(csv.text(i, "growth.value"), "") << "a matter of dynamics";
         EXPECT_EQ(csv.text(i, "same_bits"), "yes") << "runs that gave up are repeated, too";
     }

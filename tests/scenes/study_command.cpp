@@ -273,7 +273,7 @@ repeats: 2
     EXPECT_GE(csv.number(1, "cuts.value"), 1);
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_LT(csv.number(i, "balance.value"), 1e-9);
-        // by geometry: the edge of the base comes between slave nodes where the cap leaves it
+        // the audit has two triangles for a facet: where pulling warps these, closed nodes lie in them by some percent
         EXPECT_LT(csv.number(i, "penetration.value"), i == 0 ? 1e-9 : 0.1);
         EXPECT_EQ(csv.text(i, "growth.value"), "") << "a matter of dynamics";
         EXPECT_EQ(csv.text(i, "same_bits"), "yes") << "runs that gave up are repeated, too";

@@ -2,6 +2,7 @@
 
 #include "contact/facet_rule.hpp"
 #include "osculate/core/parallel.hpp"
+#include "osculate/core/rounded_sum.hpp"
 #include "osculate/core/without_traps.hpp"
 
 #include <Eigen/Geometry>
@@ -88,13 +89,23 @@ void Mortar::lay(GapPoint& q, const Facet& facet, Index number, const SmoothSlav
             const double weight = on_surface.weights(static_cast<Index>(i));
             C.try_emplace(smooth->node[v], Mat3::Zero()).first->second += weight * smooth->image[v].M;
             q.offset += weight * smooth->image[v].t;
+            q.mirrored = q.mirrored || !smooth->image[v].M.isIdentity(0) || !smooth->image[v].t.isZero(0);
         }
     for (const auto& [slave, share] : C) q.shares.push_back({slave, share});
 }
 
-Vec3 Mortar::position(const GapPoint& q, const std::vector<Vec3>& s) {
+Vec3 Mortar::position(const GapPoint& q, const std::vector<Vec3>& s, Vec3* tail) {
     Vec3 at = q.offset;
-    for (const Share& share : q.shares) at += share.C * s[static_cast<std::size_t>(share.slave)];
+    if (q.mirrored) {
+        for (const Share& share : q.shares) at += share.C * s[static_cast<std::size_t>(share.slave)];
+        return at;
+    }
+    // from one of the nodes: round-off of the products must not grow with the distance from the origin
+    const Vec3& origin = s[static_cast<std::size_t>(q.shares.front().slave)];
+    Vec3 from_origin = Vec3::Zero();
+    for (const Share& share : q.shares) from_origin += share.C * (s[static_cast<std::size_t>(share.slave)] - origin);
+    const Vec3 rounded = rounded_off(origin, from_origin, at);
+    if (tail != nullptr) *tail = rounded;
     return at;
 }
 
@@ -140,7 +151,7 @@ int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, con
     parallel_for(threads, count, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             Facet& facet = facets_[static_cast<std::size_t>(f)];
-            for (GapPoint& q : facet.gap_points) master_.evaluate(position(q, s), q.hit, x, q.point);
+            for (GapPoint& q : facet.gap_points) master_.evaluate(position(q, s, &q.tail), q.hit, x, q.point);
             find_overlaps(facet, s, x);
             make_duals(facet);
         }

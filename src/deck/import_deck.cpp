@@ -231,9 +231,14 @@ private:
                                       master = sets_.of_surface(b, pair.master);
                     if (slave.empty() || master.empty()) continue;
                     any = true;
-                    if (!covers_facets(a, pair.slave)) {
+                    if (facets_of(a, pair.slave).empty()) {
                         model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
                                     "nodes that cover no facet of their body cannot be slaves");
+                        continue;
+                    }
+                    if (of_tet10(a, pair.slave) || of_tet10(b, pair.master)) {
+                        model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
+                                    "faces of C3D10 are in no contact: mesh the body with C3D4");
                         continue;
                     }
                     const bool mortar = pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave));
@@ -258,15 +263,23 @@ private:
         return text;
     }
 
-    /// A surface does; a set of nodes where it has all the nodes of a facet.
-    bool covers_facets(std::size_t body, const std::string& key) const {
-        if (bodies_[body].mesh.surfaces.contains(surface_name(key))) return true;
+    /// Facets of a surface, or those that a set of nodes has all the nodes of.
+    std::vector<mesh::Facet> facets_of(std::size_t body, const std::string& key) const {
+        const auto& surfaces = bodies_[body].mesh.surfaces;
+        if (const auto at = surfaces.find(surface_name(key)); at != surfaces.end()) return at->second;
         const auto name = model_.mesh.node_set_names.find(key);
-        if (name == model_.mesh.node_set_names.end()) return false;
+        if (name == model_.mesh.node_set_names.end()) return {};
         const std::vector<Index>& nodes = bodies_[body].mesh.node_sets.at(name->second);
-        return std::any_of(bodies_[body].exterior.begin(), bodies_[body].exterior.end(), [&](const mesh::Facet& facet) {
-            return std::all_of(facet.begin(), facet.end(),
-                               [&](Index n) { return std::binary_search(nodes.begin(), nodes.end(), n); });
+        std::vector<mesh::Facet> facets;
+        std::ranges::copy_if(bodies_[body].exterior, std::back_inserter(facets), [&](const mesh::Facet& facet) {
+            return std::ranges::all_of(facet, [&](Index n) { return std::ranges::binary_search(nodes, n); });
+        });
+        return facets;
+    }
+
+    bool of_tet10(std::size_t body, const std::string& key) const {
+        return std::ranges::any_of(facets_of(body, key), [&](const mesh::Facet& facet) {
+            return bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)].type == mesh::CellType::tet10;
         });
     }
 

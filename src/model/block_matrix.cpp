@@ -58,4 +58,15 @@ void BlockMatrix::multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y,
     });
 }
 
+void BlockMatrix::multiply_add_relative(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const {
+    parallel_for(threads, rows(), [&](Index begin, Index end) {
+        for (Index row = begin; row < end; ++row) {
+            Vec3 sum = Vec3::Zero();
+            for (Index k = row_start_[row]; k < row_start_[row + 1]; ++k)
+                sum.noalias() += block_[k] * (x[column_[k]] - x[row]);
+            y[row] += sum;
+        }
+    });
+}
+
 } // namespace osculate::model

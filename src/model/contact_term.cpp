@@ -196,6 +196,22 @@ Vec3 ContactTerm::drift(Index j, const std::vector<Vec3>& from, const std::vecto
     return drift;
 }
 
+double ContactTerm::gap_rounded_off(Index j, const std::vector<Vec3>& tails) const {
+    if (mortar_)
+        return mortar_->gap_rounded_off(
+            j, [&](Index slave) { return tails[slaves_.node[slave]]; },
+            [&](Index vertex) -> Vec3 {
+                const Vec3& tail = tails[master_nodes_.node[vertex]];
+                if (!mirrored()) return tail;
+                return master_nodes_.images[master_nodes_.image[vertex]].M * tail;
+            });
+    // the variation of the gap is the work of a unit normal force
+    const Vec3& n = points_[j].normal;
+    double lost = n.dot(tails[slaves_.node[j]]);
+    for (Index i = 0; i < carriers(j); ++i) lost += master_force(j, i, n).dot(tails[point_nodes_[j][i]]);
+    return lost;
+}
+
 contact::ContactState ContactTerm::state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const {
     return {lambda, points_[j].gap, points_[j].normal, options_.friction > 0 ? drift(j, x) : Vec3(Vec3::Zero())};
 }

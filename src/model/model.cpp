@@ -163,7 +163,7 @@ BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
 
 std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u, int threads) {
     std::vector<Vec3> f(u.size(), Vec3::Zero());
-    model.K.multiply_add(u, f, threads);
+    model.K.multiply_add_relative(u, f, threads);
     if (model.finite_strain) (void)model.finite_strain->add_internal_force(model.X, u, f, threads);
     return f;
 }
@@ -184,7 +184,7 @@ BlockMatrix undeformed_stiffness(const Model& model, int threads) {
 
 double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads) {
     std::vector<Vec3> f(u.size(), Vec3::Zero());
-    model.K.multiply_add(u, f, threads);
+    model.K.multiply_add_relative(u, f, threads);
     double sum = 0;
     for (std::size_t i = 0; i < u.size(); ++i) sum += u[i].dot(f[i]);
     return sum / 2 + (model.finite_strain ? model.finite_strain->energy(model.X, u, threads) : 0);

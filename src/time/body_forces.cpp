@@ -18,7 +18,7 @@ bool damped(const Dynamics& dynamics) {
 void add_damping(const model::Model& model, const Dynamics& dynamics, const Field& v, Field& f, int threads) {
     const double by_M = dynamics.mass_damping, by_K = dynamics.stiffness_damping;
     if (by_M > 0) model.mass(dynamics.lumped_mass).multiply_add(weighted(by_M, v, 0, v), f, threads);
-    if (by_K > 0) model.K.multiply_add(weighted(by_K, v, 0, v), f, threads);
+    if (by_K > 0) model.K.multiply_add_relative(weighted(by_K, v, 0, v), f, threads);
 }
 } // namespace
 
@@ -69,7 +69,7 @@ bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pres
     }
     force_start_.assign(n, Vec3::Zero());
     mass().multiply_add(by_M, force_start_, threads_);
-    model_.K.multiply_add(u_start_, force_start_, threads_);
+    model_.K.multiply_add_relative(u_start_, force_start_, threads_);
     if (damped(*dynamics_)) {
         Field mean_v(n);
         for (std::size_t i = 0; i < n; ++i) {
@@ -104,7 +104,7 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
     model::WorstElement worst;
     if (dynamics_ == nullptr) {
         f.assign(u.size(), Vec3::Zero());
-        model_.K.multiply_add(u, f, threads_);
+        model_.K.multiply_add_relative(u, f, threads_);
         if (nonlinear()) worst = model_.finite_strain->add_internal_force(model_.X, u, f, threads_);
         if (follower_pressure_) add_pressures(-1, true, u, f);
         if (stabilised())
@@ -180,7 +180,7 @@ BodyWork BodyForces::work(const model::State& state) const {
     work.inertia = dot(Du, f);
 
     f.assign(f.size(), Vec3::Zero());
-    model_.K.multiply_add(weighted(1 - w.alpha_f, state.u, w.alpha_f, u_start_), f, threads_);
+    model_.K.multiply_add_relative(weighted(1 - w.alpha_f, state.u, w.alpha_f, u_start_), f, threads_);
     const auto add_step = [&](const fe::StepMean& mean) {
         (void)model_.finite_strain->add_step_force(model_.X, u_start_, state.u, mean, f, threads_);
     };

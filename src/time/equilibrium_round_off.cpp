@@ -1,5 +1,6 @@
 /// Round-off in the residual: where positions lose digits, and how much of a row the last digits of its terms are.
 
+#include "osculate/core/rounded_sum.hpp"
 #include "osculate/time/equilibrium.hpp"
 
 #include <cmath>
@@ -12,29 +13,17 @@ using contact::Status;
 namespace {
 /// How much round-off a sum may gather, of the sum of the absolute values of its terms: a few last digits.
 constexpr double last_digits = 10 * std::numeric_limits<double>::epsilon();
-
-/// a + b = sum + what is returned, exactly (Knuth). The compiler may not contract or reassociate, see cmake/Options.cmake.
-double rounded_off(double a, double b, double& sum) {
-    sum = a + b;
-    const double of_b = sum - a, of_a = sum - of_b;
-    return (a - of_a) + (b - of_b);
-}
 } // namespace
 
 void Equilibrium::place() {
-    for (std::size_t i = 0; i < x_.size(); ++i)
-        for (int k = 0; k < 3; ++k) tail_[i](k) = rounded_off(model_.X[i](k), u_[i](k), x_[i](k));
+    for (std::size_t i = 0; i < x_.size(); ++i) tail_[i] = rounded_off(model_.X[i], u_[i], x_[i]);
 }
 
 contact::ContactState Equilibrium::contact_state(std::size_t p, Index j) const {
     const model::ContactTerm& pair = *model_.pairs[p];
     contact::ContactState state = pair.state(j, x_, lambda_[p][j]);
     if (!pair.point(j).found) return state;
-    // the tails are so small that first variations are exact: those of the gap are the forces of a unit normal force
-    double lost = state.normal.dot(tail_[pair.slaves().node[j]]);
-    for (Index i = 0; i < pair.carriers(j); ++i)
-        lost += pair.master_force(j, i, state.normal).dot(tail_[pair.point_nodes(j)[i]]);
-    state.gap += lost;
+    state.gap += pair.gap_rounded_off(j, tail_);
     if (pair.options().friction > 0) state.drift += pair.drift(j, tail_start_, tail_);
     return state;
 }
@@ -48,10 +37,9 @@ Vec3 Equilibrium::law_terms(std::size_t p, Index j) const {
         const contact::ContactState state = contact_state(p, j);
         const contact::ContactResidual law = pair.law(j).residual(state, statuses_[p][j]);
         const Vec3 n = state.normal.cwiseAbs();
-        const bool averaged = pair.options().discretisation == model::Discretisation::mortar;
         // what gap and drift are differences of: displacements, and offsets within the patch, which cancel along n
         Vec3 moved = u_[slave].cwiseAbs();
-        double offsets = averaged ? n.dot(x_[slave].cwiseAbs()) : 0; // averages add up positions
+        double offsets = 0;
         for (Index i = 0; i < pair.carriers(j); ++i) {
             const Index node = pair.point_nodes(j)[i];
             const double weight = std::abs(point.weights(i));

@@ -250,8 +250,8 @@ double Stepper::largest_displacement() const {
 }
 
 double Stepper::round_off_force() const {
-    constexpr double sum = 10; // over neighbours
-    return sum * std::numeric_limits<double>::epsilon() / options_.tolerance * largest_stiffness_;
+    // the last digits of displacements, over neighbours; sums of the forces themselves lose no more, see multiply_add_relative()
+    return std::numeric_limits<double>::epsilon() / options_.tolerance * largest_stiffness_;
 }
 
 double Stepper::imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses, bool forced) {

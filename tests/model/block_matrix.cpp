@@ -68,6 +68,28 @@ TEST(BlockMatrix, MultipliesLikeItsDenseTwinOnAnyNumberOfThreads) {
     }
 }
 
+TEST(BlockMatrix, TakesNoNoticeOfATranslationInRelativeProducts) {
+    const Index nodes = 4;
+    const std::vector<std::vector<Index>> elements{{0, 1, 2}, {1, 2, 3}};
+    Random random(63);
+    BlockMatrix K(nodes, elements);
+    for (const auto& element : elements) {
+        Matrix Ke = random_matrix(9, random);
+        Ke.rightCols<3>() = -Ke.leftCols<3>() - Ke.middleCols<3>(3); // blocks of a row add up to nothing
+        K.add(element, Ke);
+    }
+    std::vector<Vec3> x(nodes), far(nodes), y(nodes, Vec3::Zero()), product = y, y_far = y;
+    for (Index i = 0; i < nodes; ++i) {
+        for (int k = 0; k < 3; ++k) x[i](k) = std::round(1e3 * random.vector()(k)) / 1024; // shifts are exact
+        far[i] = x[i] + Vec3(1 << 20, -(1 << 20), 1 << 20);
+    }
+    K.multiply_add(x, product, 1);
+    K.multiply_add_relative(x, y, 1);
+    K.multiply_add_relative(far, y_far, 2);
+    EXPECT_EQ(y, y_far);
+    for (Index i = 0; i < nodes; ++i) EXPECT_LT((y[i] - product[i]).norm(), 1e-13);
+}
+
 TEST(BlockMatrix, IsEmptyAtFirst) {
     EXPECT_EQ(BlockMatrix{}.rows(), 0);
 }

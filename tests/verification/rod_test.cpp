@@ -1,5 +1,6 @@
 /// An elastic rod that bounces on a stop, against its exact solution over four periods.
 
+#include "osculate/core/error.hpp"
 #include "support/scene_runner.hpp"
 
 #include <algorithm>
@@ -116,15 +117,21 @@ struct Bounces {
     double least = 1e300, largest = 0; ///< energy after the start
 };
 
-Bounces bounces(const std::string& contact_mass, double duration, int steps) {
+/// @param to_its_end  whether the run is to be completed; if not, what it did until it gave up will do
+Bounces bounces(const std::string& contact_mass, double duration, int steps, bool to_its_end = true) {
     support::SceneRun run;
-    support::run_scene(run, support::shipped("validation/bouncing_rod.yaml"),
-                       {{"stages.bounce.analysis.dynamic.contact_mass", contact_mass},
-                        {"stages.bounce.control.energy_tolerance", "100"}, // what the method does by itself, uncut
-                        {"stages.bounce.control.step_size", "fixed"},
-                        {"solver.audit", "false"}, // a rod with so much energy goes through itself
-                        {"stages.bounce.duration", std::to_string(duration)},
-                        {"stages.bounce.steps", std::to_string(steps)}});
+    const std::vector<scene::Override> changes{
+        {"stages.bounce.analysis.dynamic.contact_mass", contact_mass},
+        {"stages.bounce.control.energy_tolerance", "100"}, // what the method does by itself, uncut
+        {"stages.bounce.control.step_size", "fixed"},
+        {"solver.audit", "false"}, // a rod with so much energy goes through itself
+        {"stages.bounce.duration", std::to_string(duration)},
+        {"stages.bounce.steps", std::to_string(steps)}};
+    try {
+        support::run_scene(run, support::shipped("validation/bouncing_rod.yaml"), changes);
+    } catch (const RunFailure&) {
+        if (to_its_end) throw;
+    }
     Bounces result;
     bool before = false;
     for (std::size_t k = 20; k < run.steps.size(); ++k) { // the tip's element has let go
@@ -147,7 +154,8 @@ TEST(BouncingRod, KeepsItsEnergyWhenContactNodesCarryNoMass) {
 
 /// Why redistribution is the default: exact contact with mass on it feeds on every closing.
 TEST(BouncingRod, GainsEnergyWithNewmarkWhenTheyDo) {
-    const Bounces run = bounces("kept", 3, 587); // one bounce: the next one it does not survive
+    // one bounce, less where the last digits of a machine decide that it does not survive it
+    const Bounces run = bounces("kept", 3, 587, false);
     EXPECT_GT(run.contact_changes, 20);
     EXPECT_GT(run.largest, 1.5 * run.least);
 }

@@ -121,6 +121,23 @@ TEST(RoundOff, ABlockAtRestCarriesTheSameForcesWhereverItIs) {
     }
 }
 
+TEST(RoundOff, AMortarBlockAtRestCarriesTheSameForcesWhereverItIs) {
+    std::string text = at_rest;
+    text.replace(text.find("friction: 0.3"), 13, "friction: 0.3, discretisation: mortar");
+    const Outcome here(text);
+    ASSERT_EQ(here.failure, "");
+    const std::vector<Vec3>& forces = here.state.contact[0].lambda;
+    constexpr double same = 1e-9;
+    for (const double distance : {0.03, 0.07, 0.1, 0.2, 0.3, 0.5, 1.0, 3.0, 10.0, 100.0}) {
+        const Outcome there(text, moved_by(distance, {"table", "block"}));
+        ASSERT_EQ(there.failure, "") << distance << " m";
+        double off = 0;
+        for (std::size_t j = 0; j < forces.size(); ++j)
+            off = std::max(off, (there.state.contact[0].lambda[j] - forces[j]).norm());
+        EXPECT_LE(off, same * largest(forces)) << distance << " m";
+    }
+}
+
 TEST(RoundOff, AStiffBlockUnderALightPressureComesToRestWhereverItIs) {
     std::string text = at_rest;
     text.replace(text.find("gravity"), std::string("gravity: [0, 0, -9.81 m/s^2]").size(), "");

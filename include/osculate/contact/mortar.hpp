@@ -70,6 +70,26 @@ public:
     /// First variations of point j with respect to (s_j, point.nodes). dweights has the rows of the carriers; dpressing
     /// is left alone, as all of a force goes by the weights.
     void vary(Index j, const ContactPoint& point, ContactVariation& variation) const;
+    /// What the gap of point j lacks, m, at the last evaluate(): positions lack the last digits slave_tail(slave) and
+    /// vertex_tail(vertex), and those of the points of slave facets are rounded themselves.
+    template <class SlaveTail, class VertexTail>
+    [[nodiscard]] double gap_rounded_off(Index j, const SlaveTail& slave_tail, const VertexTail& vertex_tail) const {
+        double lost = 0;
+        for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+            const Facet& facet = facets_[static_cast<std::size_t>(f)];
+            if (!facet.gap_dual.usable) continue;
+            for (const GapPoint& q : facet.gap_points) {
+                if (!q.point.found) continue;
+                Vec3 tail = q.tail;
+                for (const Share& share : q.shares) tail += share.C * slave_tail(share.slave);
+                double of_gap = q.point.normal.dot(tail);
+                for (std::size_t i = 0; i < q.point.nodes.size(); ++i)
+                    of_gap += q.point.pressing.row(static_cast<Index>(i)).dot(vertex_tail(q.point.nodes[i]));
+                lost += q.weight * facet.gap_dual.A.row(c).dot(q.N.head(facet.corners.count)) * of_gap;
+            }
+        }
+        return lost / gap_area(j);
+    }
     /// How many of the nodes of point j carry force: the first ones.
     [[nodiscard]] Index carriers(Index j) const { return carriers_[static_cast<std::size_t>(j)]; }
 
@@ -81,13 +101,15 @@ private:
         Index slave;
         Mat3 C;
     };
-    /// A point that the gap is averaged from, at  offset + sum C s.
+    /// A point that the gap is averaged from, at  offset + sum C s  =  s_0 + sum C (s - s_0) without mirror images.
     struct GapPoint {
         Vec2 xi = Vec2::Zero();
         Row4 N = Row4::Zero();
         std::vector<Share> shares;
         Vec3 offset = Vec3::Zero(); ///< of mirror images
-        double weight = 0;          ///< reference area
+        bool mirrored = false;
+        Vec3 tail = Vec3::Zero(); ///< what rounding took off its position
+        double weight = 0;        ///< reference area
         Index facet = -1;
         int changes = 0;
         FacetHit hit;
@@ -123,7 +145,7 @@ private:
     };
 
     static void lay(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth);
-    [[nodiscard]] static Vec3 position(const GapPoint& q, const std::vector<Vec3>& s);
+    [[nodiscard]] static Vec3 position(const GapPoint& q, const std::vector<Vec3>& s, Vec3* tail = nullptr);
     [[nodiscard]] std::vector<Vec3> corners(const Facet& facet, const std::vector<Vec3>& s) const;
     void find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
     void make_duals(Facet& facet) const;

@@ -30,6 +30,9 @@ public:
     [[nodiscard]] bool empty() const { return block_.empty(); }
     /// y += A x over 3-vectors per node.
     void multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const;
+    /// y_i += A_ij (x_j - x_i), which is A x where the blocks of a row add up to nothing, as in a stiffness: a translation of
+    /// all nodes changes no digit but those that x itself lost to it.
+    void multiply_add_relative(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const;
 
 private:
     std::vector<Index> row_start_{0};

@@ -5,8 +5,10 @@
 #include "osculate/scene/reader.hpp"
 #include "support/source_tree.hpp"
 
+#include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tuple>
 
 namespace osculate::time {
 namespace {
@@ -14,7 +16,9 @@ namespace {
 using testing::HasSubstr;
 
 /// What is found of a solve of a small scene that came to an end without a solution. The outcome is given, not computed.
-PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Attempt& attempt) {
+/// @param statuses  of the iterates before it
+PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Attempt& attempt,
+                    const std::function<std::vector<Statuses>(Statuses)>& statuses = {}) {
     const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml",
                                                  {{"supports.top", "{fix: [y, z]}"}}); // so that no body is loose
     Timings timings;
@@ -28,6 +32,12 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
     equilibrium.begin_attempt(state, {state.u, state.u}, 1);
     const Vector z = equilibrium.unknowns(state.u, state.contact);
     equilibrium.set_reference_force(ladder.reference_force);
+    if (statuses)
+        for (const Statuses& imposed : statuses(equilibrium.statuses())) {
+            Vector F(z.size());
+            equilibrium.set_statuses(imposed, StatusRule::frozen, false);
+            (void)equilibrium.residual(z.data(), F.data());
+        }
     Decision decision;
     decision.verdict = Verdict::give_up;
     decision.reason = Reason::solver;
@@ -62,6 +72,39 @@ TEST(PostMortem, AdvisesALargerToleranceWhereTheResidualIsSmallAnyhow) {
     EXPECT_THAT(output::in_words(examined(result, ladder, attempt)), HasSubstr(tolerance + "8e-07'"));
     result.residual = 1e-3;
     EXPECT_THAT(output::in_words(examined(result, ladder, attempt)), testing::Not(HasSubstr(tolerance)));
+}
+
+TEST(PostMortem, NamesTheNodeThatChangedItsStatusMostOften) {
+    LadderResult result;
+    result.outcome = solve::KinsolOutcome::stopped;
+    LadderOptions ladder;
+    ladder.reference_force = 1;
+    Attempt attempt;
+    constexpr std::size_t once = 1, often = 4, twice = 9;
+    using contact::Status;
+    const PostMortem found = examined(result, ladder, attempt, [&](Statuses now) {
+        std::vector<Statuses> history{now};
+        const auto change = [&](std::size_t slave, Status to) {
+            now[0][slave] = to;
+            history.push_back(now);
+        };
+        change(once, Status::stick);
+        change(twice, Status::stick);
+        for (const Status to : {Status::slip, Status::stick, Status::slip}) change(often, to);
+        change(twice, Status::slip);
+        return history;
+    });
+    EXPECT_EQ(found.changing, 3);
+    ASSERT_EQ(found.changes.size(), 3U);
+    for (const auto& [place, slave, length] : {std::tuple{0U, often, 4U}, {1U, twice, 3U}, {2U, once, 2U}}) {
+        EXPECT_EQ(found.changes[place].body, "cap");
+        EXPECT_EQ(found.changes[place].node, static_cast<Index>(slave)) << place; // z_min has its body's first nodes
+        EXPECT_EQ(found.changes[place].sequence.size(), length) << place;
+    }
+    EXPECT_EQ(found.cause, Cause::status_cycle);
+    ASSERT_TRUE(found.contact); // the node least in balance is no slave: it is the one that changes most that is shown
+    EXPECT_EQ(found.contact->pair, "joint");
+    EXPECT_EQ(found.contact->status, Status::slip);
 }
 
 } // namespace

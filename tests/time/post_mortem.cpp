@@ -5,22 +5,27 @@
 #include "osculate/scene/reader.hpp"
 #include "support/source_tree.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tuple>
+#include <utility>
 
 namespace osculate::time {
 namespace {
 
 using testing::HasSubstr;
 
+const std::vector<scene::Override> no_loose_body{{"supports.top", "{fix: [y, z]}"}};
+
 /// What is found of a solve of a small scene that came to an end without a solution. The outcome is given, not computed.
 /// @param statuses  of the iterates before it
+/// @param supports  changes to those of the scene
 PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Attempt& attempt,
-                    const std::function<std::vector<Statuses>(Statuses)>& statuses = {}) {
-    const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml",
-                                                 {{"supports.top", "{fix: [y, z]}"}}); // so that no body is loose
+                    const std::function<std::vector<Statuses>(Statuses)>& statuses = {},
+                    const std::vector<scene::Override>& supports = no_loose_body) {
+    const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml", supports);
     Timings timings;
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const Stage& stage = plan.stages.front();
@@ -105,6 +110,28 @@ TEST(PostMortem, NamesTheNodeThatChangedItsStatusMostOften) {
     ASSERT_TRUE(found.contact); // the node least in balance is no slave: it is the one that changes most that is shown
     EXPECT_EQ(found.contact->pair, "joint");
     EXPECT_EQ(found.contact->status, Status::slip);
+}
+
+/// Held along x alone, the cap may move along y and z and turn about x; what it stands on leaves it y, unless it sticks.
+TEST(PostMortem, CountsSlippingNodesAsSupportsAlongTheNormalAlone) {
+    LadderResult result;
+    result.outcome = solve::KinsolOutcome::stopped;
+    LadderOptions ladder;
+    ladder.reference_force = 1;
+    using contact::Status;
+    for (const auto& [status, free] : {std::pair{Status::stick, 0}, {Status::slip, 1}, {Status::glide, 1}}) {
+        Attempt attempt;
+        const auto all = [&](Statuses now) {
+            std::ranges::fill(now[0], status);
+            return std::vector<Statuses>{now};
+        };
+        const PostMortem found = examined(result, ladder, attempt, all, {});
+        const auto cap = std::ranges::find(found.bodies, "cap", &BodyHold::body);
+        ASSERT_NE(cap, found.bodies.end());
+        EXPECT_EQ(cap->free_by_supports, 3);
+        EXPECT_EQ(cap->free_with_contact, free) << name(status);
+        EXPECT_EQ(cap->touching, 16);
+    }
 }
 
 } // namespace

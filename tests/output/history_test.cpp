@@ -23,6 +23,14 @@ TEST(ContactResultants, SumClosedNodesOnly) {
     EXPECT_NEAR((sum.moment - Vec3(1.02, 0.5, 0.99).cross(4 * TwoBlocks::force)).norm(), 0, 1e-10);
 }
 
+TEST(ContactResultants, MomentIsAboutTheOriginOfTheScene) {
+    TwoBlocks blocks;
+    blocks.model.origin = {100, -50, 20};
+    const Vec3 middle = blocks.model.origin + Vec3(1.02, 0.5, 0.99), moment = middle.cross(4 * TwoBlocks::force);
+    constexpr double round_off = 1e-15; // relative, of sums of a few terms
+    EXPECT_LT((contact_resultants(blocks.snapshot(), 0).moment - moment).norm(), 10 * round_off * moment.norm());
+}
+
 TEST(ContactResultants, PenetrationOfAnOpenPairIsNotNegative) {
     TwoBlocks blocks;
     Timings unused;
@@ -30,6 +38,20 @@ TEST(ContactResultants, PenetrationOfAnOpenPairIsNotNegative) {
     for (Index i = 12; i < 24; ++i) x[i].z() += 0.3;
     blocks.model.pairs[0]->evaluate(x, unused, 1);
     EXPECT_EQ(contact_resultants(blocks.snapshot(), 0).penetration, 0);
+}
+
+TEST(ContactResultants, PenetrationIsThatOfNodesBehindTheSurfaceAsWell) {
+    TwoBlocks blocks;
+    Timings unused;
+    constexpr double depth = 2.1; // in facets of 1 m
+    std::vector<Vec3> x = blocks.model.X;
+    for (Index i = 12; i < 24; ++i) x[i].z() -= depth;
+    const model::ContactTerm& pair = *blocks.model.pairs[0];
+    blocks.model.pairs[0]->evaluate(x, unused, 1);
+    bool behind = false;
+    for (Index j = 0; j < pair.size(); ++j) behind = behind || (pair.point(j).behind && !pair.point(j).found);
+    ASSERT_TRUE(behind);
+    EXPECT_NEAR(contact_resultants(blocks.snapshot(), 0).penetration, depth, 1e-14);
 }
 
 class HistoryFile : public InTemporaryFolder {};
@@ -58,6 +80,27 @@ TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
                   "time,dt,iterations,set.bed.reaction_x,set.bed.reaction_y,set.bed.reaction_z,set.side.reaction_x,"
                   "set.side.reaction_y,set.side.reaction_z\n2.5,0.5,3,11.6,8.8,0,0,10,20\n")
             << "readable while the run goes on";
+    }
+}
+
+TEST(History, AngularMomentumIsAboutTheOriginOfTheScene) {
+    TwoBlocks blocks;
+    blocks.model.origin = {100, -50, 20};
+    const model::Constraints none(blocks.model.nodes(), {});
+    time::Ledger ledger;
+    ledger.linear = {3, 5, 7};
+    ledger.angular = {1, 2, 4};
+    const std::vector<std::string> columns = History::columns(blocks.model, false, {}, true);
+    const std::vector<Cell> cells = History::cells(blocks.snapshot(), none, 1, 1, false, {}, true, &ledger);
+    ASSERT_EQ(cells.size(), columns.size());
+    // (100, -50, 20) x (3, 5, 7) = (-450, -640, 650)
+    const Vec3 linear(3, 5, 7), angular(-449, -638, 654);
+    for (int k = 0; k < 3; ++k) {
+        const std::size_t from = columns.size() - 6 + static_cast<std::size_t>(k);
+        EXPECT_EQ(columns[from], std::string("momentum.linear_") + "xyz"[k]);
+        EXPECT_EQ(std::get<double>(cells[from]), linear(k));
+        EXPECT_EQ(columns[from + 3], std::string("momentum.angular_") + "xyz"[k]);
+        EXPECT_EQ(std::get<double>(cells[from + 3]), angular(k));
     }
 }
 

@@ -169,6 +169,15 @@ TEST(SectionForceProbe, CarriesTheStressOfTheSection) {
     EXPECT_THROW((void)make_section_force_probe(blocks.model, 0, {3, 0, 0}, {1, 0, 0}), std::invalid_argument);
 }
 
+TEST(SectionForceProbe, TakesMomentsOfWhereTheSectionIsNow) {
+    TwoBlocks blocks;
+    move(blocks, [](const Vec3& X) { return Vec3(1e-3 * X.x(), 0, 0.5); }); // stretched, and half a metre up
+    const auto row = make_section_force_probe(blocks.model, 0, {0.9, 0.5, 0.5}, {1, 0, 0})->rows(blocks.snapshot())[0];
+    const double F = TwoBlocks::E * 1e-3; // on 1 m^2, nu = 0
+    EXPECT_NEAR(row[0], F, round_off * F);
+    EXPECT_NEAR(row[4], 0.5 * F, round_off * F);
+}
+
 class ProbeFiles : public InTemporaryFolder {};
 
 TEST_F(ProbeFiles, HoldTimeUnitsAndEmptyCells) {

@@ -4,6 +4,7 @@
 #include "osculate/core/error.hpp"
 #include "osculate/core/timing.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -150,6 +151,27 @@ TEST(KinsolSolver, KeepsTheFactorOfATangentThatHasNotChanged) {
     EXPECT_GT(timings[Part::solve], 0);
 }
 
+TEST(KinsolSolver, KeepsNoFactorOverAFailure) {
+    const int n = 4;
+    Timings timings;
+    KinsolSolver solver(n * n * n, timings);
+    const Problem good = linear(n, Vector::Ones(n * n * n));
+    Problem p = good;
+    Vector u = Vector::Zero(p.size());
+    ASSERT_EQ(solver.solve(p, u, options_for(p)).outcome, KinsolOutcome::converged);
+    const Vector solution = u;
+    ++p.J.revision;
+    diagonal(p.J, 7) = -1;
+    u.setZero();
+    ASSERT_EQ(solver.solve(p, u, options_for(p)).outcome, KinsolOutcome::singular);
+    p.J = good.J; // its factors have been overwritten
+    u.setZero();
+    const KinsolResult again = solver.solve(p, u, options_for(p));
+    EXPECT_EQ(again.outcome, KinsolOutcome::converged);
+    EXPECT_EQ(again.factorisations, 1);
+    EXPECT_EQ(u, solution);
+}
+
 TEST(KinsolSolver, ChangesBetweenSymmetricAndUnsymmetricTangents) {
     const int n = 5;
     Timings timings;
@@ -165,6 +187,42 @@ TEST(KinsolSolver, ChangesBetweenSymmetricAndUnsymmetricTangents) {
     EXPECT_LT((u - v).cwiseAbs().maxCoeff(), round_off);
 }
 
+/// The cubic problem, whose tangent solves by itself and keeps how far its solutions were allowed to be off.
+struct Condensed : Problem, Tangent {
+    explicit Condensed(Problem problem) : Problem(std::move(problem)) {}
+    Tangent* tangent() override { return this; }
+    void linearise() override { (void)jacobian(); }
+    void multiply(const double* x, double* y) override { J.multiply(x, y); }
+    [[nodiscard]] bool solves() const override { return true; }
+    bool solve(const double* b, double* x, double allowed) override {
+        asked.push_back(Eigen::Map<const Vector>(b, size()).norm());
+        allowances.push_back(allowed);
+        if (inverse->factorise(J) != FactorStatus::ok) return false;
+        inverse->solve(b, x);
+        return true;
+    }
+
+    std::unique_ptr<DirectSolver> inverse = make_cholesky();
+    std::vector<double> asked, allowances; ///< |b| and |b - J x| allowed
+};
+
+/// Linear systems are solved to max(min(0.1 r, 1e-3) r, 0.1 tolerance), r = |b| * residual_scale, in units of b.
+TEST(KinsolSolver, AsksForLinearSolutionsInTheUnitsOfTheResidual) {
+    const int n = 4;
+    for (const double scale : {1., 1024.}) {
+        Condensed p(cubic(n, Vector::Constant(n * n * n, 10 / scale)));
+        Vector u = Vector::Zero(p.size());
+        KinsolOptions options = options_for(p);
+        options.residual_scale = scale;
+        EXPECT_EQ(run(p, u, options).outcome, KinsolOutcome::converged);
+        ASSERT_GE(p.asked.size(), 2U);
+        for (std::size_t k = 0; k < p.asked.size(); ++k) {
+            const double r = p.asked[k] * scale, forcing = std::clamp(0.1 * r, 1e-8, 1e-3);
+            EXPECT_DOUBLE_EQ(p.allowances[k] * scale, std::max(forcing * r, 0.1 * options.tolerance)) << scale;
+        }
+    }
+}
+
 /// The cubic problem, with another matrix to invert in place of its tangent.
 struct Preconditioned : Problem, Preconditioner {
     Preconditioned(Problem problem, SparseMatrix matrix) : Problem(std::move(problem)), P(std::move(matrix)) {
@@ -177,6 +235,21 @@ struct Preconditioned : Problem, Preconditioner {
 
     SparseMatrix P;
     std::unique_ptr<DirectSolver> inverse = make_cholesky();
+};
+
+/// One whose tangent knows a way of its own to solve, which never gets anywhere.
+struct Hopeless : Preconditioned, Tangent {
+    using Preconditioned::Preconditioned;
+    Tangent* tangent() override { return this; }
+    void linearise() override { (void)jacobian(); }
+    void multiply(const double* x, double* y) override { J.multiply(x, y); }
+    [[nodiscard]] bool solves() const override { return true; }
+    bool solve(const double*, double*, double) override {
+        ++tries;
+        return false;
+    }
+
+    int tries = 0;
 };
 
 struct PreconditionedNewton : ::testing::Test {
@@ -264,6 +337,18 @@ TEST_F(PreconditionedNewton, DoesNotRememberEarlierSolves) {
     KinsolSolver used(n * n * n, timings), fresh(n * n * n, timings);
     (void)solve(used, 30);
     EXPECT_EQ(solve(used, 1), solve(fresh, 1)); // to the bit
+}
+
+TEST_F(PreconditionedNewton, GivesUpTheTangentsOwnWayForTheSolveAfterTwoFailures) {
+    Hopeless p(cubic(n, load), laplacian(n, 3));
+    KinsolSolver solver(p.size(), timings);
+    for (int solve = 1; solve <= 3; ++solve) {
+        Vector u = Vector::Zero(p.size());
+        const KinsolResult result = solver.solve(p, u, options);
+        EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+        ASSERT_GT(result.iterations, tried);
+        EXPECT_EQ(p.tries, solve * tried) << "tries of all solves";
+    }
 }
 
 TEST_F(PreconditionedNewton, SaysWhereTheTangentItselfIsSingular) {

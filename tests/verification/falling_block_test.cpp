@@ -118,6 +118,7 @@ TEST(FallingBlock, GoesNoDeeperInAnyTrialThanAllowed) {
         EXPECT_LT(deepest.in_trial, g_p * (1 + 1e-6));
         EXPECT_GT(deepest.in_trial, 0) << "no step was ended by contact";
         EXPECT_LT(deepest.accepted, 1e-9 * height) << "interpenetration is left after the solve with contact";
+        EXPECT_GT(fall.cuts(), 0) << "nothing was cut";
         for (const time::Attempt& attempt : fall.attempts) {
             if (attempt.verdict != time::Verdict::retry) continue;
             EXPECT_EQ(attempt.reason, time::Reason::interpenetration);

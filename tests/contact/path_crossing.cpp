@@ -4,6 +4,7 @@
 
 #include "support/random.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace osculate::contact {
@@ -163,11 +164,36 @@ TEST(PathCrossing, CallsADipWithinTheAllowanceASkim) {
     EXPECT_TRUE(facets.first_passage(from, {0.3, 0.5, -0.1}, [](Index) { return 0.05; }));
 }
 
+/// Two triangles that share an edge, each numbered from any of its corners: every edge has the tolerance, whichever it is.
+TEST(PathCrossing, LeavesNoLeakAtAnyEdgeWhateverTheCornersNumbering) {
+    const std::vector<Vec3> x{{0.1, 0.2, 0.3}, {1.3, 0.9, 0.1}, {0.2, 1.4, 0.5}, {1.1, -0.6, 0.2}};
+    const Vec3 above(0.1, -0.2, 0.7);
+    for (std::size_t first = 0; first < 3; ++first)
+        for (std::size_t second = 0; second < 3; ++second) {
+            Corners left{0, 1, 2, -1}, right{1, 0, 3, -1};
+            std::rotate(left.begin(), left.begin() + first, left.begin() + 3);
+            std::rotate(right.begin(), right.begin() + second, right.begin() + 3);
+            const MovingFacets roof({left, right}, x, x);
+            for (int k = 1; k < 10; ++k) {
+                const Vec3 on = x[0] + k / 10.0 * (x[1] - x[0]);
+                EXPECT_EQ(roof.crossings(on + above, on - above).size(), 2u) << first << second << k;
+            }
+        }
+}
+
 TEST(Thickness, IsThatOfTheBodyBehindEveryFacet) {
     const Box box({3, 2, 0.1});
     const std::vector<double> thickness = thickness_behind(box.facets, box.facets, box.x);
     const double expected[] = {0.1, 0.1, 2, 3, 2, 3};
     for (std::size_t f = 0; f < 6; ++f) EXPECT_NEAR(thickness[f], expected[f], 1e-9) << f;
+}
+
+TEST(Thickness, IsTheLeastOverAFacet) {
+    Box wedge({1, 1, 1}); // its top slopes from 1 to 0.2 along x
+    for (Vec3& x : wedge.x)
+        if (x.z() == 1 && x.x() == 1) x.z() = 0.2;
+    const double lowest = 1 - 0.8 * (0.5 + 0.75 * 0.5); // three quarters of the way to the corners
+    EXPECT_NEAR(thickness_behind(wedge.facets, wedge.facets, wedge.x)[0], lowest, 1e-9);
 }
 
 } // namespace

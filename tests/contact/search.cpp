@@ -219,6 +219,11 @@ TEST(FacetSearch, BreaksTiesByGeometryWhateverTheNumbering) {
             }
         }
         EXPECT_EQ(search.global(s, surface.x).facet, nearest);
+        const auto around = surface.topology.vertex_facets(v);
+        for (const Index from : surface.topology.ring_facets(nearest, 2)) // one that the point is over keeps it
+            if (std::ranges::count(around, from) == 0) {
+                EXPECT_EQ(search.track(s, from, surface.x, 0).facet, nearest) << "from " << from;
+            }
     }
 }
 

@@ -4,6 +4,7 @@
 #include "support/differences.hpp"
 #include "support/random.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -149,6 +150,44 @@ TEST_P(FlatPair, SearchesOpenSlavesAnewAndKeepsTheFacetsOfClosedOnes) {
 
 INSTANTIATE_TEST_SUITE_P(Of, FlatPair, ::testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Rpim" : "Facets"; });
+
+TEST_P(FlatPair, LetsHeldSlavesStickElastically) {
+    const Vec3 lambda_start(0.3, -0.2, 2), drift(0.01, 0.02, 0);
+    ContactHistory history = term->initial_history();
+    history.lambda[1] = lambda_start;
+    term->begin_step(x, history, timings, 1);
+    term->hold({0, 1, 0});
+    const contact::ContactState moved{lambda_start, 0, Vec3::UnitZ(), drift};
+    const Vec3 exact = term->law(0).residual(moved, contact::Status::stick).value;
+    const Vec3 spring = term->law(1).residual(moved, contact::Status::stick).value;
+    EXPECT_LT((exact - term->stiffness(0) * drift).norm(), round_off) << "no drift at all";
+    EXPECT_LT((spring - 100 * term->stiffness(1) * drift).norm(), round_off) << "from the force at the start";
+    const contact::ContactState loaded{Vec3(1, 1, 2), 0, Vec3::UnitZ(), Vec3::Zero()};
+    EXPECT_LT(term->law(0).residual(loaded, contact::Status::stick).value.norm(), round_off) << "whatever its force";
+    EXPECT_GT(term->law(1).residual(loaded, contact::Status::stick).value.norm(), 1) << "no drift, no other force";
+}
+
+/// Motions that leave no doubt about the side of a node are small against facets and against what lies behind them.
+TEST(Thinness, OfAFacetIsThatOfItsThinnestVertex) {
+    const mesh::Mesh block = mesh::make_block({0, 0, -1}, {3, 3, 1}, {3, 3, 1});
+    std::vector<Vec3> x = block.nodes;
+    auto surface = std::make_unique<mesh::HalfEdgeSurface>(block.surfaces.at("z_max"), block.nodes);
+    const Index vertices = surface->vertex_count(), slave = static_cast<Index>(x.size());
+    x.emplace_back(1, 1, 1);
+    for (const bool thin : {true, false}) {
+        MasterNodes nodes{surface->vertex_nodes()};
+        nodes.thickness.assign(static_cast<std::size_t>(vertices), 2.0);
+        if (thin) nodes.thickness[0] = 0.1;
+        auto master = contact::make_facets_surface(*surface);
+        ContactTerm term("pair", x, SlaveNodes{{slave}, {1}, {1}, {}},
+                         std::make_unique<mesh::HalfEdgeSurface>(*surface), std::move(nodes), std::move(master), {});
+        EXPECT_NEAR(term.finest(), thin ? 0.1 : 1, round_off);
+        for (Index f = 0; f < surface->facet_count(); ++f) {
+            const auto v = surface->facet_vertices(f);
+            EXPECT_EQ(term.thickness(f), thin && std::ranges::count(v, 0) > 0 ? 0.1 : 2);
+        }
+    }
+}
 
 /// A slave facet that stands upright over the master overlaps none of it; one that lies over it is seen by its averages.
 TEST(UnseenGaps, AreThoseOfSlaveNodesWhoseFacetsOverlapNothing) {

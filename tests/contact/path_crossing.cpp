@@ -69,6 +69,26 @@ TEST(PathCrossing, LeavesAPathAloneThatPassesBy) {
     EXPECT_FALSE(plate.first_passage({0.5, 0.5, 0.2}, {0.9, 0.1, 0.0101}, none_allowed)) << "stops before";
 }
 
+TEST(PathCrossing, CallsATouchOfAnEdgeFromOutsideInAndOut) {
+    const Vec3 size(1, 1, 0.01);
+    for (const double y : {0.2, 0.5, 0.7}) // both orders of the facets: over the top, and from beside
+        for (const double way : {1.0, -1.0}) {
+            const Vec3 edge(1, y, 0.01), along(0.1 * way, 0, -0.1 * way);
+            const auto met = Box(size).moving(Vec3::Zero()).crossings(edge - along, edge + along);
+            ASSERT_EQ(met.size(), 2u) << y;
+            EXPECT_TRUE(met[0].inward) << y;
+            EXPECT_FALSE(met[1].inward) << y;
+        }
+}
+
+TEST(PathCrossing, DoesNotCrossTheFacetThatAPointStartsOn) {
+    const MovingFacets plate = Box({1, 1, 0.01}).moving(Vec3::Zero());
+    EXPECT_TRUE(plate.crossings({0.3, 0.4, 0.01}, {0.3, 0.4, 1}).empty()) << "outward";
+    const auto met = plate.crossings({0.3, 0.4, 0.01}, {0.3, 0.4, -1});
+    ASSERT_EQ(met.size(), 1u) << "inward: the other side alone";
+    EXPECT_FALSE(met[0].inward);
+}
+
 TEST(PathCrossing, FindsTheExactTimeWithAFacetThatTurns) {
     // z = (1 - 2 t) x for the facet and z = 0.1 for the point at x = 0.5: met at t = 0.4
     const std::vector<Corners> facet{{0, 1, 2, -1}};

@@ -70,18 +70,47 @@ TEST(Coulomb, HasTheResidualOfEachBranch) {
     }
 }
 
-class Branch : public ::testing::TestWithParam<Status> {};
+/// Of slave nodes that are held: a spring of stiffness k from the force at the start of the step.
+constexpr double k = 40;
+const Vec3 lambda_start(0.2, -0.1, 0.3);
+const Coulomb elastic = Coulomb::elastic(mu, c, k, lambda_start);
 
-TEST_P(Branch, HasExactDerivatives) {
+Vec3 trial_of_spring(const ContactState& s) {
+    const Vec3 v = lambda_start - k * s.drift;
+    return v - s.normal * s.normal.dot(v);
+}
+
+TEST(ElasticCoulomb, SticksByASpringFromTheForceAtTheStart) {
+    int sticking = 0;
     for (ContactState s : random_states()) {
-        if (GetParam() == Status::slip && augmented(s).L_T.norm() < shortest_slip_force) continue;
-        const ContactResidual R = law.residual(s, GetParam());
+        if (s.drift.x() > 0) s.drift *= 0.01; // else all that are closed would slip
+        const double L_N = s.lambda.dot(s.normal) - c * s.gap;
+        const Vec3 L_T = trial_of_spring(s);
+        const Status expected = L_N <= 0 ? Status::open : L_T.norm() <= mu * L_N ? Status::stick : Status::slip;
+        EXPECT_EQ(elastic.status(s), expected);
+        EXPECT_LT((elastic.residual(s, Status::stick).value - (s.lambda - L_N * s.normal - L_T)).norm(), k * round_off);
+        const Vec3 slip = s.lambda - L_N * s.normal - mu * L_N * L_T.normalized();
+        EXPECT_LT((elastic.residual(s, Status::slip).value - slip).norm(), k * round_off);
+        sticking += expected == Status::stick;
+    }
+    EXPECT_GT(sticking, 5);
+}
+
+class Branch : public ::testing::TestWithParam<Status> {
+protected:
+    static void expect_exact_derivatives(const Coulomb& tested, const auto& tangential_force);
+};
+
+void Branch::expect_exact_derivatives(const Coulomb& tested, const auto& tangential_force) {
+    for (ContactState s : random_states()) {
+        if (GetParam() == Status::slip && tangential_force(s).norm() < shortest_slip_force) continue;
+        const ContactResidual R = tested.residual(s, GetParam());
         Vector y(10); // lambda, gap, normal (a free vector), drift
         y << s.lambda, s.gap, s.normal, s.drift;
         const Matrix J = central_differences(
             [&](const Vector& at) -> Vector {
                 const ContactState moved{at.head<3>(), at(3), at.segment<3>(4), at.tail<3>()};
-                return law.residual(moved, GetParam()).value;
+                return tested.residual(moved, GetParam()).value;
             },
             y, difference_step);
         EXPECT_LT(relative_difference(R.by_lambda, J.leftCols<3>()), difference_tolerance);
@@ -89,6 +118,14 @@ TEST_P(Branch, HasExactDerivatives) {
         EXPECT_LT(relative_difference(R.by_normal, J.middleCols<3>(4)), difference_tolerance);
         EXPECT_LT(relative_difference(R.by_drift, J.rightCols<3>()), difference_tolerance);
     }
+}
+
+TEST_P(Branch, HasExactDerivatives) {
+    expect_exact_derivatives(law, [](const ContactState& s) { return augmented(s).L_T; });
+}
+
+TEST_P(Branch, HasExactDerivativesWhereStickIsElastic) {
+    expect_exact_derivatives(elastic, trial_of_spring);
 }
 
 std::string branch_name(const ::testing::TestParamInfo<Status>& tested) {

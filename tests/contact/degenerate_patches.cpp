@@ -173,6 +173,28 @@ TEST(NearDuplicateNodes, MayBeTheEndsOfAnEdge) {
     }
 }
 
+/// A pair between long facets and short ones is closer than a hundredth of the mean distance on one side only: the patches of
+/// that side cannot have both.
+TEST(NearDuplicateNodes, AreMergedWhereOneSideAloneCannotTellThemApart) {
+    const std::vector<double> x{-40, -30, -20, -10, 0, 0.03, 1.03, 2.03, 3.03, 4.03};
+    const int columns = static_cast<int>(x.size()) - 1, rows = 4;
+    const Surface surface = grid(columns, rows, false, false, [&](double a, double b) {
+                                return Vec3(x[static_cast<std::size_t>(std::lround(a * columns))], 10 * rows * b, 0);
+                            }).surface("Graded");
+    int beside = 0;
+    for (const VertexPatchInfo& patch : vertex_patches(surface.topology, surface.x, {})) {
+        bool one = false, other = false;
+        for (const Index v : patch.vertices) {
+            one = one || surface.x[v].x() == 0;
+            other = other || surface.x[v].x() == 0.03;
+        }
+        EXPECT_FALSE(one && other) << "at " << surface.x[patch.vertex].transpose();
+        EXPECT_GE(patch.level, 2);
+        beside += one || other;
+    }
+    EXPECT_GT(beside, rows) << "nothing shown";
+}
+
 /// The same for one patch per facet.
 TEST(NearDuplicateNodes, AreMergedInRpimPatchesToo) {
     for (const Round& round : rounds()) {
@@ -209,6 +231,25 @@ TEST(NearDuplicateNodes, AreMergedInRpimPatchesToo) {
 }
 
 /// Two edges of a slit lie on each other: nodes that share no facet stay apart.
+/// Long facets beside short ones that curl away: two rings are the most that lie flat, and no patch of them both covers its own
+/// long facets and ends before the next node on the other side. It ends there all the same.
+TEST(FacetsOfVeryUnlikeLength, KeepTheSurfaceThroughTheNodesOfTheShortOnes) {
+    constexpr int curled = 4, plain = 3, rows = 6;
+    const Shell shell = grid(curled + plain, rows, false, false, [](double a, double b) {
+        const auto i = static_cast<int>(std::lround(a * (curled + plain))) - curled;
+        Vec3 p(i > 0 ? 16.0 * i : 0, 5 * rows * b, 0);
+        for (int k = 1; k <= -i; ++k) p -= Vec3(std::cos(k * 2 * pi / 9), 0, std::sin(k * 2 * pi / 9));
+        return p;
+    });
+    const Blend blend(shell.surface("Unlike", pi));
+    for (const Vec3& x : blend.x) {
+        if (x.x() > 0) continue;
+        const ContactPoint point = blend.at(x);
+        ASSERT_TRUE(point.found) << x.transpose();
+        EXPECT_LT(std::abs(point.gap), patch_round_off) << x.transpose();
+    }
+}
+
 TEST(NearDuplicateNodes, OfDifferentPartsStayApart) {
     Shell s = grid(6, 3, false, false, [](double a, double b) { return Vec3(6 * a, 3 * b, 0); });
     const Shell other = grid(6, 3, false, false, [](double a, double b) { return Vec3(6 * a, 3 + 3 * b, 0); });

@@ -143,6 +143,21 @@ INSTANTIATE_TEST_SUITE_P(Patterns, FlatMortar,
                                            Case{mesh::BlockPattern::hybrid, mesh::BlockPattern::triangle},
                                            Case{mesh::BlockPattern::quad, mesh::BlockPattern::hybrid}));
 
+TEST(Mortar, CountsAFacetThatTwoFifthsOfAreOverTheMasterAndNoSliver) {
+    const Surface master = testing::block_top(mesh::BlockPattern::quad); // up to x = 5
+    for (const double over : {0.8, 0.04}) {
+        const Pairing pairing(master, make_facets_surface(master.topology),
+                              Slave({5 - over, 1, 0.2}, {2, 2, 1}, {1, 1}, mesh::BlockPattern::quad));
+        for (std::size_t j = 0; j < pairing.points.size(); ++j) {
+            ASSERT_EQ(pairing.points[j].found, over > 0.1) << over;
+            if (!pairing.points[j].found) continue;
+            EXPECT_NEAR(pairing.points[j].gap, 0.2, round_off);
+            EXPECT_NEAR(pairing.points[j].weights.sum(), 1, 10 * round_off); // dual functions of a part are large
+            EXPECT_LT((pairing.points[j].foot + Vec3(0, 0, 0.2) - pairing.slave.X[j]).norm(), 100 * round_off);
+        }
+    }
+}
+
 TEST(Mortar, VariesAsItsDifferencesSay) {
     // a shaken block of triangles above a shaken plane of triangles: the weights are integrated exactly there
     Surface master = testing::block_top(mesh::BlockPattern::triangle);

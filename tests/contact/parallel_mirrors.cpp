@@ -78,6 +78,14 @@ TEST(ParallelMirrors, ReachNoFartherThanTheDepth) {
     EXPECT_EQ(mirror(facets, X, {}, 0.5).facets.size(), 3U);
 }
 
+TEST(ParallelMirrors, LeaveFacetsAloneThatLieInAPlane) {
+    const auto [facets, X] = grid(3, 2);
+    const std::vector<SymmetryPlane> planes{{Vec3(0, 0, 0), Vec3::UnitZ()}, {Vec3(0, 0, 0), Vec3::UnitY()}};
+    EXPECT_EQ(mirror(facets, X, {planes[0]}, 100).facets.size(), 6U);
+    const MirroredSurface both = mirror(facets, X, planes, 100);
+    EXPECT_NO_THROW(mesh::HalfEdgeSurface(both.facets, both.positions)) << "no facet twice";
+}
+
 /// Planes at 60 degrees: six images around their common line.
 TEST(ParallelMirrors, FillTheTurnAroundAnEdgeBetweenTwoPlanes) {
     const std::vector<Vec3> X{{0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}};

@@ -99,6 +99,20 @@ TEST_P(Rpim, DoesNotDependOnTheUnitOfLength) {
         EXPECT_LT((weights_at(*patch, u).phi - weights_at(*scaled, scale * u).phi).cwiseAbs().maxCoeff(), c.tolerance);
 }
 
+/// Else the forces on the nodes would lack in balance what the condition of the patch costs.
+TEST_P(Rpim, HasResultantAndMomentsOfItsWeightsAndTheirSlopesToTheLastDigit) {
+    const double last_digits = 1e-13; // sums of 25 weights, those of a quintic up to ten
+    const Vec2 centre = c.nodes.colwise().mean().transpose();
+    const MatrixX2 t = (c.nodes.rowwise() - centre.transpose()) / spacing;
+    for (const Vec2& u : c.samples) {
+        const Weights w = weights_at(*patch, u);
+        EXPECT_NEAR(w.phi.sum(), 1, last_digits);
+        EXPECT_LT((t.transpose() * w.phi - (u - centre) / spacing).norm(), last_digits);
+        EXPECT_LT(spacing * w.phi_a.colwise().sum().norm(), last_digits);
+        EXPECT_LT((spacing * t.transpose() * w.phi_a - Mat2::Identity()).norm(), last_digits);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Bases, Rpim,
                          ::testing::Values(RpimCase{"Default", {}, 6}, RpimCase{"DefaultLinear", {}, 3},
                                            RpimCase{"Sharp", {1.0, 1.03}, 6},

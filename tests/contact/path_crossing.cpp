@@ -4,6 +4,7 @@
 
 #include "support/random.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace osculate::contact {
@@ -66,6 +67,26 @@ TEST(PathCrossing, LeavesAPathAloneThatPassesBy) {
     EXPECT_TRUE(plate.first_passage({0.9, 0.5, 0.1 + 0.01}, {1.1 - 2e-6, 0.5, -0.1 + 0.01}, none_allowed));
     EXPECT_FALSE(plate.first_passage({0.5, 0.5, 0.005}, {0.5, 0.5, 1}, none_allowed)) << "from inside out";
     EXPECT_FALSE(plate.first_passage({0.5, 0.5, 0.2}, {0.9, 0.1, 0.0101}, none_allowed)) << "stops before";
+}
+
+TEST(PathCrossing, CallsATouchOfAnEdgeFromOutsideInAndOut) {
+    const Vec3 size(1, 1, 0.01);
+    for (const double y : {0.2, 0.5, 0.7}) // both orders of the facets: over the top, and from beside
+        for (const double way : {1.0, -1.0}) {
+            const Vec3 edge(1, y, 0.01), along(0.1 * way, 0, -0.1 * way);
+            const auto met = Box(size).moving(Vec3::Zero()).crossings(edge - along, edge + along);
+            ASSERT_EQ(met.size(), 2u) << y;
+            EXPECT_TRUE(met[0].inward) << y;
+            EXPECT_FALSE(met[1].inward) << y;
+        }
+}
+
+TEST(PathCrossing, DoesNotCrossTheFacetThatAPointStartsOn) {
+    const MovingFacets plate = Box({1, 1, 0.01}).moving(Vec3::Zero());
+    EXPECT_TRUE(plate.crossings({0.3, 0.4, 0.01}, {0.3, 0.4, 1}).empty()) << "outward";
+    const auto met = plate.crossings({0.3, 0.4, 0.01}, {0.3, 0.4, -1});
+    ASSERT_EQ(met.size(), 1u) << "inward: the other side alone";
+    EXPECT_FALSE(met[0].inward);
 }
 
 TEST(PathCrossing, FindsTheExactTimeWithAFacetThatTurns) {
@@ -163,11 +184,36 @@ TEST(PathCrossing, CallsADipWithinTheAllowanceASkim) {
     EXPECT_TRUE(facets.first_passage(from, {0.3, 0.5, -0.1}, [](Index) { return 0.05; }));
 }
 
+/// Two triangles that share an edge, each numbered from any of its corners: every edge has the tolerance, whichever it is.
+TEST(PathCrossing, LeavesNoLeakAtAnyEdgeWhateverTheCornersNumbering) {
+    const std::vector<Vec3> x{{0.1, 0.2, 0.3}, {1.3, 0.9, 0.1}, {0.2, 1.4, 0.5}, {1.1, -0.6, 0.2}};
+    const Vec3 above(0.1, -0.2, 0.7);
+    for (std::size_t first = 0; first < 3; ++first)
+        for (std::size_t second = 0; second < 3; ++second) {
+            Corners left{0, 1, 2, -1}, right{1, 0, 3, -1};
+            std::rotate(left.begin(), left.begin() + first, left.begin() + 3);
+            std::rotate(right.begin(), right.begin() + second, right.begin() + 3);
+            const MovingFacets roof({left, right}, x, x);
+            for (int k = 1; k < 10; ++k) {
+                const Vec3 on = x[0] + k / 10.0 * (x[1] - x[0]);
+                EXPECT_EQ(roof.crossings(on + above, on - above).size(), 2u) << first << second << k;
+            }
+        }
+}
+
 TEST(Thickness, IsThatOfTheBodyBehindEveryFacet) {
     const Box box({3, 2, 0.1});
     const std::vector<double> thickness = thickness_behind(box.facets, box.facets, box.x);
     const double expected[] = {0.1, 0.1, 2, 3, 2, 3};
     for (std::size_t f = 0; f < 6; ++f) EXPECT_NEAR(thickness[f], expected[f], 1e-9) << f;
+}
+
+TEST(Thickness, IsTheLeastOverAFacet) {
+    Box wedge({1, 1, 1}); // its top slopes from 1 to 0.2 along x
+    for (Vec3& x : wedge.x)
+        if (x.z() == 1 && x.x() == 1) x.z() = 0.2;
+    const double lowest = 1 - 0.8 * (0.5 + 0.75 * 0.5); // three quarters of the way to the corners
+    EXPECT_NEAR(thickness_behind(wedge.facets, wedge.facets, wedge.x)[0], lowest, 1e-9);
 }
 
 } // namespace

@@ -72,6 +72,82 @@ TEST_F(Refresh, CanBeDoneAgainFromWhatItWasDoneWith) {
     EXPECT_FALSE(again->refit({{0, {Vec3::Zero()}}}));
 }
 
+/// Two nodes of the plate all but coincide and count as one: the numbers of its patches are not those of its vertices.
+TEST(RefreshOverMergedNodes, KeepsTheSurfaceThroughItsNodes) {
+    constexpr double apart = 1e-5;
+    const auto doubled = [](double turn) {
+        Shell s = plate(turn);
+        const Index v = columns / 2 + (columns + 1) * (rows / 2), twin = v + 1; // moves in behind its neighbour
+        for (auto& facet : s.facets)
+            for (Index& node : facet)
+                if (node > v) ++node;
+        s.x.insert(s.x.begin() + twin, bent(0.5 + apart / columns, 0.5, turn));
+        for (auto& facet : s.facets)
+            for (Index& node : facet)
+                if (node == v && std::ranges::find(facet, v + 2) != facet.end()) node = twin;
+        s.facets.push_back({v, twin, v + 2 + columns});
+        s.facets.push_back({twin, v, v - 1 - columns});
+        return s;
+    };
+    const Surface flat = doubled(0).surface("plate");
+    const auto master = make_blend_surface(flat.topology, flat.x, {});
+    ASSERT_GT(master->fallbacks(), 0) << "nothing is merged";
+    const std::vector<Vec3> x = doubled(44 * pi / 180).surface("bent", 89).x;
+    ASSERT_GT(master->refresh(x), 0);
+    FacetSearch search(flat.topology, x, Vec3(0, 0, 100));
+    search.build(x);
+    for (Index v = 0; v < flat.topology.vertex_count(); ++v) {
+        ContactPoint point;
+        master->evaluate(x[v], search.global(x[v], x), x, point);
+        ASSERT_TRUE(point.found) << v;
+        EXPECT_LT(std::abs(point.gap), 2 * apart) << v;
+    }
+}
+
+/// At 62 degrees a facet two rings no longer lie flat: patches get smaller, and so does what facets say they need.
+TEST_F(Refresh, NamesTheVerticesThatPatchesHoldNow) {
+    const std::vector<Vec3> x = at(degrees(62));
+    const Surface there = plate(degrees(62)).surface("bent", 89);
+    const auto fresh = make_blend_surface(there.topology, there.x, {});
+    const auto again = make_blend_surface(flat.topology, flat.x, {});
+    const Index inner = columns / 2 + columns * (rows / 2); // all patches near it are bent
+    const auto named = [&](const MasterSurface& surface, Index facet) {
+        const auto vertices = surface.patch_vertices(facet);
+        return std::vector<Index>(vertices.begin(), vertices.end());
+    };
+    const auto before = named(*master, inner);
+    ASSERT_GT(master->refresh(x), 0);
+    EXPECT_EQ(named(*master, inner), named(*fresh, inner));
+    EXPECT_NE(named(*master, inner), before);
+    ASSERT_TRUE(again->refit(master->refitted()));
+    for (Index f = 0; f < flat.topology.facet_count(); ++f) EXPECT_EQ(named(*again, f), named(*master, f));
+}
+
+/// What is made ready at some positions does not serve at others, by a rigid motion either.
+TEST_F(Refresh, EvaluatesAtThePositionsGivenWhateverWasPrepared) {
+    FacetSearch search(flat.topology, flat.x, Vec3(0, 0, 100));
+    search.build(flat.x);
+    const Vec3 s = bent(0.52, 0.47, 0) + Vec3(0, 0, 0.1);
+    const FacetHit hit = search.global(s, flat.x);
+    const auto unprepared = make_blend_surface(flat.topology, flat.x, {});
+    master->prepare(std::span(&hit, 1), flat.x, 1);
+    const Index near = flat.topology.facet_vertices(hit.facet)[0];
+    std::vector<Vec3> one = flat.x, all = flat.x;
+    one[near] += Vec3(0, 0, 0.02);
+    for (Vec3& v : all) v += Vec3(0, 0, 0.03);
+    for (const std::vector<Vec3>& x : {one, all, flat.x}) {
+        ContactPoint prepared, expected;
+        ContactVariation prepared_variation, variation;
+        master->evaluate(s, hit, x, prepared, &prepared_variation);
+        unprepared->evaluate(s, hit, x, expected, &variation);
+        ASSERT_TRUE(prepared.found && expected.found);
+        EXPECT_EQ(prepared.gap, expected.gap); // to the bit
+        EXPECT_EQ(prepared.normal, expected.normal);
+        EXPECT_EQ(prepared.pressing, expected.pressing);
+        EXPECT_EQ(prepared_variation.dn, variation.dn);
+    }
+}
+
 TEST_F(Refresh, KeepsTheSurfaceThroughItsNodes) {
     const std::vector<Vec3> x = at(degrees(44));
     master->refresh(x);

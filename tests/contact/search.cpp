@@ -219,6 +219,13 @@ TEST(FacetSearch, BreaksTiesByGeometryWhateverTheNumbering) {
             }
         }
         EXPECT_EQ(search.global(s, surface.x).facet, nearest);
+        const auto around = surface.topology.vertex_facets(v);
+        // some of them are closer by 1e-10, far less than what counts
+        const Vec3 beside = surface.x[v] + Vec3(0, 0, 0.3) + random.vector(1e-5);
+        for (const Index from : surface.topology.ring_facets(nearest, 2)) // one that the point is over keeps it
+            if (std::ranges::count(around, from) == 0) {
+                EXPECT_EQ(search.track(beside, from, surface.x, 0).facet, nearest) << "from " << from;
+            }
     }
 }
 

@@ -32,6 +32,16 @@ TEST(FocusedLines, HaveTheSizeGivenAroundThePointAndGrowNoFasterThanAllowedBeyon
     }
 }
 
+TEST(FocusedLines, AreNoMoreThanTheGrowthAsksFor) {
+    const Focus focus{.size = 0.25, .extent = 1, .growth = 1.4};
+    for (double length = 1.3; length < 20; length += 0.1) {
+        const std::vector<double> lines = focused_lines(0, length, 0, focus);
+        double reached = 1, element = focus.size; // by one element less, as large as they may be
+        for (std::size_t i = 5; i + 1 < lines.size(); ++i) reached += element *= focus.growth;
+        EXPECT_LT(reached, length) << lines.size();
+    }
+}
+
 /// A half has to be a part of the whole, to the last digit.
 TEST(FocusedLines, OfOneSideDoNotDependOnTheOther) {
     const Focus focus{.size = 0.25, .extent = 1.2, .growth = 1.4};

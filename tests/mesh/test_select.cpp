@@ -84,6 +84,12 @@ TEST(Select, ScalesItsToleranceWithTheMesh) {
         };
         EXPECT_EQ(off(0.5 * selection_tolerance), 4u);
         EXPECT_EQ(off(2 * selection_tolerance), 0u);
+        const auto within = [&](double distance) { // of a box that is smaller by this on all sides
+            const Vec3 less = Vec3::Constant(distance * diagonal);
+            return select_box(mesh, exterior, less, Vec3::Constant(size) - less).facets.size();
+        };
+        EXPECT_EQ(within(0.5 * selection_tolerance), 24u);
+        EXPECT_EQ(within(2 * selection_tolerance), 0u);
     }
 }
 

@@ -4,7 +4,9 @@
 #include "support/differences.hpp"
 #include "support/random.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 
 namespace osculate::model {
 namespace {
@@ -148,6 +150,132 @@ TEST_P(FlatPair, SearchesOpenSlavesAnewAndKeepsTheFacetsOfClosedOnes) {
 
 INSTANTIATE_TEST_SUITE_P(Of, FlatPair, ::testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Rpim" : "Facets"; });
+
+TEST_P(FlatPair, LetsHeldSlavesStickElastically) {
+    const Vec3 lambda_start(0.3, -0.2, 2), drift(0.01, 0.02, 0);
+    ContactHistory history = term->initial_history();
+    history.lambda[1] = lambda_start;
+    term->begin_step(x, history, timings, 1);
+    term->hold({0, 1, 0});
+    const contact::ContactState moved{lambda_start, 0, Vec3::UnitZ(), drift};
+    const Vec3 exact = term->law(0).residual(moved, contact::Status::stick).value;
+    const Vec3 spring = term->law(1).residual(moved, contact::Status::stick).value;
+    EXPECT_LT((exact - term->stiffness(0) * drift).norm(), round_off) << "no drift at all";
+    EXPECT_LT((spring - 100 * term->stiffness(1) * drift).norm(), round_off) << "from the force at the start";
+    const contact::ContactState loaded{Vec3(1, 1, 2), 0, Vec3::UnitZ(), Vec3::Zero()};
+    EXPECT_LT(term->law(0).residual(loaded, contact::Status::stick).value.norm(), round_off) << "whatever its force";
+    EXPECT_GT(term->law(1).residual(loaded, contact::Status::stick).value.norm(), 1) << "no drift, no other force";
+}
+
+/// Motions that leave no doubt about the side of a node are small against facets and against what lies behind them.
+TEST(Thinness, OfAFacetIsThatOfItsThinnestVertex) {
+    const mesh::Mesh block = mesh::make_block({0, 0, -1}, {3, 3, 1}, {3, 3, 1});
+    std::vector<Vec3> x = block.nodes;
+    auto surface = std::make_unique<mesh::HalfEdgeSurface>(block.surfaces.at("z_max"), block.nodes);
+    const Index vertices = surface->vertex_count(), slave = static_cast<Index>(x.size());
+    x.emplace_back(1, 1, 1);
+    for (const bool thin : {true, false}) {
+        MasterNodes nodes{surface->vertex_nodes()};
+        nodes.thickness.assign(static_cast<std::size_t>(vertices), 2.0);
+        if (thin) nodes.thickness[0] = 0.1;
+        auto master = contact::make_facets_surface(*surface);
+        ContactTerm term("pair", x, SlaveNodes{{slave}, {1}, {1}, {}},
+                         std::make_unique<mesh::HalfEdgeSurface>(*surface), std::move(nodes), std::move(master), {});
+        EXPECT_NEAR(term.finest(), thin ? 0.1 : 1, round_off);
+        for (Index f = 0; f < surface->facet_count(); ++f) {
+            const auto v = surface->facet_vertices(f);
+            EXPECT_EQ(term.thickness(f), thin && std::ranges::count(v, 0) > 0 ? 0.1 : 2);
+        }
+    }
+}
+
+/// A slave facet that stands upright over the master overlaps none of it; one that lies over it is seen by its averages.
+TEST(UnseenGaps, AreThoseOfSlaveNodesWhoseFacetsOverlapNothing) {
+    for (const bool upright : {false, true}) {
+        const mesh::Mesh block = mesh::make_block({0, 0, -1}, {5, 4, 1}, {5, 4, 1});
+        std::vector<Vec3> x = block.nodes;
+        auto surface = std::make_unique<mesh::HalfEdgeSurface>(block.surfaces.at("z_max"), block.nodes);
+        MasterNodes nodes{surface->vertex_nodes()};
+        auto master = contact::make_facets_surface(*surface);
+        SlaveNodes slaves;
+        for (const Vec3& s : {Vec3(1.2, 1.1, 0.1), Vec3(1.2, 2.1, 0.1), Vec3(2.2, 2.1, 0.2), Vec3(2.2, 1.1, 0.2)}) {
+            slaves.node.push_back(static_cast<Index>(x.size()));
+            x.push_back(s);
+            if (upright) x.back().x() = 1.2;
+        }
+        slaves.area = slaves.stiffness = {1, 1, 1, 1};
+        slaves.facets.push_back({{slaves.node[0], slaves.node[1], slaves.node[2], slaves.node[3]}, 4});
+        ContactOptions options;
+        options.discretisation = Discretisation::mortar;
+        ContactTerm term("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master), options);
+        Timings timings;
+        term.begin_step(x, term.initial_history(), timings, 1);
+        term.evaluate(x, timings, 1);
+        for (Index j = 0; j < 4; ++j) {
+            EXPECT_EQ(term.point(j).found, !upright);
+            if (upright)
+                EXPECT_NEAR(term.unseen_gap(j, x), x[term.slaves().node[j]].z(), round_off);
+            else
+                EXPECT_EQ(term.unseen_gap(j, x), std::numeric_limits<double>::infinity());
+        }
+    }
+}
+
+/// A slave beyond the edge between two faces of a block, where it sees the face that it is farther from; its closest facet
+/// stays the same.
+class CreasePair : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const mesh::Mesh block = mesh::make_block({0, 0, -2}, {2, 2, 2}, {2, 2, 2});
+        x = block.nodes;
+        std::vector<mesh::Facet> facets = block.surfaces.at("z_max");
+        for (const mesh::Facet& facet : block.surfaces.at("x_max")) facets.push_back(facet);
+        auto surface = std::make_unique<mesh::HalfEdgeSurface>(facets, block.nodes);
+        std::vector<Vec3> vertices;
+        for (const Index node : surface->vertex_nodes()) vertices.push_back(x[node]);
+        MasterNodes nodes{surface->vertex_nodes()};
+        auto master = contact::make_blend_surface(*surface, vertices, {});
+        slave = static_cast<Index>(x.size());
+        x.emplace_back(2.1, 0.6, 0.1);
+        ContactOptions options;
+        options.changes_before_latch = 2;
+        term = std::make_unique<ContactTerm>("pair", x, SlaveNodes{{slave}, {0.25}, {3}, {}}, std::move(surface),
+                                             std::move(nodes), std::move(master), options);
+    }
+    /// The facet that is seen from above the edge, or from beside it.
+    Index seen_from(bool above) {
+        x[slave] = {above ? 2.1 : 2.2, 0.6, above ? 0.2 : 0.1};
+        term->evaluate(x, timings, 1);
+        EXPECT_TRUE(term->point(0).found);
+        return term->point(0).side;
+    }
+
+    std::vector<Vec3> x;
+    Index slave = 0;
+    std::unique_ptr<ContactTerm> term;
+    Timings timings;
+};
+
+TEST_F(CreasePair, LatchesASlaveThatSeesNowOneSideNowTheOther) {
+    term->begin_step(x, term->initial_history(), timings, 1);
+    const Index above = seen_from(true), beside = seen_from(false);
+    EXPECT_NE(above, beside);
+    EXPECT_FALSE(term->hit(0).latched) << "one change of side";
+    seen_from(true);
+    EXPECT_EQ(seen_from(false), above) << "two: it stays";
+    EXPECT_TRUE(term->hit(0).latched);
+}
+
+/// A rejected attempt leaves no trace: the next one is free to see another side at first.
+TEST_F(CreasePair, ForgetsTheSideOfTheAttemptBefore) {
+    term->begin_step(x, term->initial_history(), timings, 1);
+    const Index above = seen_from(true);
+    term->begin_step(x, term->initial_history(), timings, 1);
+    EXPECT_NE(seen_from(false), above);
+    seen_from(true);
+    seen_from(true);
+    EXPECT_FALSE(term->hit(0).latched) << "one change of side in this attempt";
+}
 
 } // namespace
 } // namespace osculate::model

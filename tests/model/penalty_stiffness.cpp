@@ -2,6 +2,7 @@
 
 #include "block_systems.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace osculate::model {
@@ -65,12 +66,13 @@ TEST_F(TwoBodies, HaveTheEnergyOfBodiesAndSprings) {
     check(stiffness, {});
     // mirror images repeat a node; slave and master may carry constraints
     const Mat3 mirror = Vec3(1, 1, -1).asDiagonal();
+    const Mat3 turn = Eigen::AngleAxisd(2, Vec3::UnitZ()).toRotationMatrix(); // an image at two oblique planes
     const std::vector<Spring> springs{
         {1,
          {4, 5, 6, 7},
          {0.1 * Mat3::Identity(), 0.2 * Mat3::Identity(), 0.3 * Mat3::Identity(), 0.4 * mirror},
          positive()},
-        {0, {4, 4, 5}, {0.5 * Mat3::Identity(), 0.3 * mirror, 0.2 * Mat3::Identity()}, positive()}};
+        {0, {4, 4, 5}, {0.5 * Mat3::Identity(), 0.3 * mirror, 0.2 * turn}, positive()}};
     stiffness.set_springs(springs);
     check(stiffness, springs);
 }

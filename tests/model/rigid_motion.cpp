@@ -51,5 +51,20 @@ TEST(RigidHold, AHeldFaceLeavesNothing) {
     EXPECT_THAT(hold.free_motions(), IsEmpty());
 }
 
+/// Levers are measured by the body: a speck and a mountain are held like a brick.
+TEST(RigidHold, TheSizeOfABodyDoesNotMatter) {
+    for (const double size : {1e-8, 1e-3, 1e8}) {
+        const Body body{"block", mesh::make_block(Vec3::Zero(), {size, 2 * size, 3 * size}, {1, 1, 1}), 0, {}, 0};
+        RigidHold face(body, body.mesh.nodes), slider(body, body.mesh.nodes);
+        for (const Vec3& X : body.mesh.nodes)
+            if (X.z() == 0) {
+                slider.hold(X, Vec3::UnitZ());
+                for (int k = 0; k < 3; ++k) face.hold(X, Vec3::Unit(k));
+            }
+        EXPECT_THAT(face.free_motions(), IsEmpty()) << size;
+        EXPECT_THAT(slider.free_motions(), ElementsAre("along x", "along y", "about z")) << size;
+    }
+}
+
 } // namespace
 } // namespace osculate::model

@@ -54,6 +54,17 @@ TEST(Aggregate, ReducesCallsOfOneArgument) {
     EXPECT_EQ(aggregate("max(max(0, p - 1))"), 2);
 }
 
+TEST(Reductions, DoNotDependOnTheSignButWhereTheySay) {
+    const std::vector<double> values{4, 5, 7, 5, 4}, negative{-4, -5, -7, -5, -4};
+    for (const char* reduction : {"amplitude", "ripple", "rms", "roughness", "count"}) {
+        EXPECT_GT(reduce(reduction, values), 0) << reduction;
+        EXPECT_EQ(reduce(reduction, negative), reduce(reduction, values)) << reduction;
+    }
+    for (const char* reduction : {"sum", "mean", "first", "last"})
+        EXPECT_EQ(reduce(reduction, negative), -reduce(reduction, values)) << reduction;
+    EXPECT_EQ(reduce("max", negative), -reduce("min", values));
+}
+
 TEST(Aggregate, TellsWhatItCannotDo) {
     const auto problem = [](const std::string& text) {
         return Aggregate(text, rows.names, {"h"}, functions).problem();

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <utility>
 
 namespace osculate::scene {
 namespace {
@@ -32,6 +34,31 @@ TEST(Units, ReadPrefixesExactly) {
     expect_quantity("2 min", 120, dimension::time);
     expect_quantity("180 deg", std::numbers::pi, dimension::angle);
     expect_quantity("10 mrad", 0.01, dimension::angle);
+}
+
+TEST(Units, ReadEveryPrefixOfEveryUnitThatTakesOne) {
+    const std::pair<const char*, const char*> prefixes[] = {{"n", "e-9"}, {"u", "e-6"}, {"µ", "e-6"}, {"m", "e-3"},
+                                                            {"c", "e-2"}, {"d", "e-1"}, {"k", "e3"},  {"M", "e6"},
+                                                            {"G", "e9"},  {"T", "e12"}, {"", ""}};
+    const std::pair<const char*, Dimension> units[] = {{"m", dimension::length},
+                                                       {"s", dimension::time},
+                                                       {"N", dimension::force},
+                                                       {"Pa", dimension::pressure},
+                                                       {"J", {.length = 2, .mass = 1, .time = -2}},
+                                                       {"W", {.length = 2, .mass = 1, .time = -3}},
+                                                       {"Hz", {.time = -1}},
+                                                       {"rad", dimension::angle}};
+    for (const auto& [prefix, power] : prefixes)
+        for (const auto& [unit, dimension] : units)
+            expect_quantity((std::string("7 ") + prefix + unit).c_str(), std::stod(std::string("7") + power),
+                            dimension);
+    const std::pair<const char*, double> grams[] = {{"7 ng", 7e-12}, {"7 mg", 7e-6}, {"7 dg", 7e-4},
+                                                    {"7 g", 7e-3},   {"7 kg", 7},    {"7 Mg", 7e3}};
+    for (const auto& [text, value] : grams) expect_quantity(text, value, Dimension{.mass = 1});
+    const std::pair<const char*, double> hours[] = {{"7 min", 420}, {"7 h", 25200}};
+    for (const auto& [text, value] : hours) expect_quantity(text, value, dimension::time);
+    for (const char* text : {"7 kbar", "7 kt", "7 mmin", "7 kdeg"})
+        EXPECT_NE(parse_quantity(text).problem, "") << text << " takes no prefix";
 }
 
 TEST(Units, MultiplyDivideAndRaise) {

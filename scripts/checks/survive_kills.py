@@ -1,4 +1,4 @@
-"""Kills runs at random moments; see scripts/survive_kills."""
+"""Kills runs at random moments; see scripts/checks/survive_kills."""
 import argparse
 import pathlib
 import random

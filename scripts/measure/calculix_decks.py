@@ -1,7 +1,7 @@
 """Solves the paper's half-tube and foundation with CalculiX and with Osculate on the same meshes, one thread, and writes
 docs/data/calculix.md. Runs are kept in out/calculix.
 
-    calculix_decks.py OSCULATE      called by scripts/calculix, from the root of the repository
+    calculix_decks.py OSCULATE      called by scripts/measure/calculix, from the root of the repository
 """
 import csv
 import json
@@ -363,7 +363,7 @@ def main(program):
     residual = max(run["residual"] for best in runs.values() for run in best.values() if "residual" in run)
     tolerance = {scene: model.scene["solver"]["tolerance"] for scene, model in models.items()}
     page = f"""\
-Written by `scripts/calculix`: CalculiX {calculix} (`ccx`, Debian's, with its default solver SPOOLES) and Osculate
+Written by `scripts/measure/calculix`: CalculiX {calculix} (`ccx`, Debian's, with its default solver SPOOLES) and Osculate
 {blend[HALF_TUBE]['version']} on the meshes, loads and supports of `configs/paper`, one thread, one after the other. Each ran {REPETITIONS} times, by turns; the
 run with the least CPU time is shown. CPU is user and system time, memory the largest resident set, both as the operating
 system counts them, reading and writing included. *Over* is CPU time over that of the Osculate run of that name.
@@ -398,4 +398,4 @@ if __name__ == "__main__":
     try:
         main(sys.argv[1])
     except Failure as failure:
-        sys.exit(f"scripts/calculix: {failure}")
+        sys.exit(f"scripts/measure/calculix: {failure}")

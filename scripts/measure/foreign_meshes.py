@@ -1,7 +1,7 @@
 """Reads meshes that ship with Debian's packages, imports contact decks of CalculiX's tests and runs them beside CalculiX, and
 measures how long reading takes; writes docs/data/foreign_meshes.md. Files are kept in out/foreign_meshes.
 
-    foreign_meshes.py OSCULATE      called by scripts/foreign_meshes, from the root of the repository
+    foreign_meshes.py OSCULATE      called by scripts/measure/foreign_meshes, from the root of the repository
 """
 import csv
 import gzip
@@ -371,7 +371,7 @@ def main(program):
     table, notes = decks(program)
     times = speed(program)
     page = f"""\
-Written by `scripts/foreign_meshes`. One thread; seconds are wall time on a machine that does other things too, but those of the
+Written by `scripts/measure/foreign_meshes`. One thread; seconds are wall time on a machine that does other things too, but those of the
 million elements, which are CPU time.
 
 ## Meshes that ship with Debian's packages
@@ -407,4 +407,4 @@ if __name__ == "__main__":
     try:
         main(sys.argv[1])
     except Failure as failure:
-        sys.exit(f"scripts/foreign_meshes: {failure}")
+        sys.exit(f"scripts/measure/foreign_meshes: {failure}")

@@ -1,4 +1,4 @@
-"""Writes the page of failures; see scripts/failures.
+"""Writes the page of failures; see scripts/pages/failures.
 
     failures.py PROGRAM PAGE
 """
@@ -9,13 +9,13 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXTREME = ["bar_on_table_edge", "bars_crossed_between_nodes", "ring_through_itself"]
 SECONDS = 300  # of one run
 GAVE_UP = 3  # exit code
 HEAD = """# Failures
 
-Written by `scripts/failures`; edit nothing here. Small scenes that cannot be run, on purpose, and what the program says to each:
+Written by `scripts/pages/failures`; edit nothing here. Small scenes that cannot be run, on purpose, and what the program says to each:
 first the sentence of the failure, then its post-mortem, which `osculate diary DIR` repeats. It is in `post_mortem.json` too, and
 the last iterate is a frame in the folder `failed`. Below each, what came of the advice: overrides are run on the scene as they
 are printed, advice in words alone is not. Tests expect that some override helps, or do what the words say and expect the run to

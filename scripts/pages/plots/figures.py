@@ -1,7 +1,7 @@
 """Runs the scenes, draws the pictures of docs/images, stores what it measures as docs/data/figures.json and writes from it
 docs/results.md and the README's table (results.py).
 
-    figures.py [--keep] OSCULATE      called by scripts/figures, from the root of the repository
+    figures.py [--keep] OSCULATE      called by scripts/pages/figures, from the root of the repository
 """
 import csv
 import json

@@ -1,4 +1,4 @@
-"""docs/results.md and the README's table, from docs/data/figures.json: what scripts/figures measured in the runs.
+"""docs/results.md and the README's table, from docs/data/figures.json: what scripts/pages/figures measured in the runs.
 
     results.py --check      exit 1 where a page, or a figure quoted in prose, is not what the data make it
 """
@@ -169,7 +169,7 @@ def main():
 
 RESULTS_HEAD = """# Results
 
-Written by `scripts/figures`, which runs the scenes of `configs/paper`; edit nothing here. Seconds are those of the
+Written by `scripts/pages/figures`, which runs the scenes of `configs/paper`; edit nothing here. Seconds are those of the
 machine it ran on last, the fastest of at least three runs; others were at work on it, so that CPU seconds compare better.
 `rpim` and `blend` have their defaults, 2 rings and the multiquadric with R = 1.42, q = 1.03, m = 6, unless the tables say
 otherwise.

@@ -91,7 +91,7 @@ def run_row(name, study, axes, quantity):
     ended = "" if row["status"] == "done" else f" ({row['status'].replace('_', ' ')})"
     return [problem(name, study.texts), study.texts["source"], ", ".join(axes[a] for a in study.texts["axes"] if a in axes),
             of.get("label", quantity), shown + ended, percent(error) if is_share else number(error) + unit,
-            seconds(at("cpu_seconds")), f"`scripts/verification --only {name}`"]
+            seconds(at("cpu_seconds")), f"`scripts/pages/verification --only {name}`"]
 
 
 def surface_row(name, study, surface, mesh, method, kind, unit):
@@ -100,7 +100,7 @@ def surface_row(name, study, surface, mesh, method, kind, unit):
     return [problem(name, study.texts), study.texts["source"], f"{surface}, {row['facets']} facets, {method}",
             f"error of {kind}, mean ({number(mean / float(facets[f'{kind}.mean']), 2)} of that of facets)", "-",
             f"{number(mean)} {unit}", seconds(float(row.get("cpu_seconds") or math.nan)),
-            f"`scripts/verification --only {name}`"]
+            f"`scripts/pages/verification --only {name}`"]
 
 
 def worst(study, quantity, **axes):
@@ -251,7 +251,7 @@ AIMS = {
 
 HEAD = """# Verification: the scoreboard
 
-{problems} problems with known answers. Every figure is from the runs of `scripts/verification`, which writes this page and
+{problems} problems with known answers. Every figure is from the runs of `scripts/pages/verification`, which writes this page and
 those it links to from the tables in `data`; edit nothing here. Settings are the default ones, `blend` and `node`, unless
 they say otherwise; CPU seconds are those of one run on one thread of the machine it ran on last.
 
@@ -263,7 +263,7 @@ Tests (`ctest -R docs`) make this page, those of the studies, [results](../resul
 README and the theory anew from the stored tables and fail on any difference. Pictures are of the same runs as the tables beside
 them. Not covered:
 
-- times of kernels by `scripts/bench`: the README's table of evaluations and all tables of [search](../search.md);
+- times of kernels by `scripts/measure/bench`: the README's table of evaluations and all tables of [search](../search.md);
 - what an older OpenBLAS costs on some machines, in the README;
 - figures of single tests in [theory](../theory.md), sections 3, 6 and 9: they are those tests' own.
 """

@@ -1,4 +1,4 @@
-"""Writes docs/verification from the tables of studies; called by scripts/verification, from the root of the repository.
+"""Writes docs/verification from the tables of studies; called by scripts/pages/verification, from the root of the repository.
 
     verification.py --from DIR [NAME ...]   takes DIR/NAME/study.csv and plots into docs/verification, writes all pages
     verification.py --check                 exit 1 where a page is not what docs/verification/data makes it
@@ -128,7 +128,7 @@ def head(name, study, rows):
     texts = study | SURFACE_TEXTS.get(name, {})
     command = f"osculate study configs/studies/{name}.yaml"
     lines = [f"# {texts['title']}", "", texts["problem"], "", f"- Reference: {texts['source']}",
-             f"- Command: `scripts/verification --only {name}`, or of the study alone `{command}`"]
+             f"- Command: `scripts/pages/verification --only {name}`, or of the study alone `{command}`"]
     if is_of_surfaces(study):
         lines.append(f"- Data: [data/{name}.csv](data/{name}.csv)")
     else:

@@ -1,4 +1,4 @@
-# Debian 12 packages; scripts/dependencies.txt names them, scripts/dependencies_bench.txt those of the benchmarks.
+# Debian 12 packages; scripts/dependencies/base.txt names them, scripts/dependencies/bench.txt those of the benchmarks.
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

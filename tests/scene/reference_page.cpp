@@ -41,7 +41,7 @@ TEST(ReferencePage, ListsEveryKeyAsTheProgramDoes) {
     for (std::string line; std::getline(file, line);)
         if (line.starts_with("| `")) found.push_back(line);
     ASSERT_FALSE(expected.empty());
-    EXPECT_THAT(found, testing::ElementsAreArray(expected)) << "scripts/scene_reference writes the page anew";
+    EXPECT_THAT(found, testing::ElementsAreArray(expected)) << "scripts/pages/scene_reference writes the page anew";
 }
 
 TEST(Readme, HoldsASceneThatIsValid) {

@@ -18,7 +18,7 @@ TEST_F(Schema, OfTheRepositoryIsWhatTheProgramPrints) {
         const Outcome printed = osculate({"schema", kind});
         EXPECT_EQ(printed.code, 0);
         EXPECT_TRUE(printed.out == content(scene_file("docs/schema/" + kind + ".schema.json")))
-            << kind << ": scripts/scene_reference writes it anew";
+            << kind << ": scripts/pages/scene_reference writes it anew";
     }
     EXPECT_EQ(osculate({"schema"}).out, content(scene_file("docs/schema/scene.schema.json")));
     EXPECT_EQ(osculate({"schema", "scenes"}).code, 2);

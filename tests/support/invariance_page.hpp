@@ -58,7 +58,7 @@ inline void write_invariance_page(const std::string& file, const std::vector<Inv
                 fine += d.failure.empty() && d.same_steps && detail::forces(d) < same && d.displacement < same;
             }
     page << "# Invariance\n\n"
-            "Written by `scripts/invariance`; edit nothing here. Every scene is run as it is, and again in other "
+            "Written by `scripts/pages/invariance`; edit nothing here. Every scene is run as it is, and again in other "
             "units, turned,\n"
             "mirrored, 1e6 sizes away, with nodes and elements numbered at random, and with its bodies in reverse. "
             "Each cell:\n"

@@ -1,5 +1,5 @@
 /// Scenes say the same in other units, turned, mirrored, far away and numbered otherwise.
-/// OSCULATE_FULL=1: all scenes, minutes. OSCULATE_INVARIANCE_PAGE=FILE: writes what was measured, see scripts/invariance.
+/// OSCULATE_FULL=1: all scenes, minutes. OSCULATE_INVARIANCE_PAGE=FILE: writes what was measured, see scripts/pages/invariance.
 
 #include "support/invariance_cases.hpp"
 #include "support/invariance_page.hpp"

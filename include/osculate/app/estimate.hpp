@@ -20,7 +20,7 @@ struct Estimate {
 struct CostTerm {
     const char* what;
     double count;   ///< in the whole run
-    double seconds; ///< each; fitted by `scripts/estimates --fit` to docs/data/estimates.csv
+    double seconds; ///< each; fitted by `scripts/pages/estimates --fit` to docs/data/estimates.csv
 };
 [[nodiscard]] std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan);
 

@@ -64,7 +64,7 @@ double finite_elements(const Plan& plan) {
     return sum;
 }
 
-/// Bytes of a sparse factorisation of a solid of so many unknowns: `scripts/growth` measured 92 to 147 times n^1.4.
+/// Bytes of a sparse factorisation of a solid of so many unknowns: `scripts/pages/growth` measured 92 to 147 times n^1.4.
 double factor_bytes(double unknowns) {
     return 130 * std::pow(unknowns, 1.4);
 }

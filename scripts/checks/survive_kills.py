@@ -1,0 +1,125 @@
+"""Kills runs at random moments; see scripts/checks/survive_kills."""
+import argparse
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree as xml
+
+# statics with sticking, slipping and two stages; impacts with cut steps, by two threads
+RUNS = {
+    "slide": ["configs/paper/half_tube.yaml", "--set", "bodies.tube.mesh.half_tube.divisions=[7,6,1]",
+              "--set", "bodies.contactor.mesh.contactor.divisions=[5,6,1]", "--set", "stages.slide.steps=24",
+              "--set", "output.iterations=true", "--threads", "1"],
+    "throw": ["configs/validation/falling_block.yaml", "--set", "bodies.block.mesh.rotate={axis: [1, 2, 0], angle: 0.02}",
+              "--set", "bodies.block.mesh.translate=[0, 0, -0.45]", "--set", "contact.floor.friction=0.8",
+              "--set", "contact.floor.surface=blend", "--set", "stages.fall.duration=0.13",
+              "--set", "stages.fall.steps=65", "--set", "output.iterations=true", "--threads", "2"],
+}
+MANIFEST = "osculate_manifest.txt"
+TABLES = ("history.csv", "steps.csv", "iterations.csv")
+
+
+def contents(run):
+    """Bytes by path of all that a run decides."""
+    return {str(path.relative_to(run)): path.read_bytes() for path in sorted(run.rglob("*"))
+            if path.is_file() and path.name not in ("summary.json", MANIFEST) and path.suffix != ".part"
+            and "checkpoint" not in path.relative_to(run).parts}
+
+
+def faults(run, whole):
+    """What is wrong with the files that a killed run has left, beside the whole run's."""
+    found = []
+    for path, data in contents(run).items():
+        if path in TABLES and not whole[path].startswith(data):
+            found.append(f"{path} is not a beginning of the whole one")
+        elif path in TABLES and data and not data.endswith(b"\n"):
+            found.append(f"{path} ends within a row")
+        elif path.startswith("frames/") and data != whole.get(path):
+            found.append(f"{path} differs")
+    listed = set((run / MANIFEST).read_text().split("\n")[1:]) if (run / MANIFEST).exists() else set()
+    for path in run.rglob("*"):
+        name = str(path.relative_to(run)).removesuffix(".part")
+        if path.is_file() and name not in listed and not name.startswith(MANIFEST):
+            found.append(f"{MANIFEST} does not list {name}")
+    series = run / "series.pvd"
+    if series.exists():
+        for entry in xml.parse(series).getroot().iter("DataSet"):
+            if not (run / entry.get("file")).exists():
+                found.append(f"series.pvd lists {entry.get('file')}, which is missing")
+    # the row of a step goes out before its record: nothing completed is missing but the step under way
+    if (run / "steps.csv").exists() and (run / "history.csv").exists():
+        accepted = (run / "steps.csv").read_bytes().count(b",accept,")
+        rows = max(0, (run / "history.csv").read_bytes().count(b"\n") - 1)
+        if not accepted - 1 <= rows <= accepted:
+            found.append(f"{rows} rows of history for {accepted} accepted steps")
+    return found
+
+
+def killed_after(seconds, command):
+    """True where the command was killed, False where it ended before."""
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        try:
+            code = process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            return True
+    if code != 0:
+        raise SystemExit(f"exit {code} of {' '.join(command)}")
+    return False
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("--kills", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    chance = random.Random(options.seed)
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="osculate_kills_"))
+    wholes, seconds = {}, {}
+    for name, words in RUNS.items():
+        begin = time.monotonic()
+        subprocess.run([options.program, "run", *words, "-o", str(folder / name), "--quiet"], check=True)
+        seconds[name] = time.monotonic() - begin
+        wholes[name] = contents(folder / name)
+    kills = bad = resumed = from_start = early = 0
+    while kills < options.kills:
+        name = chance.choice(list(RUNS))
+        run, whole = folder / "run", wholes[name]
+        shutil.rmtree(run, ignore_errors=True)
+        first = [options.program, "run", *RUNS[name], "-o", str(run), "--quiet",
+                 "--checkpoint-every", str(chance.choice([1, 2, 5]))]
+        again = [options.program, "resume", str(run), "--quiet", "--checkpoint-every", "1",
+                 "--threads", str(chance.choice([1, 2]))]
+        command = first
+        for _ in range(chance.choice([1, 1, 2, 3])):
+            if not killed_after(chance.uniform(0, 1.1 * seconds[name]), command):
+                early += 1
+                break
+            kills += 1
+            for fault in faults(run, whole) if run.exists() else []:
+                bad += 1
+                print(f"kill {kills} of {name}: {fault}")
+            command = again if (run / "checkpoint" / "state").exists() else first
+        else:
+            resumed += command is again
+            from_start += command is first
+            subprocess.run(command, check=True)
+            found = contents(run)
+            for path in sorted(found.keys() | whole.keys()):
+                if found.get(path) != whole.get(path):
+                    bad += 1
+                    print(f"after kill {kills} of {name}: {path} differs from the whole run's")
+    shutil.rmtree(folder)
+    print(f"{kills} kills, {resumed} runs resumed, {from_start} begun again before their first checkpoint, "
+          f"{early} ended before they were killed: {bad} faults")
+    return 1 if bad else 0
+
+
+sys.exit(main())

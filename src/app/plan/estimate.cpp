@@ -113,8 +113,8 @@ std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
         // by docs/data/growth.md
         {"nodes in cycles", multigrid ? solves * nodes : 0, 5e-5},
         {"factors' bytes, GMRES", changing && !multigrid && !condensed ? solves * factor_bytes(3 * nodes) : 0, 1.1e-9},
-        {"operations of condensation", condensed ? cost.condensed : 0, 7.8e-10},
-        {"3x3 blocks, Newton", solves * blocks, 5.9e-8},
+        {"operations of condensation", condensed ? cost.condensed : 0, 7.2e-10},
+        {"3x3 blocks, Newton", solves * blocks, 5e-8},
         {"3x3 blocks, dynamic steps", steps(plan, true) * blocks, 1e-7},
         {"elements at finite strain", solves * finite_elements(plan), 1.7e-5}};
 }

@@ -206,8 +206,9 @@ private:
             boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest_));
             double reached = 0;
             best = {nowhere, -1};
-            for (const auto& [box, f] : nearest_) {
-                const double away = bg::distance(at, box), reach = std::abs(best.distance) * (1 + tie);
+            for (const Leaf& leaf : nearest_) {
+                const Index f = leaf.second;
+                const double away = bg::distance(at, leaf.first), reach = std::abs(best.distance) * (1 + tie);
                 reached = std::max(reached, away);
                 if (away > reach) continue;
                 for_triangles(shell.facets[f], [&](const Triangle& triangle) {
@@ -277,7 +278,8 @@ private:
         box.extend(q);
         near_.clear();
         facets.query(bgi::intersects(box.box()), std::back_inserter(near_));
-        for (const auto& [unused, f] : near_) {
+        for (const Leaf& leaf : near_) {
+            const Index f = leaf.second;
             const mesh::Facet& facet = shell.facets[f];
             if (std::ranges::count(facet, edge.a) + std::ranges::count(facet, edge.b) > 0) continue;
             for_triangles(facet, [&](const Triangle& triangle) {

@@ -315,7 +315,8 @@ void OutputFolder::remove_all_but(const std::set<std::string>& kept) {
         if (const fs::path link = link_before(directory_, file); !link.empty() && is_there(directory_ / file))
             refuse(link, "a folder, as the files in it are to be removed", "a symbolic link");
     // lists such as series.pvd before what they list
-    std::ranges::stable_partition(old, [](const std::string& file) { return file.find('/') == std::string::npos; });
+    std::stable_partition(old.begin(), old.end(),
+                          [](const std::string& file) { return file.find('/') == std::string::npos; });
     std::set<fs::path> folders;
     for (const std::string& file : old) {
         remove_file(directory_ / file);

@@ -26,7 +26,7 @@ std::vector<Index> nodes_of(const std::vector<mesh::Facet>& facets) {
     std::vector<Index> nodes;
     for (const mesh::Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
     std::ranges::sort(nodes);
-    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     return nodes;
 }
 
@@ -313,7 +313,7 @@ private:
     [[nodiscard]] std::vector<std::string> sides_swapped(const model::ContactTerm& pair) const {
         const auto named = [&](std::vector<Index> nodes) {
             std::ranges::sort(nodes);
-            nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+            nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
             const auto at = std::ranges::find(failed_.model.sets, nodes,
                                               [](const model::Set& set) { return nodes_of(set.facets); });
             return at == failed_.model.sets.end() ? std::string() : at->name;

@@ -112,7 +112,8 @@ public:
     [[nodiscard]] Vec3 drift(Index j, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const;
     /// The same since the step began, to positions x of all nodes.
     [[nodiscard]] Vec3 drift(Index j, const std::vector<Vec3>& x) const { return drift(j, x_start_, x); }
-    /// What the gap lacks, m, where the positions of the last evaluate() lack `tails`, their last digits: so small that first variations are exact.
+    /// What the gap lacks, m, where the positions of the last evaluate() lack `tails` (nodes), m, their last digits: so small
+    /// that first variations are exact.
     [[nodiscard]] double gap_rounded_off(Index j, const std::vector<Vec3>& tails) const;
     /// What the law needs to know: without friction no drift.
     [[nodiscard]] contact::ContactState state(Index j, const std::vector<Vec3>& x, const Vec3& lambda) const;

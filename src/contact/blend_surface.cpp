@@ -41,54 +41,61 @@ public:
     std::span<const Index> patch_vertices(Index facet) const override { return reach_[facet]; }
     Index fallbacks() const override { return vertex_patches_.fallbacks; }
 
-    void prepare(std::span<const FacetHit> hits, const std::vector<Vec3>& x, int threads) override {
-        placed_.resize(vertex_patches_.patches.size());
-        wanted_.assign(placed_.size(), 0);
+    void place(std::span<const FacetHit> hits, const std::vector<Vec3>& x, int threads,
+               std::unique_ptr<Placement>& placement) const override {
+        if (!placement) placement = std::make_unique<Placed>();
+        auto& placed = static_cast<Placed&>(*placement);
+        std::vector<PlacedPatch>& patches = placed.patches;
+        std::vector<char>& wanted = placed.wanted;
+        patches.resize(vertex_patches_.patches.size());
+        wanted.assign(patches.size(), 0);
         const auto want = [&](Index facet) {
-            for (const Index p : vertex_patches_.of_facet[facet]) wanted_[p] = 1;
+            for (const Index p : vertex_patches_.of_facet[facet]) wanted[p] = 1;
         };
         for (const FacetHit& hit : hits)
             if (hit.facet >= 0) {
                 want(hit.facet);
                 for (const Neighbour& other : creases_[hit.facet]) want(other.facet);
             }
-        parallel_for(threads, static_cast<Index>(placed_.size()), [&](Index begin, Index end) {
+        parallel_for(threads, static_cast<Index>(patches.size()), [&](Index begin, Index end) {
             for (Index p = begin; p < end; ++p)
-                if (wanted_[p] != 0) placed_[p].place(vertex_patches_.patches[p], x);
+                if (wanted[p] != 0) patches[p].place(vertex_patches_.patches[p], x);
         });
     }
 
-    [[nodiscard]] bool refreshes() const override { return true; }
-    Index refresh(const std::vector<Vec3>& x) override {
-        const std::vector<Index> fresh = vertex_patches_.refresh(x);
-        if (fresh.empty()) return 0;
-        placed_.clear();
-        find_reach();
-        return static_cast<Index>(fresh.size());
+    [[nodiscard]] bool refits() const override { return true; }
+    [[nodiscard]] Index refits_done() const override { return vertex_patches_.refits; }
+    [[nodiscard]] std::shared_ptr<const MasterSurface> refitted(const std::vector<Vec3>& x) const override {
+        const std::vector<Index> bent = vertex_patches_.bent(x);
+        if (bent.empty()) return nullptr;
+        auto other = std::make_shared<BlendSurface>(*this);
+        if (other->vertex_patches_.fit(bent, x) == 0) return nullptr;
+        other->find_reach();
+        return other;
     }
 
-    [[nodiscard]] std::vector<RefittedPatch> refitted() const override { return vertex_patches_.refitted(); }
-    [[nodiscard]] bool refit(const std::vector<RefittedPatch>& patches) override {
-        if (patches.empty()) return true;
-        placed_.clear();
-        const bool done = vertex_patches_.refit(patches);
-        find_reach();
-        return done;
+    [[nodiscard]] std::vector<RefittedPatch> refitted_patches() const override { return vertex_patches_.refitted(); }
+    [[nodiscard]] std::shared_ptr<const MasterSurface>
+    refitted(const std::vector<RefittedPatch>& patches) const override {
+        auto other = std::make_shared<BlendSurface>(*this);
+        if (!other->vertex_patches_.refit(patches)) return nullptr;
+        other->find_reach();
+        return other;
     }
 
     void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
-                  ContactVariation* variation) const override {
+                  ContactVariation* variation, const Placement* placement) const override {
         point.found = point.behind = false;
         point.facet = hit.facet;
         if (hit.facet < 0) return;
         const double size = surface_.facet_size(hit.facet);
         if (beyond_boundary(hit, size)) return;
-        auto trace = std::make_shared<Side>(look(s, hit, x));
+        auto trace = std::make_shared<Side>(seen_from(s, hit, x, placement));
         Side& side = *trace;
         for (const Index facet : across_crease(hit)) {
             FacetHit there;
             there.facet = facet;
-            Side other = look(s, there, x);
+            Side other = seen_from(s, there, x, placement);
             // beyond a crease both sides are planes, more or less, through it: the one s is farther from faces s. For
             // a convex edge that is the larger gap, for a concave one the smaller; a tie keeps the closest facet
             if (other.point.found &&
@@ -124,11 +131,16 @@ public:
 private:
     static constexpr double tie = 1e-9; ///< of coordinates and gaps, of the facet size
 
+    /// Patches where the vertices are now.
+    struct Placed : Placement {
+        std::vector<PlacedPatch> patches; ///< those of facets that were asked for
+        std::vector<char> wanted;         ///< (patches)
+    };
     /// A slave point seen from one smooth side of the surface.
     struct Side : PointTrace {
         FacetHit hit;
         std::vector<ActivePatch> active;                  ///< empty where only the facet itself is left
-        std::vector<std::unique_ptr<PlacedPatch>> placed; ///< those that prepare() has not placed
+        std::vector<std::unique_ptr<PlacedPatch>> placed; ///< those that place() has not placed
         ContactPoint point;
     };
     /// Another smooth side that meets a facet in one of its edges or corners.
@@ -138,18 +150,20 @@ private:
         Index facet;
     };
 
-    Side look(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x) const {
+    Side seen_from(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, const Placement* placement) const {
+        const std::vector<PlacedPatch>* ready =
+            placement == nullptr ? nullptr : &static_cast<const Placed*>(placement)->patches;
         Side side;
         side.hit = hit;
         for (const Index p : vertex_patches_.of_facet[hit.facet]) {
             const VertexPatch& patch = vertex_patches_.patches[p];
-            const PlacedPatch* placed = placed_.empty() ? nullptr : &placed_[p];
+            const PlacedPatch* placed = ready == nullptr ? nullptr : &(*ready)[p];
             if (placed == nullptr || !placed->is_at(patch, x)) {
                 auto& own = side.placed.emplace_back(std::make_unique<PlacedPatch>());
                 own->place(patch, x);
                 placed = own.get();
             }
-            see(patch, *placed, s, side.active);
+            activate(patch, *placed, s, side.active);
         }
         if (!side.active.empty()) {
             blend(side.active, x, side.point);
@@ -225,8 +239,8 @@ private:
     }
 
     /// Adds the patch to `active` when s has a foot on it within its bump.
-    static void see(const VertexPatch& patch, const PlacedPatch& placed, const Vec3& s,
-                    std::vector<ActivePatch>& active) {
+    static void activate(const VertexPatch& patch, const PlacedPatch& placed, const Vec3& s,
+                         std::vector<ActivePatch>& active) {
         const Vec3 from_origin = s - placed.x[0];
         const auto begin = start(patch, placed.at_vertex, from_origin);
         if (!begin) return;
@@ -307,11 +321,9 @@ private:
 
     const mesh::HalfEdgeSurface& surface_;
     VertexPatches vertex_patches_;
-    std::unique_ptr<MasterSurface> facets_;
+    std::shared_ptr<const MasterSurface> facets_;
     std::vector<std::vector<Neighbour>> creases_; ///< per facet
     std::vector<std::vector<Index>> reach_;       ///< per facet, vertices of all patches it may need
-    std::vector<PlacedPatch> placed_;             ///< per patch, as prepare() left them
-    std::vector<char> wanted_;                    ///< per patch, scratch of prepare()
 };
 
 } // namespace

@@ -38,7 +38,7 @@ public:
     std::span<const Index> patch_vertices(Index facet) const override { return surface_.facet_vertices(facet); }
 
     void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
-                  ContactVariation* variation) const override {
+                  ContactVariation* variation, const Placement*) const override {
         point.found = point.behind = false;
         point.facet = hit.facet;
         if (hit.facet < 0) return;
@@ -76,12 +76,12 @@ public:
     }
 
     void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
-                  ContactVariation* variation) const override {
+                  ContactVariation* variation, const Placement*) const override {
         point.found = point.behind = false;
         point.facet = hit.facet;
         if (hit.facet < 0) return;
         const Domain& domain = domains_[hit.facet];
-        if (!domain.patch) return facets_.evaluate(s, hit, x, point, variation);
+        if (!domain.patch) return facets_.evaluate(s, hit, x, point, variation, nullptr);
         const double size = domain.size;
         if (beyond_boundary(hit, size)) return;
         // start where the facet's own closest point lies in the patch's coordinates

@@ -22,9 +22,9 @@ constexpr double least_cover = 0.05;
 
 } // namespace
 
-Mortar::Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, const std::vector<SlaveFacet>& facets,
-               const std::vector<Vec3>& S, std::vector<Mat3> in_plane, const SmoothSlave* smooth)
-    : surface_(surface), master_(master), incident_(S.size()), in_plane_(std::move(in_plane)), carriers_(S.size(), 0),
+Mortar::Mortar(const mesh::HalfEdgeSurface& surface, const std::vector<SlaveFacet>& facets, const std::vector<Vec3>& S,
+               std::vector<Mat3> in_plane, const SmoothSlave* smooth)
+    : surface_(surface), incident_(S.size()), in_plane_(std::move(in_plane)), carriers_(S.size(), 0),
       normal_length_(S.size(), 0.0) {
     // master facets near the slave's size need few points; smaller ones must not slip through between the points
     double size = 0;
@@ -46,7 +46,7 @@ Mortar::Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, cons
             point.N = shape(corners.count, q.xi).N;
             point.weight = q.weight * reference_area(facet, q.xi);
             facet.area += point.weight;
-            lay(point, facet, static_cast<Index>(facets_.size()) - 1, smooth);
+            interpolate(point, facet, static_cast<Index>(facets_.size()) - 1, smooth);
             for (const Share& share : point.shares) facet.gap_slaves.push_back(share.slave);
         }
         sort_unique(facet.gap_slaves);
@@ -63,13 +63,13 @@ double Mortar::reference_area(const Facet& facet, const Vec2& xi) {
     return a.cross(b).norm();
 }
 
-std::vector<Vec3> Mortar::corners(const Facet& facet, const std::vector<Vec3>& s) const {
+std::vector<Vec3> Mortar::corners(const Facet& facet, std::span<const Vec3> s) {
     std::vector<Vec3> x;
     for (const Index node : facet.corners) x.push_back(s[static_cast<std::size_t>(node)]);
     return x;
 }
 
-void Mortar::lay(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth) {
+void Mortar::interpolate(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth) {
     Vec3 chord = Vec3::Zero();
     for (std::size_t c = 0; c < facet.X.size(); ++c) chord += q.N(static_cast<Index>(c)) * facet.X[c];
     ContactPoint on_surface;
@@ -94,7 +94,7 @@ void Mortar::lay(GapPoint& q, const Facet& facet, Index number, const SmoothSlav
     for (const auto& [slave, share] : C) q.shares.push_back({slave, share});
 }
 
-Vec3 Mortar::position(const GapPoint& q, const std::vector<Vec3>& s, Vec3* tail) {
+Vec3 Mortar::position(const GapPoint& q, std::span<const Vec3> s, Vec3* tail) {
     Vec3 at = q.offset;
     if (q.mirrored) {
         for (const Share& share : q.shares) at += share.C * s[static_cast<std::size_t>(share.slave)];
@@ -109,31 +109,40 @@ Vec3 Mortar::position(const GapPoint& q, const std::vector<Vec3>& s, Vec3* tail)
     return at;
 }
 
-void Mortar::begin(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search,
-                   std::span<const Index> facet_of_node, int threads) {
+std::unique_ptr<Discretisation> Mortar::clone() const {
+    auto other = std::make_unique<Mortar>(surface_, std::vector<SlaveFacet>{}, std::vector<Vec3>{}, in_plane_);
+    other->facets_ = facets_;
+    for (Facet& facet : other->facets_)
+        for (GapPoint& q : facet.gap_points) q.point.trace.reset(); // refers to our placement
+    other->incident_ = incident_;
+    other->carriers_ = carriers_;
+    other->normal_length_ = normal_length_;
+    return other;
+}
+
+void Mortar::begin(const PairPositions& at, const FacetTracking& tracking, int threads) {
     parallel_for(threads, static_cast<Index>(facets_.size()), [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             Facet& facet = facets_[static_cast<std::size_t>(f)];
             for (GapPoint& q : facet.gap_points) {
-                const Index from = facet_of_node[static_cast<std::size_t>(facet.corners.node[0])];
-                q.facet = search.track(position(q, s), from, x, 0).facet;
+                const Index from = tracking.facet[static_cast<std::size_t>(facet.corners.node[0])];
+                q.facet = at.search.track(position(q, at.slaves), from, at.vertices, 0).facet;
                 q.changes = 0;
             }
         }
     });
 }
 
-int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search,
-                     double hysteresis, int changes_before_latch, std::span<const Index> node_facet,
-                     std::vector<ContactPoint>& points, int threads) {
+int Mortar::evaluate(const PairPositions& at, FacetTracking& tracking, std::vector<ContactPoint>& points, int threads) {
     const auto count = static_cast<Index>(facets_.size());
     parallel_for(threads, count, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f)
             for (GapPoint& q : facets_[static_cast<std::size_t>(f)].gap_points) {
-                const Vec3 at = position(q, s);
-                q.hit = q.changes < changes_before_latch ? search.track(at, q.facet, x, hysteresis)
-                                                         : search.closest_on(q.facet, at, x);
-                q.hit.latched = q.changes >= changes_before_latch;
+                const Vec3 s = position(q, at.slaves);
+                q.hit = q.changes < tracking.changes_before_latch
+                            ? at.search.track(s, q.facet, at.vertices, tracking.hysteresis)
+                            : at.search.closest_on(q.facet, s, at.vertices);
+                q.hit.latched = q.changes >= tracking.changes_before_latch;
             }
     });
     int changed = 0;
@@ -141,33 +150,36 @@ int Mortar::evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, con
     for (Facet& facet : facets_)
         for (GapPoint& q : facet.gap_points) {
             if (q.hit.facet != q.facet) {
-                q.changes += q.facet < 0 || q.hit.facet < 0 || master_.tells_apart(q.facet, q.hit.facet);
+                q.changes += q.facet < 0 || q.hit.facet < 0 || at.master.tells_apart(q.facet, q.hit.facet);
                 q.facet = q.hit.facet;
                 ++changed;
             }
             hits.push_back(q.hit);
         }
-    master_.prepare(hits, x, threads);
+    at.master.place(hits, at.vertices, threads, placement_);
     parallel_for(threads, count, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             Facet& facet = facets_[static_cast<std::size_t>(f)];
-            for (GapPoint& q : facet.gap_points) master_.evaluate(position(q, s, &q.tail), q.hit, x, q.point);
-            find_overlaps(facet, s, x);
+            for (GapPoint& q : facet.gap_points)
+                at.master.evaluate(position(q, at.slaves, &q.tail), q.hit, at.vertices, q.point, nullptr,
+                                   placement_.get());
+            find_overlaps(facet, at);
             make_duals(facet);
         }
     });
     parallel_for(threads, static_cast<Index>(points.size()), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j) {
-            points[static_cast<std::size_t>(j)].facet = node_facet[static_cast<std::size_t>(j)];
-            gather(j, x, points[static_cast<std::size_t>(j)]);
+            points[static_cast<std::size_t>(j)].facet = tracking.facet[static_cast<std::size_t>(j)];
+            gather(j, at.vertices, points[static_cast<std::size_t>(j)]);
         }
     });
     return changed;
 }
 
-void Mortar::find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
+void Mortar::find_overlaps(Facet& facet, const PairPositions& at) const {
     facet.overlaps.clear();
-    const std::vector<Vec3> corner = corners(facet, s);
+    const std::vector<Vec3>& x = at.vertices;
+    const std::vector<Vec3> corner = corners(facet, at.slaves);
     const SlavePlane plane(corner);
     // from the facets below its points on to their neighbours, as long as they overlap
     std::vector<Index> waiting, seen;
@@ -194,9 +206,9 @@ void Mortar::find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::
         facet.overlaps.push_back({candidate, std::move(points)});
         for (const Index v : surface_.facet_vertices(candidate))
             for (const Index next : surface_.vertex_facets(v)) {
-                const auto at = std::lower_bound(seen.begin(), seen.end(), next);
-                if (at != seen.end() && *at == next) continue;
-                seen.insert(at, next);
+                const auto place = std::lower_bound(seen.begin(), seen.end(), next);
+                if (place != seen.end() && *place == next) continue;
+                seen.insert(place, next);
                 waiting.push_back(next);
             }
     }
@@ -335,6 +347,46 @@ void Mortar::gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
     point.foot.setZero();
     for (std::size_t i = 0; i < carrying.size(); ++i)
         point.foot += point.weights(static_cast<Index>(i)) * x[static_cast<std::size_t>(carrying[i])];
+}
+
+Index Mortar::carriers(Index j, const ContactPoint&) const {
+    return carriers_[static_cast<std::size_t>(j)];
+}
+
+void Mortar::force_change(const ContactPoint&, const Vec3& lambda, const Vec3&, std::span<const double> dweights,
+                          const double*, double* df) const {
+    // p_i = -W_i n: what is left is f_i = -W_i lambda
+    for (std::size_t i = 0; i < dweights.size(); ++i) Eigen::Map<Vec3>(df + 3 * i) = -dweights[i] * lambda;
+}
+
+void Mortar::weights_along(const ContactPoint&, const ContactVariation& variation, const Vector& dy, Vector& dweights,
+                           Vector&) const {
+    dweights.noalias() = variation.dweights * dy;
+}
+
+double Mortar::gap_rounded_off(Index j, const PairPositions& at, const ContactPoint&) const {
+    double lost = 0;
+    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+        const Facet& facet = facets_[static_cast<std::size_t>(f)];
+        if (!facet.gap_dual.usable) continue;
+        for (const GapPoint& q : facet.gap_points) {
+            if (!q.point.found) continue;
+            Vec3 tail = q.tail;
+            for (const Share& share : q.shares) tail += share.C * at.slave_tails[static_cast<std::size_t>(share.slave)];
+            double of_gap = q.point.normal.dot(tail);
+            for (std::size_t i = 0; i < q.point.nodes.size(); ++i)
+                of_gap += q.point.pressing.row(static_cast<Index>(i))
+                              .dot(at.vertex_tails[static_cast<std::size_t>(q.point.nodes[i])]);
+            lost += q.weight * facet.gap_dual.A.row(c).dot(q.N.head(facet.corners.count)) * of_gap;
+        }
+    }
+    return lost / gap_area(j);
+}
+
+void Mortar::follow(const FacetHit&, const ContactPoint& point, Index carried, std::vector<Index>& vertices,
+                    std::vector<double>& shares) const {
+    vertices.assign(point.nodes.begin(), point.nodes.begin() + carried);
+    shares.assign(point.weights.begin(), point.weights.begin() + carried);
 }
 
 } // namespace osculate::contact

@@ -8,21 +8,20 @@
 
 namespace osculate::contact {
 
-void Mortar::prepare_variations(const std::vector<Vec3>& s, const std::vector<Vec3>& x, std::span<const char> wanted,
-                                int threads) {
+void Mortar::prepare_variations(const PairPositions& at, std::span<const char> wanted, int threads) {
     parallel_for(threads, static_cast<Index>(facets_.size()), [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             Facet& facet = facets_[static_cast<std::size_t>(f)];
             if (std::none_of(facet.corners.begin(), facet.corners.end(),
                              [&](Index j) { return wanted[static_cast<std::size_t>(j)] != 0; }))
                 continue;
-            if (facet.gap_dual.usable) vary_gap(facet, s, x);
-            if (facet.weight_dual.usable) vary_weights(facet, s, x);
+            if (facet.gap_dual.usable) vary_gap(facet, at);
+            if (facet.weight_dual.usable) vary_weights(facet, at);
         }
     });
 }
 
-void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
+void Mortar::vary_gap(Facet& facet, const PairPositions& at) const {
     const int n = facet.corners.count;
     facet.gap_vertices.clear();
     for (const GapPoint& q : facet.gap_points)
@@ -37,7 +36,7 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
     variation.form = VariationForm::gap;
     for (const GapPoint& q : facet.gap_points) {
         if (!q.point.found) continue;
-        master_.vary(position(q, s), q.hit, x, q.point, variation);
+        at.master.vary(position(q, at.slaves), q.hit, at.vertices, q.point, variation);
         const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1> psi = q.weight * (facet.gap_dual.A * q.N.head(n));
         const auto add = [&](Index to, const Eigen::RowVector3d& dg, const Mat3& dn) {
             for (int c = 0; c < n; ++c) {
@@ -56,7 +55,7 @@ void Mortar::vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vecto
     }
 }
 
-void Mortar::vary_weights(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
+void Mortar::vary_weights(Facet& facet, const PairPositions& positions) const {
     // at fixed xi, along the slave plane's normal d:  X(u) = s + t d
     //     du_a = b^a . (ds - N_i dx_i + t dd),   b^a . X,b = delta_ab,  b^a . d = 0,   dd = (I - d d^T) dA / |A|
     // what moves with the borders of the overlaps cancels, since N_i runs on across them
@@ -69,7 +68,8 @@ void Mortar::vary_weights(Facet& facet, const std::vector<Vec3>& s, const std::v
     sort_unique(facet.weight_vertices);
     const auto count = static_cast<Index>(facet.weight_vertices.size());
     facet.dweights.setZero(n * count, 3 * (n + count));
-    const std::vector<Vec3> corner = corners(facet, s);
+    const std::vector<Vec3>& x = positions.vertices;
+    const std::vector<Vec3> corner = corners(facet, positions.slaves);
     const SlavePlane plane(corner);
     const Vec3& d = plane.normal();
     // d(2A) of each corner, as the vector e of  dA = e x dx
@@ -119,8 +119,9 @@ void Mortar::vary_weights(Facet& facet, const std::vector<Vec3>& s, const std::v
     }
 }
 
-void Mortar::vary(Index j, const ContactPoint& point, ContactVariation& variation) const {
-    const Index carried = carriers(j);
+void Mortar::vary(Index j, const PairPositions&, const FacetHit&, const ContactPoint& point,
+                  ContactVariation& variation) const {
+    const Index carried = carriers(j, point);
     const auto columns = 3 + 3 * static_cast<Index>(point.nodes.size());
     variation.dg.setZero(columns);
     variation.dn.setZero(3, columns);

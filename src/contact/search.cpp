@@ -52,42 +52,49 @@ struct FacetSearch::Tree {
     bgi::rtree<Leaf, bgi::rstar<16>> boxes;
 };
 
-FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface) : surface_(&surface) {
+FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface, Rules rules) : surface_(&surface) {
     for (Index f = 0; f < surface.facet_count(); ++f) {
         const std::vector<Index> around = surface.vertex_neighbours(f);
-        neighbours_.insert(neighbours_.end(), around.begin(), around.end());
-        neighbour_start_.push_back(static_cast<Index>(neighbours_.size()));
+        rules.neighbours.insert(rules.neighbours.end(), around.begin(), around.end());
+        rules.neighbour_start.push_back(static_cast<Index>(rules.neighbours.size()));
     }
+    rules_ = std::make_shared<const Rules>(std::move(rules));
 }
+
+FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface) : FacetSearch(surface, Rules{}) {}
+
 FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const Vec3& about)
-    : FacetSearch(surface) {
-    for (Index f = 0; f < surface.facet_count(); ++f) {
-        const auto vertices = surface.facet_vertices(f);
-        Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
-        for (std::size_t b = 0; b < vertices.size(); ++b) {
-            const Vec3 here = X[vertices[b]] - about, next = X[vertices[(b + 1) % vertices.size()]] - about;
-            centre += here / static_cast<double>(vertices.size());
-            area += here.cross(next);
-        }
-        centre_.push_back(centre);
-        normal_.push_back(area.normalized());
-    }
-}
+    : FacetSearch(surface, [&] {
+          Rules rules;
+          for (Index f = 0; f < surface.facet_count(); ++f) {
+              const auto vertices = surface.facet_vertices(f);
+              Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
+              for (std::size_t b = 0; b < vertices.size(); ++b) {
+                  const Vec3 here = X[vertices[b]] - about, next = X[vertices[(b + 1) % vertices.size()]] - about;
+                  centre += here / static_cast<double>(vertices.size());
+                  area += here.cross(next);
+              }
+              rules.centre.push_back(centre);
+              rules.normal.push_back(area.normalized());
+          }
+          return rules;
+      }()) {}
 
 FacetHit FacetSearch::best_of(std::vector<FacetHit>& hits) const {
     FacetHit best;
     best.distance = std::numeric_limits<double>::max();
     for (const FacetHit& hit : hits)
         if (hit.distance < best.distance || (hit.distance == best.distance && hit.facet < best.facet)) best = hit;
-    if (best.facet < 0 || centre_.empty()) return best;
+    const std::vector<Vec3>&centre = rules_->centre, &normal = rules_->normal;
+    if (best.facet < 0 || centre.empty()) return best;
     // what is equal but for round-off is told apart all at once: one by one, the order would decide
     const double size = surface_->facet_size(best.facet);
     std::erase_if(hits, [&](const FacetHit& hit) { return hit.distance > best.distance + tie * size; });
     double nearest = std::numeric_limits<double>::max();
-    for (const FacetHit& hit : hits) nearest = std::min(nearest, centre_[hit.facet].norm());
-    std::erase_if(hits, [&](const FacetHit& hit) { return centre_[hit.facet].norm() > nearest + tie * size; });
+    for (const FacetHit& hit : hits) nearest = std::min(nearest, centre[hit.facet].norm());
+    std::erase_if(hits, [&](const FacetHit& hit) { return centre[hit.facet].norm() > nearest + tie * size; });
     const auto turns = [&](const FacetHit& a, const FacetHit& b) {
-        return centre_[a.facet].cross(centre_[b.facet]).dot(normal_[a.facet] + normal_[b.facet]) > tie * size * size;
+        return centre[a.facet].cross(centre[b.facet]).dot(normal[a.facet] + normal[b.facet]) > tie * size * size;
     };
     const FacetHit* lowest = &hits.front();
     for (const FacetHit& a : hits) {
@@ -98,6 +105,7 @@ FacetHit FacetSearch::best_of(std::vector<FacetHit>& hits) const {
 }
 
 FacetSearch::~FacetSearch() = default;
+FacetSearch::FacetSearch(const FacetSearch& other) : surface_(other.surface_), rules_(other.rules_) {}
 FacetSearch::FacetSearch(FacetSearch&&) noexcept = default;
 FacetSearch& FacetSearch::operator=(FacetSearch&&) noexcept = default;
 
@@ -194,16 +202,16 @@ FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& 
         const Index centre = best.facet;
         hits.assign(1, best);
         double reach = best.distance + tie * surface_->facet_size(centre);
-        for (Index k = neighbour_start_[centre]; k < neighbour_start_[centre + 1]; ++k) {
+        for (Index k = rules_->neighbour_start[centre]; k < rules_->neighbour_start[centre + 1]; ++k) {
             // no point of the facet is closer than the box of its corners
-            Vec3 low = x[surface_->facet_vertices(neighbours_[k])[0]], high = low;
-            for (const Index v : surface_->facet_vertices(neighbours_[k])) {
+            Vec3 low = x[surface_->facet_vertices(rules_->neighbours[k])[0]], high = low;
+            for (const Index v : surface_->facet_vertices(rules_->neighbours[k])) {
                 low = low.cwiseMin(x[v]);
                 high = high.cwiseMax(x[v]);
             }
             if ((low - s).cwiseMax(s - high).cwiseMax(0).squaredNorm() > reach * reach) continue;
-            hits.push_back(closest_on(neighbours_[k], s, x));
-            reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(neighbours_[k]));
+            hits.push_back(closest_on(rules_->neighbours[k], s, x));
+            reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(rules_->neighbours[k]));
         }
         best = best_of(hits);
         if (best.facet < 0) return old; // no distances are numbers

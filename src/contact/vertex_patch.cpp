@@ -243,12 +243,21 @@ std::vector<Index> VertexPatches::looked_at(Index patch) const {
     return corners(topology(), facets);
 }
 
+Index VertexPatches::own(Index vertex) const {
+    // vertices of the merged surface are ascending in those of the original
+    if (!merged_) return vertex;
+    return static_cast<Index>(std::ranges::lower_bound(merged_->vertex, vertex) - merged_->vertex.begin());
+}
+
+std::vector<Vec3> VertexPatches::kept(const std::vector<Vec3>& x) const {
+    if (!merged_) return x;
+    std::vector<Vec3> at;
+    for (const Index v : merged_->vertex) at.push_back(x[v]);
+    return at;
+}
+
 bool VertexPatches::fit(Index p, const std::vector<Vec3>& x) {
     VertexPatch& patch = patches[p];
-    const auto own = [&](Index v) { // vertices of the merged surface are ascending in those of the original
-        if (!merged_) return v;
-        return static_cast<Index>(std::ranges::lower_bound(merged_->vertex, v) - merged_->vertex.begin());
-    };
     auto fresh = make_patch(topology(), own(patch.vertex), patch.sector, x, options_);
     if (!fresh) return false;
     if (merged_) {
@@ -262,23 +271,26 @@ bool VertexPatches::fit(Index p, const std::vector<Vec3>& x) {
     return true;
 }
 
-std::vector<Index> VertexPatches::refresh(const std::vector<Vec3>& x) {
+std::vector<Index> VertexPatches::bent(const std::vector<Vec3>& x) const {
     constexpr double most_turning = 60 * std::numbers::pi / 180;
-    std::vector<Vec3> kept;
-    if (merged_)
-        for (const Index v : merged_->vertex) kept.push_back(x[v]);
-    const std::vector<Vec3>& at = merged_ ? kept : x;
+    const std::vector<Vec3> at = kept(x);
     std::vector<Index> result;
     for (std::size_t p = 0; p < patches.size(); ++p) {
         const VertexPatch& patch = patches[p];
-        const auto own = merged_ ? std::ranges::lower_bound(merged_->vertex, patch.vertex) - merged_->vertex.begin()
-                                 : std::ptrdiff_t{patch.vertex};
-        const std::vector<double> now = turns(topology(), static_cast<Index>(own), patch.sector, patch.facets, at);
+        const std::vector<double> now = turns(topology(), own(patch.vertex), patch.sector, patch.facets, at);
         bool turned = false;
         for (std::size_t f = 0; f < now.size(); ++f) turned = turned || std::abs(now[f] - patch.turn[f]) > most_turning;
-        if (turned && fit(static_cast<Index>(p), at)) result.push_back(static_cast<Index>(p));
+        if (turned) result.push_back(static_cast<Index>(p));
     }
     return result;
+}
+
+Index VertexPatches::fit(const std::vector<Index>& list, const std::vector<Vec3>& x) {
+    const std::vector<Vec3> at = kept(x);
+    Index done = 0;
+    for (const Index p : list) done += fit(p, at) ? 1 : 0;
+    refits += done;
+    return done;
 }
 
 std::vector<RefittedPatch> VertexPatches::refitted() const {
@@ -296,6 +308,7 @@ bool VertexPatches::refit(const std::vector<RefittedPatch>& list) {
         for (std::size_t k = 0; k < at.size(); ++k) x[vertices[k]] = at[k];
         if (!fit(patch, x)) return false;
     }
+    refits += static_cast<Index>(list.size());
     return true;
 }
 

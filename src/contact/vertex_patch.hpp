@@ -35,10 +35,12 @@ struct VertexPatches {
     Index fallbacks = 0; ///< vertices merged, without a patch, or with a smaller or simpler one than asked for
 
     VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options);
-    /// Fits anew at x the patches one of whose facets has turned against the vertex by more than 60 degrees since the last
-    /// fit: their natural coordinates no longer tell how far nodes are apart. Keeps a patch that x folds over.
-    /// @returns the patches fitted anew, ascending
-    std::vector<Index> refresh(const std::vector<Vec3>& x);
+    /// Patches one of whose facets has turned against the vertex by more than 60 degrees since the last fit, vertices at x:
+    /// their natural coordinates no longer tell how far nodes are apart. Ascending.
+    [[nodiscard]] std::vector<Index> bent(const std::vector<Vec3>& x) const;
+    /// Fits these anew at x; one that x folds over stays as it is. @returns how many
+    Index fit(const std::vector<Index>& list, const std::vector<Vec3>& x);
+    Index refits = 0; ///< fits anew so far
     /// See MasterSurface. Positions are those of the vertices that a fit looks at, see looked_at().
     [[nodiscard]] std::vector<RefittedPatch> refitted() const;
     [[nodiscard]] bool refit(const std::vector<RefittedPatch>& list);
@@ -48,11 +50,16 @@ private:
     [[nodiscard]] const mesh::HalfEdgeSurface& topology() const { return merged_ ? merged_->topology : *surface_; }
     /// Vertices of the topology that a fit of a patch may look at, ascending.
     [[nodiscard]] std::vector<Index> looked_at(Index patch) const;
+    /// Positions of the topology's vertices, given those of all.
+    [[nodiscard]] std::vector<Vec3> kept(const std::vector<Vec3>& x) const;
+    /// Number of a vertex in the topology.
+    [[nodiscard]] Index own(Index vertex) const;
     /// Fits a patch anew at positions of the topology's vertices. False where none fits: it stays as it was.
     bool fit(Index patch, const std::vector<Vec3>& x);
 
     const mesh::HalfEdgeSurface* surface_;
-    std::unique_ptr<MergedSurface> merged_; ///< what patches are made on, where near-duplicate vertices are merged
+    std::shared_ptr<const MergedSurface>
+        merged_; ///< what patches are made on, where near-duplicate vertices are merged
     BlendOptions options_;
     std::map<Index, std::vector<Vec3>> fitted_at_; ///< (looked_at) of the patches fitted anew, at their last fit
 };

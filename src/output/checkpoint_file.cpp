@@ -115,7 +115,7 @@ Json to_json(const model::ContactHistory& history) {
 
 model::ContactHistory contact_history(const Json& json) {
     return {unpacked_matrices<Vec3>(json, "lambda"), unpacked<contact::Status>(json, "status"),
-            unpacked<Index>(json, "facet")};
+            unpacked<Index>(json, "facet"), nullptr};
 }
 
 /// Nodes, each with other nodes: couplings and springs.

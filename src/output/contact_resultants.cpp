@@ -12,7 +12,7 @@ Index body_of(const model::Model& model, Index node) {
 } // namespace
 
 ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
-    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    const model::ContactPair& term = *snapshot.model().pairs[pair];
     const std::vector<contact::Status>& status = snapshot.state().contact[pair].status;
     ContactResultants sum;
     if (snapshot.audit() != nullptr)
@@ -20,7 +20,8 @@ ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
                                                     body_of(snapshot.model(), term.master_nodes().front()));
     for (Index j = 0; j < term.size(); ++j) {
         const contact::ContactState contact = snapshot.contact(pair, j);
-        const bool partner = snapshot.audit() == nullptr ? snapshot.has_partner(pair, j) : term.point(j).found;
+        const bool partner =
+            snapshot.audit() == nullptr ? snapshot.has_partner(pair, j) : snapshot.evaluation(pair).point(j).found;
         if (partner) sum.penetration = std::max(sum.penetration, -contact.gap);
         if (!contact::is_closed(status[j])) {
             ++sum.open;

@@ -177,13 +177,13 @@ bool is_own(const Snapshot& snapshot, const mesh::Facet& facet) {
 }
 
 Values master_facet(const Snapshot& snapshot, Index pair) {
-    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    const model::ContactPair& term = *snapshot.model().pairs[pair];
     std::vector<double> number; // among the model's own
     double next = 0;
     for (const mesh::Facet& facet : term.surface().facets()) number.push_back(is_own(snapshot, facet) ? next++ : -1);
     Values values;
     for (Index j = 0; j < term.size(); ++j) {
-        const Index facet = snapshot.has_partner(pair, j) ? term.hit(j).facet : -1;
+        const Index facet = snapshot.has_partner(pair, j) ? snapshot.evaluation(pair).hit(j).facet : -1;
         values.push_back(facet < 0 ? -1 : number[static_cast<std::size_t>(facet)]);
     }
     return values;
@@ -199,20 +199,22 @@ Values status(const Snapshot& snapshot, Index pair) {
 Values normal(const Snapshot& snapshot, Index pair) {
     Values values;
     for (Index j = 0; j < snapshot.model().pairs[pair]->size(); ++j) {
-        const contact::ContactPoint& point = snapshot.model().pairs[pair]->point(j);
+        const contact::ContactPoint& point = snapshot.evaluation(pair).point(j);
         append(values, point.found ? point.normal : Vec3::Zero());
     }
     return values;
 }
 
 std::vector<Vec3> forces_on_master(const Snapshot& snapshot, Index pair) {
-    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    const model::ContactEvaluation& evaluation = snapshot.evaluation(pair);
+    const model::ContactPair& term = evaluation.pair();
     std::vector<Vec3> force(term.master_nodes().size(), Vec3::Zero());
     for (Index j = 0; j < term.size(); ++j) {
-        const contact::ContactPoint& point = term.point(j);
+        const contact::ContactPoint& point = evaluation.point(j);
         if (!point.found) continue;
-        for (Index i = 0; i < term.carriers(j); ++i)
-            force[term.own_vertex(point.nodes[i])] += term.master_force(j, i, snapshot.state().contact[pair].lambda[j]);
+        for (Index i = 0; i < evaluation.carriers(j); ++i)
+            force[term.own_vertex(point.nodes[i])] +=
+                evaluation.master_force(j, i, snapshot.state().contact[pair].lambda[j]);
     }
     return force;
 }
@@ -225,7 +227,7 @@ Values master_contact_force(const Snapshot& snapshot, Index pair) {
 
 /// Force against the outward normal over the area that belongs to a vertex, by the master's own facets.
 Values master_normal_stress(const Snapshot& snapshot, Index pair) {
-    const model::ContactTerm& term = *snapshot.model().pairs[pair];
+    const model::ContactPair& term = *snapshot.model().pairs[pair];
     const std::vector<Vec3> force = forces_on_master(snapshot, pair);
     std::vector<Vec3> normal(snapshot.model().X.size(), Vec3::Zero()); // area vectors, at current positions
     std::vector<double> area(snapshot.model().X.size(), 0);

@@ -35,7 +35,7 @@ Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model
         for (const model::Body& body : model.bodies) bodies_.push_back(body.name);
     const auto slave = chosen(FieldPlace::slave, fields.slave), master = chosen(FieldPlace::master, fields.master);
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model.pairs[p];
+        const model::ContactPair& pair = *model.pairs[p];
         const auto number = static_cast<Index>(p);
         add_surface(model, pair.name() + ".slave", number, pair.slaves().node, pair.slaves().facets, slave);
         if (master.empty()) continue;

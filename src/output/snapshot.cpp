@@ -4,10 +4,11 @@
 
 namespace osculate::output {
 
-Snapshot::Snapshot(const model::Model& model, const model::State& state, std::vector<Vec3> reactions,
-                   std::vector<Vec3> out_of_balance, double dt, const contact::AuditResult* audit)
-    : model_(model), state_(state), reactions_(std::move(reactions)), out_of_balance_(std::move(out_of_balance)),
-      dt_(dt), audit_(audit) {}
+Snapshot::Snapshot(const model::Model& model, const model::State& state, const model::ContactEvaluations& contact,
+                   std::vector<Vec3> reactions, std::vector<Vec3> out_of_balance, double dt,
+                   const contact::AuditResult* audit)
+    : model_(model), state_(state), contact_(contact), reactions_(std::move(reactions)),
+      out_of_balance_(std::move(out_of_balance)), dt_(dt), audit_(audit) {}
 
 const std::vector<Vec3>& Snapshot::x() const {
     if (x_.empty()) {
@@ -24,12 +25,12 @@ const Snapshot::Stress& Snapshot::stress(Index body) const {
 }
 
 contact::ContactState Snapshot::contact(Index pair, Index slave) const {
-    const contact::ContactPoint& point = model_.pairs[pair]->point(slave);
+    const contact::ContactPoint& point = contact_[pair].point(slave);
     return {state_.contact[pair].lambda[slave], point.gap, point.normal, Vec3::Zero()};
 }
 
 bool Snapshot::has_partner(Index pair, Index slave) const {
-    const contact::ContactPoint& point = model_.pairs[pair]->point(slave);
+    const contact::ContactPoint& point = contact_[pair].point(slave);
     return point.found || point.behind;
 }
 

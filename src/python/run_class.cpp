@@ -218,7 +218,7 @@ Session& session_of(const PairOf& pair) {
     return pair.run.cast<Session&>();
 }
 
-const model::ContactTerm& term(const PairOf& pair) {
+const model::ContactPair& term(const PairOf& pair) {
     return *session_of(pair).model().pairs[static_cast<std::size_t>(pair.index)];
 }
 

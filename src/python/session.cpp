@@ -53,11 +53,10 @@ void Session::go_on() {
     if (phase_ == Phase::ended || phase_ == Phase::running) return;
     // after the last step nothing is evaluated any more: it can be looked at for good
     const bool last = phase_ == Phase::step && state().time >= stepper_.end_time() * (1 - 1e-12);
-    if (last) (void)snapshot(true);
-    if (!last) {
-        looked_at_ = false;
+    if (last)
+        keep_last();
+    else
         snapshot_.reset();
-    }
     equilibrium_ = nullptr;
     pausing_ = false;
     const bool first = phase_ == Phase::created;
@@ -80,24 +79,30 @@ void Session::pause() {
 void Session::close() {
     {
         const std::scoped_lock lock(mutex_);
+        keep_last();
         closing_ = true;
         if (!thread_.joinable()) phase_ = Phase::ended;
     }
     changed_.notify_all();
     if (thread_.joinable()) thread_.join();
+}
+
+void Session::keep_last() {
+    if (equilibrium_ == nullptr || phase_ != Phase::step) return;
+    last_ = equilibrium_->contact();
+    std::vector<Vec3> reactions = output::nodal_reactions(equilibrium_->constraints(), equilibrium_->unbalanced());
+    has_reactions_ = true;
+    snapshot_.emplace(model(), state(), last_, std::move(reactions), std::vector<Vec3>{}, step_.dt);
     equilibrium_ = nullptr;
 }
 
 const output::Snapshot* Session::snapshot(bool reactions) {
-    if (!looked_at_ || phase_ == Phase::running) return nullptr;
-    if (!snapshot_ || (reactions && !has_reactions_)) {
-        std::vector<Vec3> values;
-        if (reactions) {
-            if (equilibrium_ == nullptr) return nullptr;
-            values = output::nodal_reactions(equilibrium_->constraints(), equilibrium_->unbalanced());
-        }
-        has_reactions_ = reactions;
-        snapshot_.emplace(model(), state(), std::move(values), std::vector<Vec3>{}, step_.dt);
+    if (!snapshot_ || phase_ == Phase::running) return nullptr;
+    if (reactions && !has_reactions_) { // of the step it waits in
+        has_reactions_ = true;
+        snapshot_.emplace(model(), state(), equilibrium_->contact(),
+                          output::nodal_reactions(equilibrium_->constraints(), equilibrium_->unbalanced()),
+                          std::vector<Vec3>{}, step_.dt);
     }
     return &*snapshot_;
 }
@@ -151,12 +156,12 @@ void Session::accepted(const time::AcceptedStep& step) {
     std::vector<Vec3> reactions;
     if (reactions_) reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
     has_reactions_ = reactions_;
-    snapshot_.emplace(model(), step.state, std::move(reactions), std::vector<Vec3>{}, step.dt);
+    snapshot_.emplace(model(), step.state, step.equilibrium.contact(), std::move(reactions), std::vector<Vec3>{},
+                      step.dt);
     history_.push_back(output::History::cells(*snapshot_, constraints, step.dt, step.iterations,
                                               loaded_.scene.output.history_pairs, sets_, ledger_, step.ledger));
     step_ = {step_.number + 1, step.state.time, step.dt, step.iterations, step.stage.name};
     equilibrium_ = &step.equilibrium;
-    looked_at_ = true;
     wait_at(Phase::step);
 }
 

@@ -75,7 +75,7 @@ public:
     [[nodiscard]] const model::State& state() const { return stepper_.state(); }
     [[nodiscard]] int threads() const { return threads_; }
     /// The last accepted step as fields look at it; null while the run computes, before its first step, and after it gave up
-    /// or was stopped within a step: contact points are those of another state then.
+    /// or was stopped within a step.
     /// @param reactions  whether it has to have them
     [[nodiscard]] const output::Snapshot* snapshot(bool reactions);
     [[nodiscard]] const std::vector<std::string>& history_columns() const { return columns_; }
@@ -88,6 +88,8 @@ private:
     void gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) override;
     void work();
     void wait_at(Phase phase);
+    /// Copies what the step it waits in is looked at with: nothing of it is left behind the step.
+    void keep_last();
 
     int threads_;
     Timings timings_;
@@ -106,9 +108,9 @@ private:
     int rejected_ = 0;
     bool completed_ = false;
     const time::Equilibrium* equilibrium_ = nullptr; ///< while it waits in a step
-    bool looked_at_ = false;                         ///< contact points are those of the state
     bool has_reactions_ = false;
-    std::optional<output::Snapshot> snapshot_;
+    model::ContactEvaluations last_;           ///< see keep_last()
+    std::optional<output::Snapshot> snapshot_; ///< of the last accepted step; none while the run computes
     std::exception_ptr failure_;
     std::string post_mortem_;
 

@@ -10,7 +10,7 @@ namespace osculate::time {
 
 using contact::Status;
 using model::Body;
-using model::ContactTerm;
+using model::ContactPair;
 
 namespace {
 
@@ -20,7 +20,7 @@ std::vector<Vec3> positions(const model::Model& model, const model::State& state
     return x;
 }
 
-bool takes_part(const model::Model& model, const ContactTerm& pair, const Body& body) {
+bool takes_part(const model::Model& model, const ContactPair& pair, const Body& body) {
     return body_of(model, pair.slaves().node.front()) == &body || body_of(model, pair.master_nodes().front()) == &body;
 }
 
@@ -49,19 +49,23 @@ std::vector<BodyHold> holds_before(const FailedAttempt& failed) {
     const model::Model& model = failed.model;
     Timings unused;
     const std::vector<Vec3> x = positions(model, failed.last);
-    for (const auto& pair : model.pairs) pair->evaluate(x, unused, 1);
+    model::ContactEvaluations contact = model::contact_evaluations(model);
+    for (std::size_t p = 0; p < contact.size(); ++p) {
+        contact[p].begin_step(x, failed.last.contact[p], unused, 1);
+        contact[p].evaluate(x, unused, 1);
+    }
     std::vector<BodyHold> holds;
     for (const Body& body : model.bodies) {
         BodyHold& one = holds.emplace_back();
         one.body = body.name;
         double nearest = std::numeric_limits<double>::infinity();
         for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-            const ContactTerm& pair = *model.pairs[p];
+            const ContactPair& pair = contact[p].pair();
             if (!takes_part(model, pair, body)) continue;
             one.in_pair = true;
             one.touched += std::ranges::count_if(failed.last.contact[p].status, contact::is_closed);
             for (Index j = 0; j < pair.size(); ++j) {
-                const contact::ContactPoint& point = pair.point(j);
+                const contact::ContactPoint& point = contact[p].point(j);
                 if (!point.found || point.gap >= nearest) continue;
                 nearest = point.gap;
                 one.nearest_pair = pair.name();
@@ -88,15 +92,16 @@ void hold_now(const FailedAttempt& failed, const Equilibrium& equilibrium, const
                 if (constraints.constraint(node, k) != nullptr) hold.hold(x[node], constraints.frame(node).col(k));
         one.free_by_supports = hold.free();
         for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-            const ContactTerm& pair = *model.pairs[p];
+            const model::ContactEvaluation& evaluation = equilibrium.contact()[p];
+            const ContactPair& pair = evaluation.pair();
             if (!takes_part(model, pair, body)) continue;
             for (Index j = 0; j < pair.size(); ++j) {
                 const Status status = state.contact[p].status[j];
-                if (!contact::is_closed(status) || !pair.point(j).found) continue;
+                if (!contact::is_closed(status) || !evaluation.point(j).found) continue;
                 ++one.touching;
-                one.pressed += state.contact[p].lambda[j].dot(pair.point(j).normal) >= -round_off;
+                one.pressed += state.contact[p].lambda[j].dot(evaluation.point(j).normal) >= -round_off;
                 const Vec3& s = x[pair.slaves().node[j]];
-                hold.hold(s, pair.point(j).normal);
+                hold.hold(s, evaluation.point(j).normal);
                 if (status == Status::stick)
                     for (int k = 0; k < 3; ++k) hold.hold(s, Vec3::Unit(k));
             }

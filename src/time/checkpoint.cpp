@@ -19,7 +19,7 @@ template <class T> bool finite(const std::vector<T>& values) {
     return std::ranges::all_of(values, [](const T& value) { return value.allFinite(); });
 }
 
-std::string misfit(const model::ContactHistory& history, const model::ContactTerm& pair) {
+std::string misfit(const model::ContactHistory& history, const model::ContactPair& pair) {
     const auto slaves = static_cast<std::size_t>(pair.size());
     const std::string whose = " of pair '" + pair.name() + "'";
     if (history.lambda.size() != slaves || history.status.size() != slaves || history.facet.size() != slaves)

@@ -21,21 +21,23 @@ std::vector<contact::MovingFacets::Corners> corners(const mesh::HalfEdgeSurface&
 }
 } // namespace
 
-CollisionCheck::CollisionCheck(model::Model& model, const StepLimits& limits, bool paths, Timings& timings, int threads)
-    : model_(model), limits_(limits), paths_(paths), timings_(timings), threads_(threads) {}
+CollisionCheck::CollisionCheck(const model::Model& model, model::ContactEvaluations& contact, const StepLimits& limits,
+                               bool paths, Timings& timings, int threads)
+    : model_(model), contact_(contact), limits_(limits), paths_(paths), timings_(timings), threads_(threads) {}
 
 void CollisionCheck::begin_step(const model::State& state) {
     x_ = model_.X;
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state.u[i];
     starts_.clear();
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactTerm& pair = *model_.pairs[p];
-        pair.begin_step(x_, state.contact[p], timings_, threads_);
-        pair.evaluate(x_, timings_, threads_);
+        model::ContactEvaluation& evaluation = contact_[p];
+        const model::ContactPair& pair = evaluation.pair();
+        evaluation.begin_step(x_, state.contact[p], timings_, threads_);
+        evaluation.evaluate(x_, timings_, threads_);
         auto& list = starts_.emplace_back(static_cast<std::size_t>(pair.size()));
         for (Index j = 0; j < pair.size(); ++j) {
-            const contact::ContactPoint& point = pair.point(j);
-            const contact::FacetHit& hit = pair.hit(j);
+            const contact::ContactPoint& point = evaluation.point(j);
+            const contact::FacetHit& hit = evaluation.hit(j);
             Start& start = list[j];
             start.closed = contact::is_closed(state.contact[p].status[j]);
             start.facet = hit.facet;
@@ -50,7 +52,7 @@ void CollisionCheck::begin_step(const model::State& state) {
 }
 
 double CollisionCheck::length(std::size_t p, Index facet) const {
-    const model::ContactTerm& pair = *model_.pairs[p];
+    const model::ContactPair& pair = *model_.pairs[p];
     const double unit = limits_.in_metres ? 1 : pair.surface().facet_size(facet);
     return std::min(unit, deepest * pair.thickness(facet) / limits_.allowed_interpenetration);
 }
@@ -67,7 +69,7 @@ bool CollisionCheck::speaks_by_normal(std::size_t p, const Start& start) const {
 }
 
 bool CollisionCheck::sheet_lost(std::size_t p, Index j) const {
-    const contact::ContactPoint& point = model_.pairs[p]->point(j);
+    const contact::ContactPoint& point = contact_[p].point(j);
     return !point.found || point.normal.dot(starts_[p][j].normal) <= same_side;
 }
 
@@ -76,7 +78,7 @@ void CollisionCheck::add_trial(const std::vector<Vec3>& u, StepEvidence& evidenc
     for (std::size_t p = 0; p < starts_.size(); ++p)
         for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
             const Start& start = starts_[p][j];
-            const contact::ContactPoint& point = model_.pairs[p]->point(j);
+            const contact::ContactPoint& point = contact_[p].point(j);
             if (start.closed || !start.found || !(point.found || point.behind)) continue;
             if (paths_ && sheet_lost(p, j)) continue; // of another sheet: told by motion or path
             // an initial overlap: no step is short enough, and the equilibrium with contact lifts it
@@ -93,7 +95,7 @@ void CollisionCheck::add_solution(const std::vector<Vec3>& u, StepEvidence& evid
 
 void CollisionCheck::add_normal_motions(const std::vector<Vec3>& u, StepEvidence& evidence) const {
     for (std::size_t p = 0; p < starts_.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
+        const model::ContactPair& pair = *model_.pairs[p];
         for (Index j = 0; j < pair.size(); ++j) {
             const Start& start = starts_[p][j];
             if (!speaks_by_normal(p, start) || !sheet_lost(p, j)) continue;
@@ -111,7 +113,7 @@ void CollisionCheck::add_paths(const std::vector<Vec3>& u, StepEvidence& evidenc
     std::vector<Vec3> x = model_.X;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += u[i];
     for (std::size_t p = 0; p < starts_.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
+        const model::ContactPair& pair = *model_.pairs[p];
         // motion relative to the mean of the master's
         const std::vector<Vec3> v0 = pair.vertices(x_), v1 = pair.vertices(x);
         Vec3 mean = Vec3::Zero();
@@ -135,7 +137,7 @@ void CollisionCheck::add_paths(const std::vector<Vec3>& u, StepEvidence& evidenc
 void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, const std::vector<Vec3>& x,
                             StepEvidence& evidence) {
     const ScopedTimer timer(timings_, Part::search);
-    const model::ContactTerm& pair = *model_.pairs[p];
+    const model::ContactPair& pair = *model_.pairs[p];
     const contact::MovingFacets facets(corners(pair.surface()), pair.vertices(x_), pair.vertices(x));
     const auto tolerated = [&](Index facet) { return allowed(p, facet); };
     for (const Index j : slaves) {
@@ -144,7 +146,7 @@ void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, con
         const auto passage = facets.first_passage(x_[node], x[node], tolerated);
         if (!passage) continue;
         const contact::Crossing& entry = passage->entry;
-        const contact::ContactPoint& point = pair.point(j);
+        const contact::ContactPoint& point = contact_[p].point(j);
         if (!passage->left && point.found && point.normal.dot(entry.normal) > same_side) {
             // it ends behind facets of a sheet that it sees: what counts is the gap, that of a smooth surface perhaps
             const std::vector<Index> around = pair.surface().vertex_neighbours(entry.facet);

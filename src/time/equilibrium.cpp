@@ -12,25 +12,26 @@ namespace osculate::time {
 using contact::Status;
 using model::Constraints;
 
-Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, const Dynamics* dynamics,
+Equilibrium::Equilibrium(const model::Model& model, const Constraints& constraints, const Dynamics* dynamics,
                          Timings& timings, int threads, bool follower_pressure, LinearSolver linear)
     : model_(model), constraints_(constraints), timings_(timings), threads_(threads), linear_(linear),
-      bodies_(model, dynamics, follower_pressure, threads), first_coupling_{0} {
+      bodies_(model, dynamics, follower_pressure, threads),
+      contact_(model::contact_evaluations(model)), first_coupling_{0} {
     std::vector<model::Coupling> couplings;
-    for (auto& pair : model.pairs) {
+    for (model::ContactEvaluation& evaluation : contact_) {
+        const model::ContactPair& pair = evaluation.pair();
         std::vector<char> held;
-        for (const Index node : pair->slaves().node) {
+        for (const Index node : pair.slaves().node) {
             couplings.push_back({node, {}});
             bool any = false;
             for (int k = 0; k < 3; ++k)
                 if (const auto* c = constraints.constraint(node, k)) any = any || !c->symmetry;
             held.push_back(any);
         }
-        pair->hold(std::move(held));
-        pair->set_inertia(std::vector<double>(static_cast<std::size_t>(pair->size()), 0.0));
+        evaluation.hold(std::move(held));
         first_coupling_.push_back(static_cast<Index>(couplings.size()));
-        lambda_.emplace_back(pair->slaves().node.size(), Vec3::Zero());
-        statuses_.emplace_back(pair->slaves().node.size(), Status::open);
+        lambda_.emplace_back(pair.slaves().node.size(), Vec3::Zero());
+        statuses_.emplace_back(pair.slaves().node.size(), Status::open);
     }
     const ScopedTimer timer(timings_, Part::assembly);
     matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), std::move(couplings),
@@ -55,7 +56,7 @@ Equilibrium::Equilibrium(model::Model& model, const Constraints& constraints, co
     }
     const auto n = static_cast<std::size_t>(model.nodes());
     u_.assign(n, Vec3::Zero());
-    x_ = internal_ = unbalanced_ = tail_ = tail_start_ = u_;
+    x_ = internal_ = unbalanced_ = tail_ = u_;
 }
 
 void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double dt) {
@@ -67,18 +68,17 @@ void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double
         if (changed) {
             matrix_->stiffness_changed();
             if (preconditioner_) preconditioner_->stiffness_changed();
-            for (auto& pair : model_.pairs) {
+            for (model::ContactEvaluation& evaluation : contact_) {
                 std::vector<double> inertia;
-                for (const Index node : pair->slaves().node) inertia.push_back(bodies_.inertia(node));
-                pair->set_inertia(std::move(inertia));
+                for (const Index node : evaluation.pair().slaves().node) inertia.push_back(bodies_.inertia(node));
+                evaluation.set_inertia(std::move(inertia));
             }
         }
     }
     u_ = state.u;
     place();
-    tail_start_ = tail_;
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
-        model_.pairs[p]->begin_step(x_, state.contact[p], timings_, threads_);
+    for (std::size_t p = 0; p < contact_.size(); ++p)
+        contact_[p].begin_step(x_, state.contact[p], timings_, threads_, tail_);
     records_.clear();
     recent_statuses_.clear();
     visits_.clear();
@@ -180,8 +180,10 @@ model::State Equilibrium::state(const Vector& z) const {
     state.u = displacements(z);
     bodies_.complete(state);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
-        model::ContactHistory history{std::vector<Vec3>(statuses_[p].size()), statuses_[p], pair.facets()};
+        const model::ContactEvaluation& evaluation = contact_[p];
+        const model::ContactPair& pair = evaluation.pair();
+        model::ContactHistory history{std::vector<Vec3>(statuses_[p].size()), statuses_[p], evaluation.facets(),
+                                      evaluation.master()};
         for (Index j = 0; j < pair.size(); ++j) {
             const Vec3 local = z.segment<3>(matrix_->multiplier(first_coupling_[p] + j));
             history.lambda[j] = constraints_.to_global(pair.slaves().node[j], local);
@@ -196,10 +198,11 @@ model::State Equilibrium::state(const Vector& z) const {
 std::vector<std::vector<Status>> Equilibrium::natural_statuses() const {
     std::vector<std::vector<Status>> statuses;
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
+        const model::ContactEvaluation& evaluation = contact_[p];
+        const model::ContactPair& pair = evaluation.pair();
         auto& list = statuses.emplace_back(static_cast<std::size_t>(pair.size()), Status::open);
         for (Index j = 0; j < pair.size(); ++j)
-            if (pair.point(j).found) list[j] = pair.law(j).status(contact_state(p, j));
+            if (evaluation.point(j).found) list[j] = evaluation.law(j).status(evaluation.state(j, lambda_[p][j]));
     }
     return statuses;
 }
@@ -239,7 +242,7 @@ solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* 
     last_z_ = Eigen::Map<const Vector>(z, size_);
     unpack(z);
     if (!evaluate_bodies()) return Verdict::shorten;
-    for (auto& pair : model_.pairs) pair->evaluate(x_, timings_, threads_);
+    for (model::ContactEvaluation& evaluation : contact_) evaluation.evaluate(x_, timings_, threads_, tail_);
 
     int status_changes = 0;
     if (rule_ == StatusRule::natural && !force_next_) {
@@ -251,7 +254,7 @@ solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* 
     // a status that was imposed cannot hold where there is no contact partner
     for (std::size_t p = 0; p < statuses_.size(); ++p)
         for (Index j = 0; j < model_.pairs[p]->size(); ++j)
-            if (!model_.pairs[p]->point(j).found) statuses_[p][j] = Status::open;
+            if (!contact_[p].point(j).found) statuses_[p][j] = Status::open;
     force_next_ = false;
 
     fill(F);
@@ -267,16 +270,14 @@ void Equilibrium::fill(double* F) {
     for (std::size_t i = 0; i < internal_.size(); ++i) unbalanced_[i] = internal_[i] - load_.force[i];
     Index without_gap = -1; // node
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
+        const model::ContactEvaluation& evaluation = contact_[p];
+        const model::ContactPair& pair = evaluation.pair();
         for (Index j = 0; j < pair.size(); ++j) {
             const Vec3& lambda = lambda_[p][j];
             const Index slave = pair.slaves().node[j], coupling = first_coupling_[p] + j;
-            unbalanced_[slave] -= lambda;
-            const contact::ContactPoint& point = pair.point(j);
-            if (point.found)
-                for (Index i = 0; i < pair.carriers(j); ++i)
-                    unbalanced_[pair.point_nodes(j)[i]] -= pair.master_force(j, i, lambda);
-            const auto law = pair.law(j).residual(contact_state(p, j), statuses_[p][j]);
+            const contact::ContactPoint& point = evaluation.point(j);
+            evaluation.for_each_force(j, lambda, [&](Index node, const Vec3& force) { unbalanced_[node] -= force; });
+            const auto law = evaluation.law(j).residual(evaluation.state(j, lambda_[p][j]), statuses_[p][j]);
             const Mat3 mirrored = symmetry_directions(slave);
             const Vec3 value = constraints_.to_local(slave, Vec3(law.value - mirrored * law.value + mirrored * lambda));
             for (int k = 0; k < 3; ++k) F[matrix_->contact_row(coupling, k)] = value(k);
@@ -313,7 +314,7 @@ void Equilibrium::record(const double* F, int status_changes) {
             line.stick += status == Status::stick;
             line.slip += status == Status::slip || status == Status::glide;
         }
-        line.facet_changes += model_.pairs[p]->facet_changes();
+        line.facet_changes += contact_[p].facet_changes();
     }
     records_.push_back(line);
     constexpr std::size_t most_remembered = 8;
@@ -348,12 +349,12 @@ bool Equilibrium::cycles(double residual) {
 }
 
 bool Equilibrium::reaches(std::size_t p, Index j) const {
-    return model_.pairs[p]->point(j).found && (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0));
+    return contact_[p].point(j).found && (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0));
 }
 
 double Equilibrium::least_gap() const {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& pair : model_.pairs) least = std::min(least, pair->least_gap());
+    for (const model::ContactEvaluation& evaluation : contact_) least = std::min(least, evaluation.least_gap());
     return least;
 }
 

@@ -19,29 +19,21 @@ void Equilibrium::place() {
     for (std::size_t i = 0; i < x_.size(); ++i) tail_[i] = rounded_off(model_.X[i], u_[i], x_[i]);
 }
 
-contact::ContactState Equilibrium::contact_state(std::size_t p, Index j) const {
-    const model::ContactTerm& pair = *model_.pairs[p];
-    contact::ContactState state = pair.state(j, x_, lambda_[p][j]);
-    if (!pair.point(j).found) return state;
-    state.gap += pair.gap_rounded_off(j, tail_);
-    if (pair.options().friction > 0) state.drift += pair.drift(j, tail_start_, tail_);
-    return state;
-}
-
 Vec3 Equilibrium::law_terms(std::size_t p, Index j) const {
-    const model::ContactTerm& pair = *model_.pairs[p];
-    const contact::ContactPoint& point = pair.point(j);
+    const model::ContactEvaluation& evaluation = contact_[p];
+    const model::ContactPair& pair = evaluation.pair();
+    const contact::ContactPoint& point = evaluation.point(j);
     const Index slave = pair.slaves().node[j];
     Vec3 terms = lambda_[p][j].cwiseAbs();
     if (point.found && contact::is_closed(statuses_[p][j])) {
-        const contact::ContactState state = contact_state(p, j);
-        const contact::ContactResidual law = pair.law(j).residual(state, statuses_[p][j]);
+        const contact::ContactState state = evaluation.state(j, lambda_[p][j]);
+        const contact::ContactResidual law = evaluation.law(j).residual(state, statuses_[p][j]);
         const Vec3 n = state.normal.cwiseAbs();
         // what gap and drift are differences of: displacements, and offsets within the patch, which cancel along n
         Vec3 moved = u_[slave].cwiseAbs();
         double offsets = 0;
-        for (Index i = 0; i < pair.carriers(j); ++i) {
-            const Index node = pair.point_nodes(j)[i];
+        for (Index i = 0; i < evaluation.carriers(j); ++i) {
+            const Index node = evaluation.point_nodes(j)[i];
             const double weight = std::abs(point.weights(i));
             if (pair.mirrored())
                 moved.array() += weight * u_[node].norm();
@@ -61,15 +53,14 @@ bool Equilibrium::at_round_off(const double* F) const {
     for (std::size_t i = 0; i < terms.size(); ++i) terms[i] += load_.force[i].cwiseAbs();
     const auto above = [&](Index row, double sum) { return !(std::abs(F[row]) <= last_digits * sum); };
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
+        const model::ContactEvaluation& evaluation = contact_[p];
+        const model::ContactPair& pair = evaluation.pair();
         for (Index j = 0; j < pair.size(); ++j) {
             const Vec3 law = law_terms(p, j);
             for (int k = 0; k < 3; ++k)
                 if (above(matrix_->contact_row(first_coupling_[p] + j, k), law(k))) return false;
-            terms[pair.slaves().node[j]] += lambda_[p][j].cwiseAbs();
-            if (!pair.point(j).found) continue;
-            for (Index i = 0; i < pair.carriers(j); ++i)
-                terms[pair.point_nodes(j)[i]] += pair.master_force(j, i, lambda_[p][j]).cwiseAbs();
+            evaluation.for_each_force(j, lambda_[p][j],
+                                      [&](Index node, const Vec3& force) { terms[node] += force.cwiseAbs(); });
         }
     }
     for (Index node = 0; node < model_.nodes(); ++node) {

@@ -14,7 +14,7 @@ void Equilibrium::cover_patches() {
     bool covered = true;
     for (std::size_t p = 0; p < model_.pairs.size() && covered; ++p)
         for (Index j = 0; j < model_.pairs[p]->size() && covered; ++j)
-            covered = !reaches(p, j) || matrix_->covers(first_coupling_[p] + j, model_.pairs[p]->point_nodes(j));
+            covered = !reaches(p, j) || matrix_->covers(first_coupling_[p] + j, contact_[p].point_nodes(j));
     if (covered) return;
 
     std::vector<model::Coupling> couplings = matrix_->couplings();
@@ -23,8 +23,8 @@ void Equilibrium::cover_patches() {
             auto& masters = couplings[static_cast<std::size_t>(first_coupling_[p] + j)].masters;
             if (!reaches(p, j)) continue;
             // room for the point to move about its facet
-            masters = model_.pairs[p]->patch_nodes(model_.pairs[p]->facets()[j]);
-            const auto& own = model_.pairs[p]->point_nodes(j);
+            masters = contact_[p].patch_nodes(contact_[p].facets()[j]);
+            const auto& own = contact_[p].point_nodes(j);
             masters.insert(masters.end(), own.begin(), own.end());
             std::sort(masters.begin(), masters.end());
             masters.erase(std::unique(masters.begin(), masters.end()), masters.end()); // mirror images repeat nodes
@@ -35,27 +35,28 @@ void Equilibrium::cover_patches() {
 
 void Equilibrium::linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const {
     tangent.variation.form = form;
-    const model::ContactTerm& pair = *model_.pairs[p];
+    const model::ContactEvaluation& evaluation = contact_[p];
+    const model::ContactPair& pair = evaluation.pair();
     const Vec3& lambda = lambda_[p][j];
     const Status status = statuses_[p][j];
-    const auto law = pair.law(j).residual(contact_state(p, j), status);
+    const auto law = evaluation.law(j).residual(evaluation.state(j, lambda_[p][j]), status);
     const Mat3 mirrored = symmetry_directions(pair.slaves().node[j]), kept = Mat3::Identity() - mirrored;
     tangent.D = kept * law.by_lambda + mirrored;
     tangent.reaches = reaches(p, j);
     if (!tangent.reaches) return;
-    pair.vary(j, x_, tangent.variation);
+    evaluation.vary(j, tangent.variation);
     tangent.A.noalias() = law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn;
     if (pair.options().friction > 0) {
-        pair.drift_variation(j, x_, tangent.variation, tangent.dd);
+        evaluation.drift_variation(j, tangent.variation, tangent.dd);
         tangent.A.noalias() += law.by_drift * tangent.dd;
     }
     tangent.A = kept * tangent.A;
-    tangent.E = -pair.master_force_by_lambda(j); // the forces stand on the right of the equilibrium
-    pair.fold(j, tangent.A, tangent.E);
+    tangent.E = -evaluation.master_force_by_lambda(j); // the forces stand on the right of the equilibrium
+    evaluation.fold(j, tangent.A, tangent.E);
     if (tangent.variation.form != contact::VariationForm::matrices) return;
-    pair.master_force_by_y(j, lambda, tangent.variation, tangent.G);
+    evaluation.master_force_by_y(j, lambda, tangent.variation, tangent.G);
     tangent.G = -tangent.G;
-    pair.fold(j, tangent.G);
+    evaluation.fold(j, tangent.G);
 }
 
 solve::FactorStatus Equilibrium::factorise() {
@@ -68,19 +69,20 @@ solve::FactorStatus Equilibrium::factorise() {
 }
 
 SoftContact Equilibrium::soften(std::size_t p, Index j) const {
-    const model::ContactTerm& pair = *model_.pairs[p];
+    const model::ContactEvaluation& evaluation = contact_[p];
+    const model::ContactPair& pair = evaluation.pair();
     SoftContact soft;
-    const auto law = pair.law(j).residual(contact_state(p, j), statuses_[p][j]);
+    const auto law = evaluation.law(j).residual(evaluation.state(j, lambda_[p][j]), statuses_[p][j]);
     const Index slave = pair.slaves().node[j];
     const Mat3 mirrored = symmetry_directions(slave), kept = Mat3::Identity() - mirrored;
     soft.coupling = first_coupling_[p] + j;
     soft.where.slave = slave;
     soft.D = kept * law.by_lambda + mirrored;
-    soft.c = pair.stiffness(j);
-    if (!pair.point(j).found || !contact::is_closed(statuses_[p][j])) return soft;
-    soft.normal = pair.point(j).normal;
+    soft.c = evaluation.stiffness(j);
+    if (!evaluation.point(j).found || !contact::is_closed(statuses_[p][j])) return soft;
+    soft.normal = evaluation.point(j).normal;
     soft.B = kept * (law.by_gap * soft.normal.transpose() + law.by_drift);
-    pair.follow_master(j, soft.where.masters, soft.where.follow);
+    evaluation.follow_master(j, soft.where.masters, soft.where.follow);
     return soft;
 }
 
@@ -100,17 +102,18 @@ void Equilibrium::linearise() {
     open_laws_.assign(tangents_.size(), Mat3::Zero());
     bearing_.clear();
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactTerm& pair = *model_.pairs[p];
+        model::ContactEvaluation& evaluation = contact_[p];
+        const model::ContactPair& pair = evaluation.pair();
         std::vector<char> reached;
         for (Index j = 0; j < pair.size(); ++j) reached.push_back(reaches(p, j));
-        pair.prepare_variations(x_, reached, threads_);
+        evaluation.prepare_variations(reached, threads_);
         ContactTangent* own = tangents_.data() + first_coupling_[p];
         parallel_for(threads_, pair.size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) linearise(p, j, contact::VariationForm::products, own[j]);
         });
         for (Index j = 0; j < pair.size(); ++j)
             if (own[j].reaches)
-                bearing_.push_back({&own[j], &pair, j, lambda_[p][j], pair.point_nodes(j), soften(p, j)});
+                bearing_.push_back({&own[j], &evaluation, j, lambda_[p][j], evaluation.point_nodes(j), soften(p, j)});
             else
                 open_laws_[static_cast<std::size_t>(first_coupling_[p] + j)] = own[j].D;
     }
@@ -195,12 +198,13 @@ const solve::SparseMatrix& Equilibrium::jacobian() {
     constexpr Index batch = 64; // tangents held at a time: each takes some 100 kB on a smooth master
     if (tangents_.size() < batch) tangents_.resize(batch);
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactTerm& pair = *model_.pairs[p];
+        model::ContactEvaluation& evaluation = contact_[p];
+        const model::ContactPair& pair = evaluation.pair();
         {
             const ScopedTimer timer(timings_, Part::contact);
             std::vector<char> reached;
             for (Index j = 0; j < pair.size(); ++j) reached.push_back(reaches(p, j));
-            pair.prepare_variations(x_, reached, threads_);
+            evaluation.prepare_variations(reached, threads_);
         }
         for (Index first = 0; first < pair.size(); first += batch) {
             const Index count = std::min(batch, pair.size() - first);
@@ -217,7 +221,7 @@ const solve::SparseMatrix& Equilibrium::jacobian() {
                     const ContactTangent& t = tangents_[k];
                     const Index j = first + k, coupling = first_coupling_[p] + j;
                     if (t.reaches)
-                        matrix_->add_contact(coupling, pair.point_nodes(j), t.A, t.D, t.E, t.G, lane);
+                        matrix_->add_contact(coupling, evaluation.point_nodes(j), t.A, t.D, t.E, t.G, lane);
                     else
                         matrix_->add_contact(coupling, t.D, lane);
                 }

@@ -17,12 +17,12 @@ std::optional<NotFinite> first_in(const char* what, const std::vector<Vec3>& fie
     return {};
 }
 
-std::optional<NotFinite> first_in(const model::ContactTerm& pair, const model::ContactHistory& contact) {
-    for (Index j = 0; j < pair.size(); ++j) {
-        const Index node = pair.slaves().node[j];
+std::optional<NotFinite> first_in(const model::ContactEvaluation& evaluation, const model::ContactHistory& contact) {
+    for (Index j = 0; j < evaluation.pair().size(); ++j) {
+        const Index node = evaluation.pair().slaves().node[j];
         for (const double value : contact.lambda[j])
             if (!std::isfinite(value)) return NotFinite{"contact force", node, value};
-        if (const contact::ContactPoint& point = pair.point(j); point.found && !std::isfinite(point.gap))
+        if (const contact::ContactPoint& point = evaluation.point(j); point.found && !std::isfinite(point.gap))
             return NotFinite{"gap", node, point.gap};
     }
     return {};
@@ -45,12 +45,13 @@ std::optional<NotFinite> first_in(const Ledger& ledger) {
 
 } // namespace
 
-std::optional<NotFinite> find_not_finite(const model::Model& model, const model::State& state, const Ledger* ledger) {
+std::optional<NotFinite> find_not_finite(const model::ContactEvaluations& contact, const model::State& state,
+                                         const Ledger* ledger) {
     for (const auto& [what, field] :
          {std::pair{"displacement", &state.u}, std::pair{"velocity", &state.v}, std::pair{"acceleration", &state.a}})
         if (auto found = first_in(what, *field)) return found;
-    for (std::size_t p = 0; p < model.pairs.size(); ++p)
-        if (auto found = first_in(*model.pairs[p], state.contact[p])) return found;
+    for (std::size_t p = 0; p < contact.size(); ++p)
+        if (auto found = first_in(contact[p], state.contact[p])) return found;
     return ledger != nullptr ? first_in(*ledger) : std::nullopt;
 }
 

@@ -9,20 +9,15 @@ namespace osculate::time {
 namespace {
 
 /// Adds a pair's contact forces on nodes to f; their sum.
-Vec3 add_contact(const model::ContactTerm& pair, const std::vector<Vec3>& lambda, NodalField& f) {
+Vec3 add_contact(const model::ContactEvaluation& evaluation, const std::vector<Vec3>& lambda, NodalField& f) {
     Vec3 sum = Vec3::Zero();
     const auto add = [&](Index node, const Vec3& force) {
         f[static_cast<std::size_t>(node)] += force;
         sum += force;
     };
-    for (Index j = 0; j < pair.size(); ++j) {
-        const Vec3& force = lambda[static_cast<std::size_t>(j)];
-        if (force.isZero(0)) continue;
-        add(pair.slaves().node[static_cast<std::size_t>(j)], force);
-        if (!pair.point(j).found) continue;
-        for (Index i = 0; i < pair.carriers(j); ++i)
-            add(pair.point_nodes(j)[static_cast<std::size_t>(i)], pair.master_force(j, i, force));
-    }
+    for (Index j = 0; j < evaluation.pair().size(); ++j)
+        if (const Vec3& force = lambda[static_cast<std::size_t>(j)]; !force.isZero(0))
+            evaluation.for_each_force(j, force, add);
     return sum;
 }
 
@@ -32,7 +27,7 @@ ForceBalance force_balance(const model::Model& model, const Equilibrium& equilib
     ForceBalance balance;
     NodalField contact(state.u.size(), Vec3::Zero());
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        const Vec3 sum = add_contact(*model.pairs[p], state.contact[p].lambda, contact);
+        const Vec3 sum = add_contact(equilibrium.contact()[p], state.contact[p].lambda, contact);
         if (!model.pairs[p]->mirrored()) balance.left_over = std::max(balance.left_over, sum.norm());
     }
     const NodalField outer = equilibrium.bodies().outer_forces(state);

@@ -48,16 +48,14 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics&
     external += work.follower;
     double contact = 0, friction = 0;
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model.pairs[p];
-        for (Index j = 0; j < pair.size(); ++j) {
+        const model::ContactEvaluation& evaluation = equilibrium.contact()[p];
+        for (Index j = 0; j < evaluation.pair().size(); ++j) {
             const Vec3& lambda = to.contact[p].lambda[j];
-            if (lambda.isZero(0) || !pair.point(j).found) continue;
-            contact += lambda.dot(Du[pair.slaves().node[j]]);
-            for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i)
-                contact += pair.master_force(j, static_cast<Index>(i), lambda).dot(Du[pair.point_nodes(j)[i]]);
-            const Vec3& n = pair.point(j).normal;
+            if (lambda.isZero(0) || !evaluation.point(j).found) continue;
+            evaluation.for_each_force(j, lambda, [&](Index node, const Vec3& f) { contact += f.dot(Du[node]); });
+            const Vec3& n = evaluation.point(j).normal;
             const Vec3 tangential = lambda - n * n.dot(lambda);
-            const Vec3 drift = pair.drift(j, from.u, to.u);
+            const Vec3 drift = evaluation.drift(j, from.u, to.u);
             friction -= tangential.dot(drift);
         }
     }

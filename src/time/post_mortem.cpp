@@ -14,7 +14,7 @@ namespace osculate::time {
 
 using contact::Status;
 using model::Body;
-using model::ContactTerm;
+using model::ContactPair;
 
 namespace {
 
@@ -28,17 +28,17 @@ std::pair<Index, Index> slave_of(const model::Model& model, Index node) {
     return {-1, -1};
 }
 
-ContactPlace place(const model::Model& model, Index p, Index j, Status status) {
-    const ContactTerm& pair = *model.pairs[p];
+ContactPlace place(const model::Model& model, const model::ContactEvaluation& evaluation, Index j, Status status) {
+    const ContactPair& pair = evaluation.pair();
     ContactPlace where;
     where.pair = pair.name();
     where.status = status;
     const Body* const master = body_of(model, pair.master_nodes().front());
     where.master_body = master->name;
-    const contact::ContactPoint& point = pair.point(j);
+    const contact::ContactPoint& point = evaluation.point(j);
     if (!point.found && !point.behind) return where;
     where.gap = point.gap;
-    where.master_facet = point.found ? point.facet : pair.facets()[j];
+    where.master_facet = point.found ? point.facet : evaluation.facets()[j];
     if (where.master_facet < 0) return where;
     const mesh::Facet& facet = pair.surface().facets()[where.master_facet];
     for (int c = 0; c < facet.count; ++c)
@@ -238,7 +238,7 @@ PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium) {
         const StatusChanges& first = found.changes.front();
         std::tie(p, j) = slave_of(model, global_node(model, first.body, first.node));
     }
-    if (p >= 0) found.contact = place(model, p, j, state.contact[p].status[j]);
+    if (p >= 0) found.contact = place(model, equilibrium.contact()[p], j, state.contact[p].status[j]);
     advise(found, failed);
     return found;
 }

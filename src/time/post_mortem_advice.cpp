@@ -72,7 +72,7 @@ private:
         add(key, std::move(text), {key + "=" + value});
     }
     [[nodiscard]] std::string in_stage(const std::string& key) const { return stage_ + "." + key; }
-    [[nodiscard]] const model::ContactTerm* pair(const std::string& name) const {
+    [[nodiscard]] const model::ContactPair* pair(const std::string& name) const {
         for (const auto& one : failed_.model.pairs)
             if (one->name() == name) return one.get();
         return nullptr;
@@ -197,7 +197,7 @@ private:
     void cycle() {
         larger_tolerance();
         smaller_steps("fewer nodes change their status at once");
-        const model::ContactTerm* const one = found_.contact ? pair(found_.contact->pair) : nullptr;
+        const model::ContactPair* const one = found_.contact ? pair(found_.contact->pair) : nullptr;
         if (one == nullptr) return;
         if (failed_.stage.dynamics && failed_.stage.dynamics->stiffness_damping == 0 && one->options().friction > 0) {
             constexpr double share = 0.1; // of a step: what swings faster than steps can follow dies out
@@ -304,13 +304,13 @@ private:
         if (failed_.decision.intrusion) return inside(*failed_.decision.intrusion);
         by_nodes(*failed_.model.pairs[static_cast<std::size_t>(failed_.decision.pair)]);
     }
-    void by_nodes(const model::ContactTerm& pair) {
+    void by_nodes(const model::ContactPair& pair) {
         change("contact." + pair.name() + ".discretisation", "node",
                "node: averages over facets know neither edges against edges nor vertices");
     }
 
     /// Overrides that make the master of a pair its slave, where sets of the scene are these surfaces.
-    [[nodiscard]] std::vector<std::string> sides_swapped(const model::ContactTerm& pair) const {
+    [[nodiscard]] std::vector<std::string> sides_swapped(const model::ContactPair& pair) const {
         const auto named = [&](std::vector<Index> nodes) {
             std::ranges::sort(nodes);
             nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -343,7 +343,7 @@ private:
             add("contact", "a pair of surfaces of '" + body + "' and '" + other +
                                "' that hold the place: no pair keeps these bodies apart");
         } else {
-            const model::ContactTerm& one = **pair;
+            const model::ContactPair& one = **pair;
             const std::vector<Index>& slaves = one.slaves().node;
             const bool known = std::ranges::count(slaves, intrusion.node) > 0;
             if (one.options().discretisation == model::Discretisation::mortar) by_nodes(one);
@@ -364,7 +364,7 @@ private:
     }
 
     /// Contact knows nodes against facets, so that one of them must come to lie on a facet soon enough.
-    void edges_cross(const model::ContactTerm& pair, const contact::Intrusion& intrusion) {
+    void edges_cross(const model::ContactPair& pair, const contact::Intrusion& intrusion) {
         const std::string &slave = body_of(failed_.model, pair.slaves().node.front())->name,
                           &master = body_of(failed_.model, pair.master_nodes().front())->name;
         // two edges at right angles: one that is d deep lies inside the other's body over a length of about 2 d

@@ -100,16 +100,18 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
     if (equilibrium.residual(z.data(), F.data()) == solve::NonlinearProblem::Verdict::shorten) return false;
     bool forced = false;
     for (std::size_t p = 0; p < statuses.size(); ++p) {
-        const model::ContactTerm& pair = *model_.pairs[p];
+        const model::ContactEvaluation& evaluation = equilibrium.contact()[p];
+        const model::ContactPair& pair = evaluation.pair();
         if (std::any_of(statuses[p].begin(), statuses[p].end(), contact::is_closed)) continue;
         // "closed where g < 0" would start a smooth master, which leaves a small gap everywhere, without any support
         double least = std::numeric_limits<double>::max();
         for (Index j = 0; j < pair.size(); ++j)
-            if (pair.point(j).found) least = std::min(least, pair.point(j).gap);
+            if (evaluation.point(j).found) least = std::min(least, evaluation.point(j).gap);
         for (Index j = 0; j < pair.size(); ++j) {
-            if (!pair.point(j).found) continue;
-            const double tolerance = pair.options().closing_tolerance * pair.surface().facet_size(pair.point(j).facet);
-            if (least > tolerance || pair.point(j).gap > std::max(least, 0.0) + tolerance) continue;
+            if (!evaluation.point(j).found) continue;
+            const double tolerance =
+                pair.options().closing_tolerance * pair.surface().facet_size(evaluation.point(j).facet);
+            if (least > tolerance || evaluation.point(j).gap > std::max(least, 0.0) + tolerance) continue;
             statuses[p][j] = pair.options().friction > 0 ? Status::stick : Status::glide;
             forced = true;
         }
@@ -117,7 +119,7 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
     return forced;
 }
 
-StabilisationOptions Stepper::stabilisation_options() const {
+StabilisationOptions Stepper::stabilisation_options(const model::ContactEvaluations& contact) const {
     StabilisationOptions how;
     how.share = [this]() -> const std::vector<double>& {
         if (volume_shares_.empty()) volume_shares_ = model::volume_shares(model_);
@@ -129,9 +131,9 @@ StabilisationOptions Stepper::stabilisation_options() const {
     how.gap = 2 * how.finest; // of no account without pairs
     if (model_.pairs.empty()) return how;
     how.gap = how.farthest;
-    for (const auto& pair : model_.pairs) {
-        how.finest = std::min(how.finest, pair->finest());
-        how.gap = std::min(how.gap, pair->least_gap());
+    for (const model::ContactEvaluation& evaluation : contact) {
+        how.finest = std::min(how.finest, evaluation.pair().finest());
+        how.gap = std::min(how.gap, evaluation.least_gap());
     }
     return how;
 }
@@ -148,15 +150,12 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
         x[i] += state_.u[i];
     }
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactTerm& pair = *model_.pairs[p];
-        pair.begin_step(x, state_.contact[p], timings_, options_.threads);
-        pair.evaluate(x, timings_, options_.threads);
-        for (Index j = 0; j < pair.size(); ++j) {
-            const Vec3& lambda = state_.contact[p].lambda[j];
-            f[pair.slaves().node[j]] += lambda;
-            for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i)
-                f[pair.point_nodes(j)[i]] += pair.master_force(j, static_cast<Index>(i), lambda);
-        }
+        model::ContactEvaluation evaluation(*model_.pairs[p]);
+        evaluation.begin_step(x, state_.contact[p], timings_, options_.threads);
+        evaluation.evaluate(x, timings_, options_.threads);
+        for (Index j = 0; j < evaluation.pair().size(); ++j)
+            evaluation.for_each_force(j, state_.contact[p].lambda[j],
+                                      [&](Index node, const Vec3& own_force) { f[node] += own_force; });
     }
     model::PenaltyStiffness free_mass(constraints, M);
     free_mass.set_springs({});

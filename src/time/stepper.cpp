@@ -107,19 +107,15 @@ std::vector<double> times_to_hit(const Stage& stage, double t_start) {
     return times;
 }
 
-/// StepEvidence::unseen after an evaluation at displacements u.
-GapEvidence deepest_unseen(const model::Model& model, const std::vector<Vec3>& u) {
+/// StepEvidence::unseen.
+GapEvidence deepest_unseen(const model::ContactEvaluations& contact) {
     GapEvidence deepest;
-    std::vector<Vec3> x;
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        const model::ContactTerm& pair = *model.pairs[p];
-        if (pair.options().discretisation != model::Discretisation::mortar) continue;
-        if (x.empty())
-            for (std::size_t i = 0; i < u.size(); ++i) x.push_back(model.X[i] + u[i]);
+    for (std::size_t p = 0; p < contact.size(); ++p) {
+        const model::ContactPair& pair = contact[p].pair();
         for (Index j = 0; j < pair.size(); ++j) {
-            const double gap = pair.unseen_gap(j, x);
+            const double gap = contact[p].unseen_gap(j);
             if (!(gap < 0)) continue;
-            const double length = pair.surface().facet_size(pair.facets()[j]);
+            const double length = pair.surface().facet_size(contact[p].facets()[j]);
             if (deepest.pair >= 0 && gap / length >= deepest.g1 / deepest.length) continue;
             deepest = {0, gap, static_cast<Index>(p), j, length};
         }
@@ -129,7 +125,7 @@ GapEvidence deepest_unseen(const model::Model& model, const std::vector<Vec3>& u
 
 } // namespace
 
-Stepper::Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
+Stepper::Stepper(const model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
     : model_(model), stages_(std::move(stages)), options_(options), timings_(timings) {
     state_.u.assign(model.X.size(), Vec3::Zero());
     for (const auto& pair : model.pairs) state_.contact.push_back(pair->initial_history());
@@ -169,11 +165,13 @@ void Stepper::run(StepObserver& observer) {
 void Stepper::resume(Checkpoint checkpoint) {
     if (const std::string what = misfit(checkpoint, model_, stages_.size()); !what.empty())
         throw RunFailure("the checkpoint does not fit the scene: " + what);
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
-        if (!model_.pairs[p]->refit(checkpoint.patches[p]))
-            throw RunFailure("the checkpoint does not fit the scene: patches of pair '" + model_.pairs[p]->name() +
-                             "'");
     state_ = checkpoint.state;
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        const model::ContactPair& pair = *model_.pairs[p];
+        auto& master = state_.contact[p].master = pair.master();
+        if (!checkpoint.patches[p].empty()) master = master->refitted(checkpoint.patches[p]);
+        if (!master) throw RunFailure("the checkpoint does not fit the scene: patches of pair '" + pair.name() + "'");
+    }
     ledger_ = checkpoint.ledger;
     moved_ = checkpoint.moved;
     attempts_ = checkpoint.attempts;
@@ -207,11 +205,15 @@ double Stepper::local_error(const Dynamics& dynamics, const Constraints& constra
 
 void Stepper::refresh_patches() {
     std::vector<Vec3> x;
-    for (auto& pair : model_.pairs) {
-        if (!pair->master().refreshes()) continue;
+    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+        std::shared_ptr<const contact::MasterSurface>& master = state_.contact[p].master;
+        if (!master->refits()) continue;
         if (x.empty())
             for (std::size_t i = 0; i < model_.X.size(); ++i) x.push_back(model_.X[i] + state_.u[i]);
-        refreshed_patches_ += pair->refresh(x);
+        const auto refitted = master->refitted(model_.pairs[p]->vertices(x));
+        if (!refitted) continue;
+        refreshed_patches_ += refitted->refits_done() - master->refits_done();
+        master = refitted;
     }
 }
 
@@ -273,7 +275,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
     int repeats = 0;
     std::vector<Attempt> attempts; // of one step
     double lost_per_second = 0;    // by closing gaps, in the step's last attempt that was cut for it
-    CollisionCheck collisions(model_, stage.limits, stage.follow_paths, timings_, options_.threads);
+    CollisionCheck collisions(model_, equilibrium.contact(), stage.limits, stage.follow_paths, timings_,
+                              options_.threads);
     const std::vector<double> targets = times_to_hit(stage, t_start);
     std::size_t reached = 0;
     if (from != nullptr) {
@@ -299,7 +302,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
                        paths_followed_,
                        equilibrium.memory(),
                        {}};
-        for (const auto& pair : model_.pairs) now.patches.push_back(pair->refitted());
+        for (const model::ContactHistory& history : state_.contact)
+            now.patches.push_back(history.master->refitted_patches());
         return now;
     };
     while (reached < targets.size()) {
@@ -343,7 +347,8 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
             forced = starting_statuses(equilibrium, z, statuses);
         else
             for (const model::ContactHistory& history : state_.contact) statuses.push_back(history.status);
-        if (dynamics == nullptr && options_.stabilisation) ladder.stabilisation = stabilisation_options();
+        if (dynamics == nullptr && options_.stabilisation)
+            ladder.stabilisation = stabilisation_options(equilibrium.contact());
         ladder.last_chance = cannot_be_cut(stage.limits, dt, repeats);
         if (ladder.reference_force == 0) ladder.reference_force = imbalance(equilibrium, z, statuses, forced);
         const std::vector<Vec3> force = dynamics != nullptr ? load.force : std::vector<Vec3>{};
@@ -390,13 +395,13 @@ void Stepper::run_stage(const Stage& stage, StepObserver& observer, const Checkp
                 next.time = time;
                 if (dynamics != nullptr)
                     ledger = advanced(ledger_, model_, *dynamics, equilibrium, state_, next, force);
-                not_finite = find_not_finite(model_, next, dynamics != nullptr ? &ledger : nullptr);
+                not_finite = find_not_finite(equilibrium.contact(), next, dynamics != nullptr ? &ledger : nullptr);
                 if (not_finite) {
                     result.outcome = solve::KinsolOutcome::not_finite;
                     evidence.solved = false;
                 }
                 if (controlled) collisions.add_solution(next.u, evidence);
-                evidence.unseen = deepest_unseen(model_, next.u);
+                evidence.unseen = deepest_unseen(equilibrium.contact());
                 if (audit_ && !not_finite) {
                     const ScopedTimer timer(timings_, Part::audit);
                     found = &audit_->examine(next.u);

@@ -28,6 +28,12 @@ struct ContactPoint {
     Vector weights;           ///< (n) Phi_i, the share of each node in the master's motion and in tangential forces
     MatrixX3 pressing;        ///< (n x 3) p_i = dg/dx_i / |dg/ds|, what a unit normal force puts on each node
     std::shared_ptr<const PointTrace> trace; ///< null where the surface keeps nothing
+
+    /// On node i for a contact force lambda on the slave, N.
+    [[nodiscard]] Vec3 force(Index i, const Vec3& lambda) const {
+        const double L = lambda.dot(normal);
+        return pressing.row(i).transpose() * L - weights(i) * (lambda - L * normal);
+    }
 };
 
 /// What one patch of a blend puts into second variations of the gap and first ones of the weights, over

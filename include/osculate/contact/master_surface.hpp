@@ -30,6 +30,12 @@ struct RefittedPatch {
     std::vector<Vec3> at; ///< vertices around it, in an order of the surface's own, m
 };
 
+/// What a surface keeps of one set of vertex positions, see MasterSurface::place().
+struct Placement {
+    virtual ~Placement() = default;
+};
+
+/// Fixed once made: what depends on where its vertices are is in a Placement, and a surface fitted anew is another one.
 class MasterSurface {
 public:
     virtual ~MasterSurface() = default;
@@ -37,15 +43,18 @@ public:
     /// Surface vertices that carry the patch of a facet.
     [[nodiscard]] virtual std::span<const Index> patch_vertices(Index facet) const = 0;
     /// Makes ready what the facets of `hits` need at vertices x. evaluate() gives the same without it, but slower.
-    virtual void prepare(std::span<const FacetHit> hits, const std::vector<Vec3>& x, int threads) {
-        (void)hits, (void)x, (void)threads;
+    /// @param placement  an earlier one of this surface, which is written over, or null
+    virtual void place(std::span<const FacetHit> hits, const std::vector<Vec3>& x, int threads,
+                       std::unique_ptr<Placement>& placement) const {
+        (void)hits, (void)x, (void)threads, (void)placement;
     }
     /// Gap, normal and weights at slave point s above the facet of `hit`, vertices at x; with `variation`, which may be
     /// null, their first variations too. point.found is false where there is no contact partner: beyond the boundary, or
     /// no unique foot.
+    /// @param placement  of place(), or null; the point may refer to it
     virtual void evaluate(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, ContactPoint& point,
-                          ContactVariation* variation = nullptr) const = 0;
-    /// First variations at a point that evaluate() gave with the same s, hit and x, and no prepare() since.
+                          ContactVariation* variation = nullptr, const Placement* placement = nullptr) const = 0;
+    /// First variations at a point that evaluate() gave with the same s, hit and x; the placement it had must be as it was.
     virtual void vary(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, const ContactPoint& point,
                       ContactVariation& variation) const {
         (void)point;
@@ -58,19 +67,24 @@ public:
         (void)from, (void)to;
         return true;
     }
-    /// Whether refresh() may ever do anything.
-    [[nodiscard]] virtual bool refreshes() const { return false; }
-    /// Fits patches anew at converged positions x where the surface has been bent by more than 60 degrees within one, so
-    /// that its frozen coordinates have become misleading. To be called between steps only.
-    /// @returns how many
-    virtual Index refresh(const std::vector<Vec3>& x) {
+    /// Whether refitted() may ever be another surface.
+    [[nodiscard]] virtual bool refits() const { return false; }
+    /// This surface with patches fitted anew at converged positions x where it has been bent by more than 60 degrees within
+    /// one, so that its frozen coordinates have become misleading; null where no patch has.
+    [[nodiscard]] virtual std::shared_ptr<const MasterSurface> refitted(const std::vector<Vec3>& x) const {
         (void)x;
-        return 0;
+        return nullptr;
     }
-    /// What refresh() has done so far; and the same done to a surface as it was made, as doing it again would.
-    /// @returns  false where it is no patch of this surface, or fits none; the surface is then not to be used
-    [[nodiscard]] virtual std::vector<RefittedPatch> refitted() const { return {}; }
-    [[nodiscard]] virtual bool refit(const std::vector<RefittedPatch>& patches) { return patches.empty(); }
+    /// Patches fitted anew since the surface was made, ascending; and this surface, as it was made, with these fitted again.
+    /// Null where one is no patch of this surface, or none fits.
+    [[nodiscard]] virtual std::vector<RefittedPatch> refitted_patches() const { return {}; }
+    [[nodiscard]] virtual std::shared_ptr<const MasterSurface>
+    refitted(const std::vector<RefittedPatch>& patches) const {
+        (void)patches;
+        return nullptr;
+    }
+    /// How often a patch has been fitted anew.
+    [[nodiscard]] virtual Index refits_done() const { return 0; }
     /// Facets that had to fall back to a smaller or simpler patch.
     [[nodiscard]] virtual Index fallbacks() const { return 0; }
 };

@@ -2,6 +2,7 @@
 /// Contact averaged over the slave facets with dual shape functions, in place of contact at the slave nodes.
 
 #include "osculate/contact/contact_point.hpp"
+#include "osculate/contact/discretisation.hpp"
 #include "osculate/contact/facet_overlap.hpp"
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/contact/mirror.hpp"
@@ -46,52 +47,34 @@ struct SmoothSlave {
 /// In ContactPoint::nodes, numbers from surface.vertex_count() on are slave nodes, counted from there: the other nodes of
 /// the facets of j, which its gap depends on. The nodes that carry force come first, carriers(j) of them.
 /// After Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012; Popp et al., Int. J. Numer. Meth. Eng. 83 (2010) 1428-1465.
-class Mortar {
+class Mortar final : public Discretisation {
 public:
     /// @param surface  topology of the master
     /// @param facets   slave facets            @param S  (slaves) reference positions of the slave nodes
     /// @param in_plane (slaves) projectors on the symmetry planes that slave nodes lie on; empty: there are none
     /// @param smooth   null: the slave facets as they are
-    Mortar(const mesh::HalfEdgeSurface& surface, MasterSurface& master, const std::vector<SlaveFacet>& facets,
-           const std::vector<Vec3>& S, std::vector<Mat3> in_plane, const SmoothSlave* smooth = nullptr);
+    Mortar(const mesh::HalfEdgeSurface& surface, const std::vector<SlaveFacet>& facets, const std::vector<Vec3>& S,
+           std::vector<Mat3> in_plane, const SmoothSlave* smooth = nullptr);
 
-    /// Opens an attempt at the positions of its start: puts the points of every slave facet over their closest master
-    /// facets, found from those of the nodes, `facet_of_node` (slaves).
-    void begin(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search,
-               std::span<const Index> facet_of_node, int threads);
-    /// Contact points of all slave nodes, slaves at s and master vertices at x. `node_facet` (slaves) becomes point.facet.
-    /// @returns how many points of slave facets have changed their master facet
-    int evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x, const FacetSearch& search, double hysteresis,
-                 int changes_before_latch, std::span<const Index> node_facet, std::vector<ContactPoint>& points,
-                 int threads);
-    /// Makes ready what vary() needs at the positions of the last evaluate(), for the slave nodes that are `wanted`.
-    void prepare_variations(const std::vector<Vec3>& s, const std::vector<Vec3>& x, std::span<const char> wanted,
-                            int threads);
-    /// First variations of point j with respect to (s_j, point.nodes). dweights has the rows of the carriers; dpressing
-    /// is left alone, as all of a force goes by the weights.
-    void vary(Index j, const ContactPoint& point, ContactVariation& variation) const;
-    /// What the gap of point j lacks, m, at the last evaluate(): positions lack the last digits slave_tail(slave) and
-    /// vertex_tail(vertex), and those of the points of slave facets are rounded themselves.
-    template <class SlaveTail, class VertexTail>
-    [[nodiscard]] double gap_rounded_off(Index j, const SlaveTail& slave_tail, const VertexTail& vertex_tail) const {
-        double lost = 0;
-        for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
-            const Facet& facet = facets_[static_cast<std::size_t>(f)];
-            if (!facet.gap_dual.usable) continue;
-            for (const GapPoint& q : facet.gap_points) {
-                if (!q.point.found) continue;
-                Vec3 tail = q.tail;
-                for (const Share& share : q.shares) tail += share.C * slave_tail(share.slave);
-                double of_gap = q.point.normal.dot(tail);
-                for (std::size_t i = 0; i < q.point.nodes.size(); ++i)
-                    of_gap += q.point.pressing.row(static_cast<Index>(i)).dot(vertex_tail(q.point.nodes[i]));
-                lost += q.weight * facet.gap_dual.A.row(c).dot(q.N.head(facet.corners.count)) * of_gap;
-            }
-        }
-        return lost / gap_area(j);
-    }
-    /// How many of the nodes of point j carry force: the first ones.
-    [[nodiscard]] Index carriers(Index j) const { return carriers_[static_cast<std::size_t>(j)]; }
+    [[nodiscard]] std::unique_ptr<Discretisation> clone() const override;
+    /// Puts the points of every slave facet over their closest master facets, found from those of the nodes.
+    void begin(const PairPositions& at, const FacetTracking& tracking, int threads) override;
+    int evaluate(const PairPositions& at, FacetTracking& tracking, std::vector<ContactPoint>& points,
+                 int threads) override;
+    void prepare_variations(const PairPositions& at, std::span<const char> wanted, int threads) override;
+    /// dweights has the rows of the carriers; dpressing is left alone, as all of a force goes by the weights.
+    void vary(Index j, const PairPositions& at, const FacetHit& hit, const ContactPoint& point,
+              ContactVariation& variation) const override;
+    [[nodiscard]] Index carriers(Index j, const ContactPoint& point) const override;
+    void force_change(const ContactPoint& point, const Vec3& lambda, const Vec3& dn, std::span<const double> dweights,
+                      const double* dpressing, double* df) const override;
+    void weights_along(const ContactPoint& point, const ContactVariation& variation, const Vector& dy, Vector& dweights,
+                       Vector& dpressing) const override;
+    /// Positions of the points of slave facets are rounded themselves.
+    [[nodiscard]] double gap_rounded_off(Index j, const PairPositions& at, const ContactPoint& point) const override;
+    void follow(const FacetHit& hit, const ContactPoint& point, Index carried, std::vector<Index>& vertices,
+                std::vector<double>& shares) const override;
+    [[nodiscard]] bool overlooks() const override { return true; }
 
 private:
     using Row4 = Eigen::Matrix<double, 4, 1>;
@@ -144,14 +127,14 @@ private:
         int corner;
     };
 
-    static void lay(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth);
-    [[nodiscard]] static Vec3 position(const GapPoint& q, const std::vector<Vec3>& s, Vec3* tail = nullptr);
-    [[nodiscard]] std::vector<Vec3> corners(const Facet& facet, const std::vector<Vec3>& s) const;
-    void find_overlaps(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
+    static void interpolate(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth);
+    [[nodiscard]] static Vec3 position(const GapPoint& q, std::span<const Vec3> s, Vec3* tail = nullptr);
+    [[nodiscard]] static std::vector<Vec3> corners(const Facet& facet, std::span<const Vec3> s);
+    void find_overlaps(Facet& facet, const PairPositions& at) const;
     void make_duals(Facet& facet) const;
     void gather(Index j, const std::vector<Vec3>& x, ContactPoint& point);
-    void vary_gap(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
-    void vary_weights(Facet& facet, const std::vector<Vec3>& s, const std::vector<Vec3>& x) const;
+    void vary_gap(Facet& facet, const PairPositions& at) const;
+    void vary_weights(Facet& facet, const PairPositions& at) const;
     /// Sum of D_j over the facets whose gaps, or whose weights, count.
     [[nodiscard]] double gap_area(Index j) const;
     [[nodiscard]] double weight_area(Index j) const;
@@ -159,7 +142,7 @@ private:
     [[nodiscard]] static double reference_area(const Facet& facet, const Vec2& xi);
 
     const mesh::HalfEdgeSurface& surface_;
-    MasterSurface& master_;
+    std::unique_ptr<Placement> placement_;
     std::vector<Facet> facets_;
     std::vector<std::vector<Incidence>> incident_; ///< (slaves)
     std::vector<Mat3> in_plane_;

@@ -30,6 +30,9 @@ public:
     /// @param X      reference positions of the surface's vertices  @param about  e.g. the centre of the slave nodes
     FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const Vec3& about);
     ~FacetSearch();
+    /// The same rules and neighbours, which are shared; not built.
+    FacetSearch(const FacetSearch& other);
+    FacetSearch& operator=(const FacetSearch&) = delete;
     FacetSearch(FacetSearch&&) noexcept;
     FacetSearch& operator=(FacetSearch&&) noexcept;
 
@@ -48,9 +51,13 @@ private:
     struct Tree;
     /// The one to be taken, whatever their order; no facet where there are none. @param hits  left in pieces
     [[nodiscard]] FacetHit best_of(std::vector<FacetHit>& hits) const;
+    struct Rules {
+        std::vector<Index> neighbour_start{0}, neighbours; ///< facets that share a vertex with each facet
+        std::vector<Vec3> centre, normal;                  ///< of each facet, from `about`; empty without the rule
+    };
+    FacetSearch(const mesh::HalfEdgeSurface& surface, Rules rules);
     const mesh::HalfEdgeSurface* surface_;
-    std::vector<Index> neighbour_start_{0}, neighbours_; ///< facets that share a vertex with each facet
-    std::vector<Vec3> centre_, normal_;                  ///< of each facet, from `about`; empty without the rule
+    std::shared_ptr<const Rules> rules_;
     std::unique_ptr<Tree> tree_;
 };
 

@@ -4,7 +4,7 @@
 #include "osculate/fe/element_block.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/model/block_matrix.hpp"
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_pair.hpp"
 #include "osculate/model/finite_strain.hpp"
 
 #include <memory>
@@ -36,7 +36,7 @@ struct Model {
     Vec3 origin = Vec3::Zero(); ///< where the scene's coordinates have X = 0, m: far from it digits would be lost
     std::vector<Vec3> X;        ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
     std::vector<Set> sets;
-    std::vector<std::unique_ptr<ContactTerm>> pairs;
+    std::vector<std::unique_ptr<const ContactPair>> pairs;
     BlockMatrix K;                               ///< constant stiffness of the linear bodies, in the pattern of all
     std::unique_ptr<FiniteStrain> finite_strain; ///< the other bodies; null where there are none
     BlockMatrix consistent_mass, lumped_mass;    ///< of all bodies, kg, pattern of K; empty where no stage asks for it

@@ -2,6 +2,7 @@
 /// What the geometry of contact says against an attempted step: gaps at its end, and paths that lead through a master.
 
 #include "osculate/core/timing.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/time/step_control.hpp"
 
@@ -29,7 +30,9 @@ public:
     static constexpr double deepest = 0.25;
 
     /// @param paths  follow paths at all
-    CollisionCheck(model::Model& model, const StepLimits& limits, bool paths, Timings& timings, int threads);
+    /// @param contact  of the attempts: begin_step() takes it as scratch
+    CollisionCheck(const model::Model& model, model::ContactEvaluations& contact, const StepLimits& limits, bool paths,
+                   Timings& timings, int threads);
 
     /// Locates every slave node at the accepted state a step starts from.
     void begin_step(const model::State& state);
@@ -59,7 +62,8 @@ private:
     void add_paths(const std::vector<Vec3>& u, StepEvidence& evidence);
     void follow(std::size_t p, const std::vector<Index>& slaves, const std::vector<Vec3>& x, StepEvidence& evidence);
 
-    model::Model& model_;
+    const model::Model& model_;
+    model::ContactEvaluations& contact_;
     const StepLimits& limits_;
     bool paths_;
     Timings& timings_;

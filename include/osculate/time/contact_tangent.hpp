@@ -1,7 +1,7 @@
 #pragma once
 /// Derivatives of one slave node's contact law and of the forces on its masters.
 
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 #include "osculate/time/contact_preconditioner.hpp"
 
 #include <span>
@@ -21,8 +21,8 @@ struct ContactTangent {
 /// A slave node that bears, and what its derivatives do to a motion.
 struct BearingContact {
     const ContactTangent* tangent = nullptr; ///< without G
-    const model::ContactTerm* pair = nullptr;
-    Index slave = -1;             ///< of the pair
+    const model::ContactEvaluation* evaluation = nullptr;
+    Index slave = -1;             ///< of its pair
     Vec3 force = Vec3::Zero();    ///< lambda where the tangent was taken, N
     std::span<const Index> nodes; ///< (n) masters, global, as in the tangent
     SoftContact law;              ///< with the nearest facet in place of the patch
@@ -36,7 +36,7 @@ struct BearingContact {
         dy.head<3>() = u(law.where.slave);
         for (std::size_t i = 0; i < nodes.size(); ++i) dy.segment<3>(3 + 3 * static_cast<Index>(i)) = u(nodes[i]);
         const Vec3 value = tangent->A * dy + tangent->D * lambda;
-        pair->master_force_along(slave, force, tangent->variation, dy, on);
+        evaluation->master_force_along(slave, force, tangent->variation, dy, on);
         for (Index i = 0; i < on.size() / 3; ++i)
             on.segment<3>(3 * i) = (tangent->E.middleRows<3>(3 * i) * lambda - on.segment<3>(3 * i)).eval();
         return value;

@@ -2,6 +2,7 @@
 /// Equilibrium with contact at the end of one step, as the nonlinear problem KINSOL sees.
 
 #include "osculate/model/constraints.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/model/system_matrix.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
@@ -46,8 +47,9 @@ enum class StatusRule {
 class Equilibrium final : public solve::NonlinearProblem, private solve::Preconditioner, private solve::Tangent {
 public:
     /// @param dynamics  null in statics; must outlive this object
-    Equilibrium(model::Model& model, const model::Constraints& constraints, const Dynamics* dynamics, Timings& timings,
-                int threads, bool follower_pressure = false, LinearSolver linear = LinearSolver::automatic);
+    Equilibrium(const model::Model& model, const model::Constraints& constraints, const Dynamics* dynamics,
+                Timings& timings, int threads, bool follower_pressure = false,
+                LinearSolver linear = LinearSolver::automatic);
 
     /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
     /// their weighted mean over the step.
@@ -121,6 +123,9 @@ public:
     /// Element with the least volume left, at the last residual; where it has none there was no residual.
     [[nodiscard]] const model::WorstElement& worst_element() const { return worst_element_; }
     [[nodiscard]] const BodyForces& bodies() const { return bodies_; }
+    /// What contact found at the last residual; opened anew by begin_attempt().
+    [[nodiscard]] const model::ContactEvaluations& contact() const { return contact_; }
+    [[nodiscard]] model::ContactEvaluations& contact() { return contact_; }
     [[nodiscard]] long patterns_built() const { return patterns_built_; }
     [[nodiscard]] const model::Constraints& constraints() const { return constraints_; }
 
@@ -133,9 +138,6 @@ private:
     [[nodiscard]] bool cycles(double residual);
     /// u to positions x_ and what their rounding takes off, tail_: x_ + tail_ = X + u to the last digit of u.
     void place();
-    /// What the law needs to know of slave j of pair p, from differences of displacements and of reference positions: how far
-    /// the bodies are from the origin changes nothing.
-    [[nodiscard]] contact::ContactState contact_state(std::size_t p, Index j) const;
     /// Whether no component of F, the last residual, is more than round-off of the terms its row is the sum of.
     [[nodiscard]] bool at_round_off(const double* F) const;
     /// What the contact law's row of slave j of pair p is the sum of, N, local axes.
@@ -147,12 +149,13 @@ private:
     void cover_patches();
     [[nodiscard]] Mat3 symmetry_directions(Index node) const;
 
-    model::Model& model_;
+    const model::Model& model_;
     const model::Constraints& constraints_;
     Timings& timings_;
     int threads_;
     LinearSolver linear_;
     BodyForces bodies_;
+    model::ContactEvaluations contact_; ///< of the attempt
     Index size_ = 0;
     std::vector<Index> first_coupling_; ///< (pairs + 1)
     std::unique_ptr<model::SystemMatrix> matrix_;
@@ -167,7 +170,7 @@ private:
     double reference_force_ = 1;
 
     std::vector<Vec3> u_, x_, internal_, unbalanced_;
-    std::vector<Vec3> tail_, tail_start_;                   ///< see place(); at the start of the step
+    std::vector<Vec3> tail_;                                ///< see place()
     std::vector<Vec3> product_u_, product_f_, product_law_; ///< scratch of multiply()
     std::vector<Vector> product_on_;
     std::vector<Vec3> linear_about_; ///< of the next residual; empty: exact

@@ -18,10 +18,10 @@ struct NotFinite {
 
 /// The first of a state about to be accepted: displacements, velocities and accelerations of all nodes, contact force and
 /// gap of every slave node that has a contact partner, open or not; then the ledger.
-/// @param model   its pairs evaluated at `state`
+/// @param contact  at `state`
 /// @param ledger  null in statics
-[[nodiscard]] std::optional<NotFinite> find_not_finite(const model::Model& model, const model::State& state,
-                                                       const Ledger* ledger);
+[[nodiscard]] std::optional<NotFinite> find_not_finite(const model::ContactEvaluations& contact,
+                                                       const model::State& state, const Ledger* ledger);
 /// Puts it into words, and its body and node into the attempt's row of the diary.
 void explain(const NotFinite& found, const model::Model& model, Attempt& attempt);
 

@@ -109,7 +109,7 @@ struct PostMortem {
 
 /// The last attempt of a run, as the stepper has it.
 struct FailedAttempt {
-    model::Model& model; ///< its contact points are evaluated anew
+    const model::Model& model;
     const Stage& stage;
     const model::State& last; ///< accepted
     const Vector& z;          ///< last iterate

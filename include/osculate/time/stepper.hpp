@@ -61,7 +61,7 @@ public:
 
 class Stepper {
 public:
-    Stepper(model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings);
+    Stepper(const model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings);
 
     /// Runs every stage. Throws RunFailure with the cause in words when a step cannot be solved at its smallest size;
     /// everything accepted before has been observed.
@@ -73,7 +73,7 @@ public:
     [[nodiscard]] const model::State& state() const { return state_; } ///< accepted last; its arrays stay in place
     [[nodiscard]] long factorisations() const { return factorisations_; }
     [[nodiscard]] long gmres_iterations() const { return gmres_iterations_; }
-    /// Master patches fitted anew between steps, see contact::MasterSurface::refresh().
+    /// Master patches fitted anew between steps, see contact::MasterSurface::refitted().
     [[nodiscard]] long refreshed_patches() const { return refreshed_patches_; }
     /// Paths of slave nodes that were followed facet by facet, see CollisionCheck.
     [[nodiscard]] long paths_followed() const { return paths_followed_; }
@@ -89,6 +89,7 @@ private:
     /// Largest of Integrator::local_error() over the nodes with mass, free directions, m. @param worst  whose it is
     [[nodiscard]] double local_error(const Dynamics& dynamics, const model::Constraints& constraints,
                                      const std::vector<Vec3>& a, double dt, Index& worst) const;
+    /// Fits strongly bent patches of the accepted state's masters anew.
     void refresh_patches();
     [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
                                    const std::vector<Vec3>& prescribed_start, double elapsed) const;
@@ -112,15 +113,15 @@ private:
                                    const std::vector<Vec3>& force);
     /// Velocities, accelerations and ledger at the start of the first dynamic stage after statics, or at all.
     void start_motion(const Stage& stage, const model::Constraints& constraints, StepLoad load);
-    /// Of the last rung of an attempt from displacements u, the pairs evaluated there.
-    [[nodiscard]] StabilisationOptions stabilisation_options() const;
+    /// Of the last rung of an attempt from displacements u, contact evaluated there.
+    [[nodiscard]] StabilisationOptions stabilisation_options(const model::ContactEvaluations& contact) const;
     /// The attempt's row of the diary.
     Attempt diary(const Decision& decision, const LadderResult& result, const Equilibrium& equilibrium, double time,
                   double dt, int iterations);
     /// Examines the attempt, tells the observer and throws RunFailure.
     [[noreturn]] void give_up(const FailedAttempt& failed, Equilibrium& equilibrium, StepObserver& observer) const;
 
-    model::Model& model_;
+    const model::Model& model_;
     std::vector<Stage> stages_;
     StepperOptions options_;
     Timings& timings_;

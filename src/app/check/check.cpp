@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct PairCheck {
-    const model::ContactTerm* pair = nullptr;
+    const model::ContactPair* pair = nullptr;
     PairGaps gaps{};
     std::vector<std::string> advice{};
     Facing facing{};
@@ -50,7 +50,7 @@ double modulus(const LoadedScene& loaded, Index node) {
     return scene::elastic(scene::find(loaded.scene.bodies, owner(loaded.plan.model, node).name)->material).E;
 }
 
-double stiffness_ratio(const LoadedScene& loaded, const model::ContactTerm& pair) {
+double stiffness_ratio(const LoadedScene& loaded, const model::ContactPair& pair) {
     return modulus(loaded, pair.slaves().node.front()) / modulus(loaded, pair.master_nodes().front());
 }
 
@@ -71,7 +71,7 @@ bool finite_strain(const LoadedScene& loaded, Index node) {
 }
 
 /// Bodies at small strain do not turn, and without inertia bodies turn as they are driven.
-bool may_tumble(const LoadedScene& loaded, const model::ContactTerm& pair) {
+bool may_tumble(const LoadedScene& loaded, const model::ContactPair& pair) {
     return std::ranges::any_of(loaded.plan.stages, [](const time::Stage& s) { return s.dynamics.has_value(); }) &&
            (finite_strain(loaded, pair.slaves().node.front()) || finite_strain(loaded, pair.master_nodes().front()));
 }
@@ -90,18 +90,20 @@ Check examine(const LoadedScene& loaded, int threads) {
     append(check.warnings, thin_layers(loaded.scene, plan));
     append(check.warnings, twice_paired(loaded.scene, plan));
     Timings unused;
-    for (const auto& pair : plan.model.pairs) {
-        PairCheck& p = check.pairs.emplace_back(PairCheck{pair.get()});
-        p.gaps = initial_gaps(*pair, plan.model.X, unused, threads);
-        const Pairing found = pairing(*pair, plan.model.X);
+    model::ContactEvaluations contact = model::contact_evaluations(plan.model);
+    for (model::ContactEvaluation& evaluation : contact) {
+        const model::ContactPair& pair = evaluation.pair();
+        PairCheck& p = check.pairs.emplace_back(PairCheck{&pair});
+        p.gaps = initial_gaps(evaluation, plan.model.X, unused, threads);
+        const Pairing found = pairing(evaluation, plan.model.X);
         p.advice = advice(found);
-        const double ratio = stiffness_ratio(loaded, *pair);
+        const double ratio = stiffness_ratio(loaded, pair);
         advise_on_stiffness(ratio, found, p);
-        p.facing = facing(*pair, plan.model.X);
-        append(check.warnings, pair_warnings(plan.model, {*pair, *scene::find(loaded.scene.contact, pair->name()),
-                                                          p.facing, found, ratio, may_tumble(loaded, *pair)}));
+        p.facing = facing(evaluation, plan.model.X);
+        append(check.warnings, pair_warnings(plan.model, {evaluation, *scene::find(loaded.scene.contact, pair.name()),
+                                                          p.facing, found, ratio, may_tumble(loaded, pair)}));
         if (p.gaps.above == 0)
-            check.warnings.push_back({"contact." + pair->name(), "no slave node is above or below the master"});
+            check.warnings.push_back({"contact." + pair.name(), "no slave node is above or below the master"});
     }
     for (const Index b : plan.model.kept_contact_mass)
         check.warnings.push_back({"bodies." + plan.model.bodies[static_cast<std::size_t>(b)].name,
@@ -109,7 +111,7 @@ Check examine(const LoadedScene& loaded, int threads) {
                                   "its other nodes have its centre and inertia, so impacts cost or bring in energy and "
                                   "contact forces ring; mesh it finer behind the contact or let fewer of its nodes be "
                                   "slaves"});
-    check.free = free_motions(plan);
+    check.free = free_motions(plan, contact);
     return check;
 }
 
@@ -165,7 +167,7 @@ void say_pair(const model::Model& model, const PairCheck& check, fmt::memory_buf
     }
     if (gaps.overlaps.size() > most) fmt::format_to(out, "    and {} more\n", gaps.overlaps.size() - most);
     for (const std::string& sentence : check.advice) fmt::format_to(out, "  advice: {}\n", sentence);
-    if (const Index fallbacks = check.pair->master().fallbacks(); fallbacks > 0)
+    if (const Index fallbacks = check.pair->master()->fallbacks(); fallbacks > 0)
         fmt::format_to(out, "  {} patches had to be smaller or simpler than asked for\n", fallbacks);
 }
 
@@ -227,7 +229,7 @@ Json as_json(const model::Model& model, const PairCheck& check) {
     json["largest_gap"] = gaps.above > 0 ? Json(gaps.largest) : Json(nullptr);
     json["overlaps"] = std::move(overlaps);
     json["facets_looking_away"] = std::move(away);
-    json["patches_fallen_back"] = check.pair->master().fallbacks();
+    json["patches_fallen_back"] = check.pair->master()->fallbacks();
     json["advice"] = check.advice;
     return json;
 }

@@ -4,11 +4,12 @@
 
 namespace osculate::app {
 
-Facing facing(const model::ContactTerm& pair, const std::vector<Vec3>& X) {
+Facing facing(const model::ContactEvaluation& evaluation, const std::vector<Vec3>& X) {
+    const model::ContactPair& pair = evaluation.pair();
     constexpr double beyond = 0.1; // cosine: a facet at right angles to the master, as behind a rounded edge, is none
     std::map<Index, const contact::ContactPoint*> points; // by slave node
     for (Index j = 0; j < pair.size(); ++j)
-        if (const contact::ContactPoint& point = pair.point(j); point.found)
+        if (const contact::ContactPoint& point = evaluation.point(j); point.found)
             points.emplace(pair.slaves().node[static_cast<std::size_t>(j)], &point);
     Facing result;
     for (std::size_t f = 0; f < pair.slaves().facets.size(); ++f) {

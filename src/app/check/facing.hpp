@@ -1,7 +1,7 @@
 #pragma once
 /// Whether the two sides of a pair look at one another.
 
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 
 #include <vector>
 
@@ -17,6 +17,6 @@ struct Facing {
 };
 
 /// @pre the pair has been evaluated at the positions X of all nodes
-[[nodiscard]] Facing facing(const model::ContactTerm& pair, const std::vector<Vec3>& X);
+[[nodiscard]] Facing facing(const model::ContactEvaluation& evaluation, const std::vector<Vec3>& X);
 
 } // namespace osculate::app

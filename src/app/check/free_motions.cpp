@@ -84,14 +84,15 @@ struct Holds {
 
 class Finder {
 public:
-    explicit Finder(const Plan& plan) : plan_(plan), holds_(plan.model.bodies.size()), group_(holds_.size()) {
+    Finder(const Plan& plan, const model::ContactEvaluations& contact)
+        : plan_(plan), contact_(contact), holds_(plan.model.bodies.size()), group_(holds_.size()) {
         std::iota(group_.begin(), group_.end(), std::size_t{0});
     }
 
     std::vector<FreeMotion> find(const time::Stage& stage) {
         for (const model::NodeConstraint& c : stage.constraints)
             holds_[body_of(c.node)].supports.emplace_back(plan_.model.X[static_cast<std::size_t>(c.node)], c.direction);
-        for (const auto& pair : plan_.model.pairs) add(*pair);
+        for (const model::ContactEvaluation& evaluation : contact_) add(evaluation);
         std::vector<FreeMotion> found;
         std::vector<std::vector<std::string>> own;
         for (std::size_t b = 0; b < holds_.size(); ++b) {
@@ -110,11 +111,12 @@ private:
         return b;
     }
 
-    void add(const model::ContactTerm& pair) {
+    void add(const model::ContactEvaluation& evaluation) {
+        const model::ContactPair& pair = evaluation.pair();
         const std::size_t slave = body_of(pair.slaves().node.front()), master = body_of(pair.master_nodes().front());
         bool touches = false;
         for (Index j = 0; j < pair.size(); ++j) {
-            const contact::ContactPoint& point = pair.point(j);
+            const contact::ContactPoint& point = evaluation.point(j);
             const double own = std::sqrt(pair.slaves().area[static_cast<std::size_t>(j)]);
             if (!point.found || point.gap > std::min(own, pair.surface().facet_size(point.facet))) continue;
             touches = true;
@@ -166,6 +168,7 @@ private:
     }
 
     const Plan& plan_;
+    const model::ContactEvaluations& contact_;
     std::vector<Holds> holds_;
     std::vector<std::size_t> group_; ///< (bodies) those that touch one another have the same number
 };
@@ -222,11 +225,11 @@ std::vector<std::string> RigidFreedom::in_words(const Vec3& origin) const {
     return words;
 }
 
-std::vector<FreeMotion> free_motions(const Plan& plan) {
+std::vector<FreeMotion> free_motions(const Plan& plan, const model::ContactEvaluations& contact) {
     constexpr std::size_t most = 1000; // bodies: beyond, nobody reads the list
     const auto first = std::ranges::find_if(plan.stages, [](const time::Stage& s) { return !s.dynamics; });
     if (first == plan.stages.end() || plan.model.bodies.size() > most) return {};
-    return Finder(plan).find(*first);
+    return Finder(plan, contact).find(*first);
 }
 
 } // namespace osculate::app

@@ -18,8 +18,8 @@ struct FreeMotion {
 /// Those of the first static stage; none where every stage is dynamic, as inertia holds every body. A slave node holds
 /// its body, and the master's, along the normal where it is nearer to the master than facets of either side are long; each body is taken
 /// by itself, the others at rest, and then all that touch one another as one.
-/// @pre the pairs have been evaluated in the reference configuration
-[[nodiscard]] std::vector<FreeMotion> free_motions(const Plan& plan);
+/// @param contact  in the reference configuration
+[[nodiscard]] std::vector<FreeMotion> free_motions(const Plan& plan, const model::ContactEvaluations& contact);
 
 /// Motions of a rigid body that rows d . (t + w x (p - centre)) leave free, in words.
 class RigidFreedom {

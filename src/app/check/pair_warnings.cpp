@@ -13,14 +13,14 @@ namespace {
 class Warner {
 public:
     Warner(const model::Model& model, const ExaminedPair& examined)
-        : model_(model), examined_(examined), key_("contact." + examined.pair.name()) {}
+        : model_(model), examined_(examined), key_("contact." + examined.evaluation.pair().name()) {}
 
     std::vector<Warning> all() {
         facing();
         stiffness();
         sharp_edges();
         if (std::holds_alternative<scene::FacetsSurface>(examined_.spec.master.surface) &&
-            !examined_.pairing.matching && fits(examined_.pair))
+            !examined_.pairing.matching && fits(examined_.evaluation))
             say(".master.surface",
                 "facets, and curved surfaces that fit one another with nodes that do not coincide: they "
                 "touch at single nodes, with forces many times too large; blend or rpim follows the "
@@ -37,7 +37,7 @@ private:
         return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", at.x(), at.y(), at.z());
     }
     [[nodiscard]] std::string place(std::size_t slave_facet) const {
-        return place(mesh::facet_centroid(examined_.pair.slaves().facets[slave_facet], model_.X));
+        return place(mesh::facet_centroid(examined_.evaluation.pair().slaves().facets[slave_facet], model_.X));
     }
 
     void facing() {
@@ -53,12 +53,12 @@ private:
             say(".slave", fmt::format("{} of {} facets are near the master and look away from it, the first at {}: "
                                       "leave them out of the set",
                                       f.away.size(), f.facets, place(f.away.front())));
-        else if (const auto sides = side_facets(examined_.pair, model_.X); !sides.empty())
+        else if (const auto sides = side_facets(examined_.evaluation.pair(), model_.X); !sides.empty())
             say(".slave",
                 fmt::format("{} of {} facets stand at right angles to the master or look away from it, the "
                             "first at {}: they add to the area and take the mass of nodes that touch nothing; "
                             "leave them out of the set",
-                            sides.size(), examined_.pair.slaves().facets.size(), place(sides.front())));
+                            sides.size(), examined_.evaluation.pair().slaves().facets.size(), place(sides.front())));
     }
 
     void stiffness() {
@@ -70,7 +70,7 @@ private:
     }
 
     void sharp_edges() {
-        const SharpEdges edges = app::sharp_edges(examined_.pair, model_.X);
+        const SharpEdges edges = app::sharp_edges(examined_.evaluation.pair(), model_.X);
         const auto angle = fmt::format("{:.0f} degrees", mesh::default_feature_angle * 180 / std::numbers::pi);
         if (edges.concave > 0)
             say(".master.set",

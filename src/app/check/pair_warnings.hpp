@@ -5,7 +5,7 @@
 #include "app/check/pairing_advice.hpp"
 #include "app/check/warning.hpp"
 #include "osculate/app/compile.hpp"
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 
 #include <vector>
 
@@ -16,7 +16,7 @@ inline constexpr double much_stiffer = 100;
 
 /// What check knows of a pair, evaluated in the reference configuration.
 struct ExaminedPair {
-    const model::ContactTerm& pair;
+    const model::ContactEvaluation& evaluation;
     const scene::Pair& spec;
     const Facing& facing;
     const Pairing& pairing;

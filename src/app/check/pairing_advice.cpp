@@ -17,14 +17,15 @@ double spacing(double area, int corners) {
 }
 } // namespace
 
-Pairing pairing(const model::ContactTerm& pair, const std::vector<Vec3>& X) {
+Pairing pairing(const model::ContactEvaluation& evaluation, const std::vector<Vec3>& X) {
+    const model::ContactPair& pair = evaluation.pair();
     constexpr double apart = 1e-3; // of the facet size: nodes that do not coincide
     Pairing result;
     result.discretisation = pair.options().discretisation;
     const std::vector<Vec3> master = pair.vertices(X);
     std::map<Index, bool> is_near; // slave node
     for (Index j = 0; j < pair.size(); ++j) {
-        const contact::FacetHit& hit = pair.hit(j);
+        const contact::FacetHit& hit = evaluation.hit(j);
         if (hit.facet < 0) continue;
         const double size = pair.surface().facet_size(hit.facet);
         if (hit.distance > size || hit.boundary) continue;

@@ -1,7 +1,7 @@
 #pragma once
 /// What a user may want to know about the choice of slave and master.
 
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ struct Pairing {
 };
 
 /// @pre the pair has been evaluated at the positions X of all nodes
-[[nodiscard]] Pairing pairing(const model::ContactTerm& pair, const std::vector<Vec3>& X);
+[[nodiscard]] Pairing pairing(const model::ContactEvaluation& evaluation, const std::vector<Vec3>& X);
 
 /// Sentences; none where there is nothing to say.
 [[nodiscard]] std::vector<std::string> advice(const Pairing& pairing);

@@ -17,7 +17,7 @@ mesh::Facet local_facet(const mesh::HalfEdgeSurface& surface, Index facet) {
     return result;
 }
 
-std::vector<Vec3> master_normals(const model::ContactTerm& pair, const std::vector<Vec3>& vertices) {
+std::vector<Vec3> master_normals(const model::ContactPair& pair, const std::vector<Vec3>& vertices) {
     std::vector<Vec3> normals;
     for (Index f = 0; f < pair.surface().facet_count(); ++f)
         normals.push_back(mesh::facet_normal(local_facet(pair.surface(), f), vertices));
@@ -62,7 +62,7 @@ std::vector<Index> smooth_parts(const mesh::HalfEdgeSurface& surface) {
 
 } // namespace
 
-std::vector<std::size_t> side_facets(const model::ContactTerm& pair, const std::vector<Vec3>& X) {
+std::vector<std::size_t> side_facets(const model::ContactPair& pair, const std::vector<Vec3>& X) {
     constexpr double sideways = -0.3; // cosine between the two normals: 107 degrees
     const std::vector<mesh::Facet>& facets = pair.slaves().facets;
     std::vector<Index> part;
@@ -86,7 +86,7 @@ std::vector<std::size_t> side_facets(const model::ContactTerm& pair, const std::
     return sides;
 }
 
-SharpEdges sharp_edges(const model::ContactTerm& pair, const std::vector<Vec3>& X) {
+SharpEdges sharp_edges(const model::ContactPair& pair, const std::vector<Vec3>& X) {
     const mesh::HalfEdgeSurface& surface = pair.surface();
     const std::vector<Vec3> x = pair.vertices(X);
     SharpEdges found;
@@ -105,7 +105,8 @@ SharpEdges sharp_edges(const model::ContactTerm& pair, const std::vector<Vec3>& 
     return found;
 }
 
-bool fits(const model::ContactTerm& pair) {
+bool fits(const model::ContactEvaluation& evaluation) {
+    const model::ContactPair& pair = evaluation.pair();
     constexpr double near = 2;    // sagittas
     constexpr double turns = 3;   // facets
     constexpr double flat = 1e-3; // rad from facet to facet
@@ -114,7 +115,7 @@ bool fits(const model::ContactTerm& pair) {
     std::map<Index, Vec3> normal;
     double least = std::numeric_limits<double>::infinity();
     for (Index j = 0; j < pair.size(); ++j)
-        if (const contact::ContactPoint& point = pair.point(j); point.found) {
+        if (const contact::ContactPoint& point = evaluation.point(j); point.found) {
             normal.emplace(point.facet, point.normal);
             least = std::min(least, point.gap);
         }
@@ -131,7 +132,7 @@ bool fits(const model::ContactTerm& pair) {
     for (const auto& [facet, n] : normal) turn_of[facet] = turn(facet);
     std::map<Index, bool> taken;
     for (Index j = 0; j < pair.size(); ++j) {
-        const contact::ContactPoint& point = pair.point(j);
+        const contact::ContactPoint& point = evaluation.point(j);
         if (!point.found) continue;
         const double angle = turn_of.at(point.facet);
         if (angle < flat || angle > mesh::default_feature_angle) continue;

@@ -110,7 +110,7 @@ private:
                 }
     }
 
-    void add_master(const model::ContactTerm& pair) {
+    void add_master(const model::ContactPair& pair) {
         const std::vector<Vec3> x = pair.vertices(plan_.model.X);
         for (Index f = 0; f < pair.surface().facet_count(); ++f) {
             const auto v = pair.surface().facet_vertices(f);

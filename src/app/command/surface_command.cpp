@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Pairs to be written. Throws SceneError when there is none, or one has too many samples to number.
-std::vector<const model::ContactTerm*> chosen_pairs(const Plan& plan, const SurfaceOptions& options) {
-    std::vector<const model::ContactTerm*> pairs;
+std::vector<const model::ContactPair*> chosen_pairs(const Plan& plan, const SurfaceOptions& options) {
+    std::vector<const model::ContactPair*> pairs;
     std::vector<std::string> names;
     for (const auto& pair : plan.model.pairs) {
         names.push_back(pair->name());
@@ -34,7 +34,7 @@ std::vector<const model::ContactTerm*> chosen_pairs(const Plan& plan, const Surf
         fault.nearest = scene::nearest(options.pair, names);
         throw SceneError({fault});
     }
-    for (const model::ContactTerm* pair : pairs) {
+    for (const model::ContactPair* pair : pairs) {
         const double points = std::pow(options.refine + 1.0, 2) * pair->surface().facet_count();
         if (points < std::numeric_limits<Index>::max()) continue;
         fault.key = "--refine";
@@ -46,7 +46,7 @@ std::vector<const model::ContactTerm*> chosen_pairs(const Plan& plan, const Surf
 }
 
 /// Per facet, whether it is one of the mesh and not a mirror image beyond a symmetry plane.
-std::vector<char> own_facets(const model::ContactTerm& pair) {
+std::vector<char> own_facets(const model::ContactPair& pair) {
     const mesh::HalfEdgeSurface& surface = pair.surface();
     std::vector<char> own;
     for (Index f = 0; f < surface.facet_count(); ++f) {
@@ -141,12 +141,13 @@ double largest_jump(const mesh::HalfEdgeSurface& surface, const std::vector<char
     return largest;
 }
 
-std::string write_pair(const model::ContactTerm& pair, const model::Model& model, const fs::path& folder, int N,
+std::string write_pair(const model::ContactPair& pair, const model::Model& model, const fs::path& folder, int N,
                        int threads) {
     const mesh::HalfEdgeSurface& surface = pair.surface();
     const std::vector<Vec3> x = pair.vertices(model.X);
     const std::vector<char> own = own_facets(pair);
-    const SurfaceSamples all = sample_surface(surface, pair.master(), x, N, threads); // images too: for jumps at planes
+    const SurfaceSamples all =
+        sample_surface(surface, *pair.master(), x, N, threads); // images too: for jumps at planes
     const fs::path file = folder / (pair.name() + ".vtp"), edges = folder / (pair.name() + "_edges.vtp");
     EdgeCounts counts;
     try {
@@ -171,7 +172,7 @@ std::string write_pair(const model::ContactTerm& pair, const model::Model& model
     std::string text = fmt::format("pair {}: {} master facets, {} vertices, {} feature edge(s), {} boundary edge(s)\n",
                                    pair.name(), facets, vertices, counts.feature, counts.boundary);
     if (images > 0) text += fmt::format("  {} mirror images of facets beyond symmetry planes, not drawn\n", images);
-    text += fmt::format("  {} patches had to be smaller or simpler than asked for{}\n", pair.master().fallbacks(),
+    text += fmt::format("  {} patches had to be smaller or simpler than asked for{}\n", pair.master()->fallbacks(),
                         images > 0 ? ", those of mirror images among them" : "");
     text += fmt::format("  surface found at {} of {} samples\n", found, samples);
     text += fmt::format("  largest distance to the facets {:.4g} m\n", farthest);
@@ -189,14 +190,14 @@ std::string write_surfaces(const std::string& scene_path, const std::vector<scen
     const LoadedScene loaded = load(scene_path, overrides, options.threads, unused);
     const fs::path folder =
         options.directory.empty() ? fs::path("out") / loaded.scene.name / "surface" : options.directory;
-    const std::vector<const model::ContactTerm*> pairs = chosen_pairs(loaded.plan, options);
+    const std::vector<const model::ContactPair*> pairs = chosen_pairs(loaded.plan, options);
     std::vector<std::string> names;
-    for (const model::ContactTerm* pair : pairs)
+    for (const model::ContactPair* pair : pairs)
         names.insert(names.end(), {pair->name() + ".vtp", pair->name() + "_edges.vtp"});
     output::OutputFolder files(chosen_folder(folder, options.folder), entry_of(options.folder), names);
     files.claim(names);
     std::string text;
-    for (const model::ContactTerm* pair : pairs)
+    for (const model::ContactPair* pair : pairs)
         text += write_pair(*pair, loaded.plan.model, files.path(), options.refine, options.threads);
     return text;
 }

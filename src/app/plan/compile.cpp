@@ -465,7 +465,7 @@ private:
             if (broken) continue;
             const ScopedTimer timer(timings_, Part::patches);
             try {
-                plan_.model.pairs.push_back(make_contact_term(scene_, name, spec, plan_.model, slave, master,
+                plan_.model.pairs.push_back(make_contact_pair(scene_, name, spec, plan_.model, slave, master,
                                                               paths ? &exterior_[master.body] : nullptr));
             } catch (const std::runtime_error& error) {
                 faults_.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
@@ -484,7 +484,8 @@ private:
 
     void check_gaps() {
         for (std::size_t p = 0; p < plan_.model.pairs.size(); ++p) {
-            const PairGaps gaps = initial_gaps(*plan_.model.pairs[p], plan_.model.X, timings_, threads_);
+            model::ContactEvaluation evaluation(*plan_.model.pairs[p]);
+            const PairGaps gaps = initial_gaps(evaluation, plan_.model.X, timings_, threads_);
             const double limit = scene_.contact[p].second.initial_overlap_limit;
             if (gaps.largest_overlap > limit)
                 faults_.push_back(

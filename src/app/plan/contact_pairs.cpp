@@ -131,10 +131,10 @@ std::vector<double> thickness(const model::Model& model, const model::Set& maste
 
 } // namespace
 
-std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene, const std::string& name,
-                                                      const scene::Pair& spec, const model::Model& model,
-                                                      const model::Set& slave, const model::Set& master,
-                                                      const std::vector<mesh::Facet>* exterior) {
+std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& scene, const std::string& name,
+                                                            const scene::Pair& spec, const model::Model& model,
+                                                            const model::Set& slave, const model::Set& master,
+                                                            const std::vector<mesh::Facet>* exterior) {
     const std::vector<Vec3>& X = model.X;
     const contact::MirroredSurface mirrored = mirror_at_symmetry(scene, model, master);
     auto surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
@@ -184,7 +184,7 @@ std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene,
     std::optional<contact::SmoothSlave> smooth;
     if (spec.discretisation == scene::Discretisation::mortar)
         smooth = smooth_slave(scene, spec.master, model, slave, slaves.node);
-    return std::make_unique<model::ContactTerm>(name, X, std::move(slaves), std::move(surface), std::move(master_nodes),
+    return std::make_unique<model::ContactPair>(name, X, std::move(slaves), std::move(surface), std::move(master_nodes),
                                                 std::move(shape), options, smooth ? &*smooth : nullptr);
 }
 

@@ -13,9 +13,9 @@ namespace osculate::app {
 /// @param slave, master  sets with facets
 /// @param exterior       of the master's body, its own node numbers, where paths are to be followed; null: they are not
 /// Throws std::runtime_error naming the nodes where the master is no oriented manifold.
-[[nodiscard]] std::unique_ptr<model::ContactTerm> make_contact_term(const scene::Scene& scene, const std::string& name,
-                                                                    const scene::Pair& spec, const model::Model& model,
-                                                                    const model::Set& slave, const model::Set& master,
-                                                                    const std::vector<mesh::Facet>* exterior);
+[[nodiscard]] std::unique_ptr<const model::ContactPair>
+make_contact_pair(const scene::Scene& scene, const std::string& name, const scene::Pair& spec,
+                  const model::Model& model, const model::Set& slave, const model::Set& master,
+                  const std::vector<mesh::Facet>* exterior);
 
 } // namespace osculate::app

@@ -39,7 +39,7 @@ bool move_as_one(const model::Constraints& constraints, const std::vector<Index>
 
 } // namespace
 
-bool stays_flat(const Plan& plan, const model::ContactTerm& pair) {
+bool stays_flat(const Plan& plan, const model::ContactPair& pair) {
     if (!in_one_plane(pair.vertices(plan.model.X))) return false;
     return std::ranges::all_of(plan.stages, [&](const time::Stage& stage) {
         return move_as_one(model::Constraints(plan.model.nodes(), stage.constraints), pair.master_nodes());

@@ -5,15 +5,16 @@
 
 namespace osculate::app {
 
-PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timings& timings, int threads) {
-    pair.begin_step(X, pair.initial_history(), timings, threads);
-    pair.evaluate(X, timings, threads);
+PairGaps initial_gaps(model::ContactEvaluation& evaluation, const std::vector<Vec3>& X, Timings& timings, int threads) {
+    const model::ContactPair& pair = evaluation.pair();
+    evaluation.begin_step(X, pair.initial_history(), timings, threads);
+    evaluation.evaluate(X, timings, threads);
     constexpr double round_off = 1e-9; // of the facet size
     PairGaps gaps;
     gaps.least = std::numeric_limits<double>::max();
     gaps.largest = -gaps.least;
     for (Index j = 0; j < pair.size(); ++j) {
-        const contact::ContactPoint& point = pair.point(j);
+        const contact::ContactPoint& point = evaluation.point(j);
         if (!point.found && !point.behind) continue;
         ++gaps.above;
         gaps.largest = std::max(gaps.largest, point.gap);

@@ -1,6 +1,7 @@
 #pragma once
 /// Gaps of a pair in the reference configuration.
 
+#include "osculate/model/contact_evaluation.hpp"
 #include "osculate/model/model.hpp"
 
 #include <string>
@@ -25,7 +26,8 @@ struct PairGaps {
     std::vector<Overlap> overlaps; ///< of nodes deeper than round-off, deepest first
 };
 
-[[nodiscard]] PairGaps initial_gaps(model::ContactTerm& pair, const std::vector<Vec3>& X, Timings& timings,
+/// Evaluates contact there.
+[[nodiscard]] PairGaps initial_gaps(model::ContactEvaluation& evaluation, const std::vector<Vec3>& X, Timings& timings,
                                     int threads);
 
 /// "node 12 of body 'cap'" for a global node.

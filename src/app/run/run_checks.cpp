@@ -31,20 +31,16 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
 
 void RunChecks::add_penetration(const time::AcceptedStep& step) {
     const time::StepLimits& limits = step.stage.limits;
-    std::vector<Vec3> x; // for mortar alone, whose weighting may not see a node
-    for (const auto& pair : model_.pairs) {
-        const bool mortar = pair->options().discretisation == model::Discretisation::mortar;
-        if (mortar && x.empty())
-            for (std::size_t i = 0; i < model_.X.size(); ++i) x.push_back(model_.X[i] + step.state.u[i]);
-        for (Index j = 0; j < pair->size(); ++j) {
-            const contact::ContactPoint& point = pair->point(j);
+    for (const model::ContactEvaluation& evaluation : step.equilibrium.contact()) {
+        const model::ContactPair& pair = evaluation.pair();
+        for (Index j = 0; j < pair.size(); ++j) {
+            const contact::ContactPoint& point = evaluation.point(j);
             // what has no partner and only seems to be behind a surface is for the audit to judge
             const bool seen = point.found || (point.behind && step.audit == nullptr);
-            if (!seen && !mortar) continue;
-            const double gap = seen ? point.gap : pair->unseen_gap(j, x);
-            const Index facet = seen ? point.facet : pair->facets()[j];
+            const double gap = seen ? point.gap : evaluation.unseen_gap(j);
+            const Index facet = seen ? point.facet : evaluation.facets()[j];
             if (facet < 0 || !(gap < 0)) continue;
-            const double size = pair->surface().facet_size(facet), depth = -gap / size;
+            const double size = pair.surface().facet_size(facet), depth = -gap / size;
             penetration_ = std::max(penetration_, depth);
             penetration_m_ = std::max(penetration_m_, -gap);
             const double allowed = limits.allowed_interpenetration / (limits.in_metres ? size : 1);

@@ -171,14 +171,15 @@ void RunRecorder::describe_plan() {
 void RunRecorder::write_initial_frame() {
     if (!frames_) return;
     const scene::Output& out = scene_.output;
+    model::ContactEvaluations contact;
     if (!out.slave_fields.empty() || !out.master_fields.empty())
-        for (const auto& pair : plan_.model.pairs)
-            (void)initial_gaps(*pair, plan_.model.X, timings_, settings_.threads); // evaluates the contact points
+        for (model::ContactEvaluation& evaluation : contact = model::contact_evaluations(plan_.model))
+            (void)initial_gaps(evaluation, plan_.model.X, timings_, settings_.threads);
     on_disk(timings_, [&] {
         settings_.folder->claim(frames_->files(0));
         std::vector<Vec3> none;
         if (frame_reactions_) none.assign(plan_.model.X.size(), Vec3::Zero());
-        frames_->write({plan_.model, stepper_.state(), std::move(none)}, 0);
+        frames_->write({plan_.model, stepper_.state(), contact, std::move(none)}, 0);
     });
 }
 
@@ -206,7 +207,8 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
         std::vector<Vec3> reactions;
         if (history_reactions_ || probe_reactions_ || (frame && frame_reactions_))
             reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
-        const output::Snapshot snapshot(plan_.model, step.state, std::move(reactions), {}, step.dt, step.audit);
+        const output::Snapshot snapshot(plan_.model, step.state, step.equilibrium.contact(), std::move(reactions), {},
+                                        step.dt, step.audit);
         history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
         if (frame) {
             settings_.folder->claim(frames_->files(summary_.steps.accepted));
@@ -328,7 +330,7 @@ void RunRecorder::write_failed(const time::FailedIterate& iterate) {
     std::vector<std::string> names = frames.files(number);
     for (std::string& name : names) name.insert(0, in);
     settings_.folder->claim(names);
-    frames.write({plan_.model, iterate.state, reactions, std::move(rest)}, number);
+    frames.write({plan_.model, iterate.state, iterate.equilibrium.contact(), reactions, std::move(rest)}, number);
 }
 
 void RunRecorder::wait_for_frames() {

@@ -13,15 +13,17 @@ std::uint64_t next_pattern() {
     return ++counter;
 }
 constexpr Index absent = -1;
+
+std::vector<Index> slaves_of(const std::vector<Coupling>& couplings) {
+    std::vector<Index> slaves;
+    for (const Coupling& c : couplings) slaves.push_back(c.slave);
+    return slaves;
+}
 } // namespace
 
-SystemMatrix::SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings,
-                           Build when)
+SystemMatrix::SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings)
     : constraints_(&constraints), K_(&K), couplings_(std::move(couplings)),
-      exchanged_(static_cast<std::size_t>(constraints.nodes()), -1), displacement_equations_(constraints.equations()) {
-    for (std::size_t j = 0; j < couplings_.size(); ++j)
-        if (Index& taken = exchanged_[couplings_[j].slave]; taken < 0) taken = static_cast<Index>(j);
-    size_ = displacement_equations_ + 3 * static_cast<Index>(couplings_.size());
+      unknowns_(constraints, slaves_of(couplings_)) {
     Index unknown = 0;
     for (Index node = 0; node < constraints.nodes(); ++node) {
         first_.push_back(unknown);
@@ -31,11 +33,6 @@ SystemMatrix::SystemMatrix(const Constraints& constraints, const BlockMatrix& K,
     for (Index node = 0; node < constraints.nodes(); ++node)
         plain_.push_back(constraints.free_components(node) == 3 && !constraints.turned(node));
     matrix_.symmetric_positive_definite = couplings_.empty();
-    if (when == Build::at_once) build();
-}
-
-void SystemMatrix::build() {
-    if (matrix_.pattern != 0) return;
     build_pattern();
     map_slots();
     fill_base();
@@ -51,7 +48,7 @@ Index SystemMatrix::width(Index block) const {
 }
 
 Index SystemMatrix::equilibrium_block(Index node) const {
-    return exchanged_[node] < 0 ? node : constraints_->nodes() + exchanged_[node];
+    return unknowns_.exchanged(node) < 0 ? node : constraints_->nodes() + unknowns_.exchanged(node);
 }
 
 const Mat3& SystemMatrix::frame(Index block) const {
@@ -59,24 +56,12 @@ const Mat3& SystemMatrix::frame(Index block) const {
     return constraints_->frame(node);
 }
 
-Index SystemMatrix::equilibrium_row(Index node, int k) const {
-    const Index e = constraints_->equation(node, k);
-    if (e == Constraints::held || exchanged_[node] < 0) return e;
-    return multiplier(exchanged_[node]) + k;
-}
-
-Index SystemMatrix::contact_row(Index j, int k) const {
-    const Index slave = couplings_[j].slave;
-    const Index e = constraints_->equation(slave, k);
-    return exchanged_[slave] == j && e != Constraints::held ? e : multiplier(j) + k;
-}
-
 std::array<Index, 3> SystemMatrix::equilibrium_rows(Index node) const {
-    return {equilibrium_row(node, 0), equilibrium_row(node, 1), equilibrium_row(node, 2)};
+    return {unknowns_.equilibrium_row(node, 0), unknowns_.equilibrium_row(node, 1), unknowns_.equilibrium_row(node, 2)};
 }
 
 std::array<Index, 3> SystemMatrix::contact_rows(Index j) const {
-    return {contact_row(j, 0), contact_row(j, 1), contact_row(j, 2)};
+    return {unknowns_.contact_row(j, 0), unknowns_.contact_row(j, 1), unknowns_.contact_row(j, 2)};
 }
 
 bool SystemMatrix::covers(Index j, std::span<const Index> masters) const {
@@ -92,7 +77,7 @@ void SystemMatrix::build_pattern() {
     for (Index j = 0; j < static_cast<Index>(couplings_.size()); ++j) {
         const Coupling& c = couplings_[j];
         // contact rows: with the slave's free components, and with the multiplier where any is held or taken
-        const bool exchanged = exchanged_[c.slave] == j;
+        const bool exchanged = unknowns_.exchanged(c.slave) == j;
         if (exchanged) couplings_of[c.slave].push_back(j);
         if (!exchanged || constraints_->free_components(c.slave) < 3) couplings_of[nodes + j].push_back(j);
         for (const Index master : c.masters) couplings_of[equilibrium_block(master)].push_back(j);
@@ -187,7 +172,7 @@ void SystemMatrix::map_slots() {
     for (Index j = 0; j < static_cast<Index>(couplings_.size()); ++j) {
         const Coupling& c = couplings_[j];
         const Index multiplier_block = constraints_->nodes() + j;
-        const bool exchanged = exchanged_[c.slave] == j;
+        const bool exchanged = unknowns_.exchanged(c.slave) == j;
         auto& table = slots_[j];
         table.reserve((c.masters.size() + 1) * (c.masters.size() + 2));
         const auto map_row = [&](Index row) {
@@ -207,7 +192,6 @@ void SystemMatrix::map_slots() {
 }
 
 void SystemMatrix::stiffness_changed() {
-    if (matrix_.pattern == 0) return;
     fill_base();
     reset();
     finish();
@@ -226,7 +210,7 @@ void SystemMatrix::add_contact(Index j, const Mat3& D, Lane lane) {
     for (int r = 0; r < 3; ++r) { // rows of one contact law may live in two blocks
         std::array<Index, 3> one{Constraints::held, Constraints::held, Constraints::held};
         one[r] = rows[r];
-        const Index row_block = rows[r] < displacement_equations_ ? couplings_[j].slave : block;
+        const Index row_block = rows[r] < constraints_->equations() ? couplings_[j].slave : block;
         add(one, offset(row_block, block), block, value, matrix_.value);
     }
 }
@@ -251,13 +235,13 @@ void SystemMatrix::add_contact(Index j, std::span<const Index> masters, const Ei
 
     // contact law
     const auto rows = contact_rows(j);
-    const bool one_block = exchanged_[coupling.slave] != j || constraints_->free_components(coupling.slave) == 3;
+    const bool one_block = unknowns_.exchanged(coupling.slave) != j || constraints_->free_components(coupling.slave) == 3;
     const auto add_law = [&](Index slot_column, Index column_block, const Mat3& value) {
         if (one_block) return add(rows, slots_[j][slot_column], column_block, value, matrix_.value);
         for (int r = 0; r < 3; ++r) {
             std::array<Index, 3> one{Constraints::held, Constraints::held, Constraints::held};
             one[r] = rows[r];
-            const Index row_block = rows[r] < displacement_equations_ ? coupling.slave : block;
+            const Index row_block = rows[r] < constraints_->equations() ? coupling.slave : block;
             add(one, offset(row_block, column_block), column_block, value, matrix_.value);
         }
     };

@@ -243,7 +243,7 @@ void CondensedTangent::laws(const Vector& lambda, const Vector& u, double* z) co
     collect(by, z);
 }
 
-bool CondensedTangent::solve(const model::SystemMatrix& rows, std::span<const Mat3> D, const double* b, double* x,
+bool CondensedTangent::solve(const model::Unknowns& rows, std::span<const Mat3> D, const double* b, double* x,
                              double allowed, Timings& timings) {
     {
         const ScopedTimer timer(timings, Part::factor);

@@ -45,7 +45,7 @@ solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> co
     });
 }
 
-void ContactPreconditioner::apply(const model::SystemMatrix& rows, const double* r, double* z) const {
+void ContactPreconditioner::apply(const model::Unknowns& rows, const double* r, double* z) const {
     const auto equilibrium_rows = [&](Index node, auto&& each) {
         for (int k = 0; k < 3; ++k)
             if (const Index e = constraints_.equation(node, k); e != model::Constraints::held) each(e, k);

@@ -1,233 +1,175 @@
-/// Equilibrium's derivatives: as products, as a matrix, preconditioned and condensed.
+#include "osculate/time/equilibrium_tangent.hpp"
 
-#include "osculate/core/parallel.hpp"
-#include "osculate/time/equilibrium.hpp"
-
-#include <algorithm>
+#include "osculate/model/nodal_unknowns.hpp"
 
 namespace osculate::time {
 
-using contact::Status;
 using model::Constraints;
 
-void Equilibrium::cover_patches() {
-    bool covered = true;
-    for (std::size_t p = 0; p < model_.pairs.size() && covered; ++p)
-        for (Index j = 0; j < model_.pairs[p]->size() && covered; ++j)
-            covered = !reaches(p, j) || matrix_->covers(first_coupling_[p] + j, contact_[p].point_nodes(j));
-    if (covered) return;
+EquilibriumTangent::EquilibriumTangent(const model::Model& model, const Constraints& constraints,
+                                       const model::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
+                                       ContactTerm& contact, const Iterate& at, const TangentChoice& choice,
+                                       Timings& timings, int threads)
+    : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact), at_(at),
+      timings_(timings), threads_(threads), may_buckle_(model.finite_strain != nullptr),
+      products_(goes_by_products(model, choice.linear)) {
+    const model::BlockMatrix& K = bodies_.bodies().tangent();
+    for (Index j = 0; j < unknowns.couplings(); ++j) couplings_.push_back({unknowns.slave(j), {}});
+    kept_couplings_ = couplings_;
+    const bool symmetric = bodies_.bodies().symmetric();
+    if (goes_by_multigrid(model, choice.linear))
+        preconditioner_ = std::make_unique<ContactPreconditioner>(
+            model, constraints_, K, solve::make_multigrid(model::nodal_unknowns(model, constraints_)), threads);
+    else if ((!model.pairs.empty() || !symmetric) && choice.linear != LinearSolver::direct)
+        preconditioner_ = std::make_unique<ContactPreconditioner>(model, constraints_, K, nullptr, threads);
+    if (condenses(model, choice.linear, choice.follower_pressure)) {
+        std::vector<Index> slaves;
+        for (const model::Coupling& c : couplings_) slaves.push_back(c.slave);
+        condensed_ = std::make_unique<CondensedTangent>(model, constraints_, K, slaves, choice.dynamic, threads_);
+    }
+}
 
-    std::vector<model::Coupling> couplings = matrix_->couplings();
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
-        for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
-            auto& masters = couplings[static_cast<std::size_t>(first_coupling_[p] + j)].masters;
-            if (!reaches(p, j)) continue;
-            // room for the point to move about its facet
-            masters = contact_[p].patch_nodes(contact_[p].facets()[j]);
-            const auto& own = contact_[p].point_nodes(j);
-            masters.insert(masters.end(), own.begin(), own.end());
-            std::sort(masters.begin(), masters.end());
-            masters.erase(std::unique(masters.begin(), masters.end()), masters.end()); // mirror images repeat nodes
-        }
-    matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.tangent(), std::move(couplings));
+void EquilibriumTangent::begin(double dt, bool changed) {
+    const ScopedTimer timer(timings_, Part::assembly);
+    if (condensed_) condensed_->begin(dt, changed);
+    if (!changed) return;
+    if (matrix_) matrix_->stiffness_changed();
+    if (preconditioner_) preconditioner_->stiffness_changed();
+}
+
+void EquilibriumTangent::stiffness_replaced() {
+    const model::BlockMatrix& K = bodies_.bodies().tangent();
+    if (matrix_) matrix_->use(K);
+    if (preconditioner_) preconditioner_->use(K);
+}
+
+void EquilibriumTangent::use_pattern(std::vector<model::Coupling> couplings) {
+    couplings_ = std::move(couplings);
+    matrix_ = nullptr;
     ++patterns_built_;
 }
 
-void Equilibrium::linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const {
-    tangent.variation.form = form;
-    const model::ContactEvaluation& evaluation = contact_[p];
-    const model::ContactPair& pair = evaluation.pair();
-    const Vec3& lambda = lambda_[p][j];
-    const Status status = statuses_[p][j];
-    const auto law = evaluation.law(j).residual(evaluation.state(j, lambda_[p][j]), status);
-    const Mat3 mirrored = symmetry_directions(pair.slaves().node[j]), kept = Mat3::Identity() - mirrored;
-    tangent.D = kept * law.by_lambda + mirrored;
-    tangent.reaches = reaches(p, j);
-    if (!tangent.reaches) return;
-    evaluation.vary(j, tangent.variation);
-    tangent.A.noalias() = law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn;
-    if (pair.options().friction > 0) {
-        evaluation.drift_variation(j, tangent.variation, tangent.dd);
-        tangent.A.noalias() += law.by_drift * tangent.dd;
-    }
-    tangent.A = kept * tangent.A;
-    tangent.E = -evaluation.master_force_by_lambda(j); // the forces stand on the right of the equilibrium
-    evaluation.fold(j, tangent.A, tangent.E);
-    if (tangent.variation.form != contact::VariationForm::matrices) return;
-    evaluation.master_force_by_y(j, lambda, tangent.variation, tangent.G);
-    tangent.G = -tangent.G;
-    evaluation.fold(j, tangent.G);
+void EquilibriumTangent::commit() {
+    if (kept_patterns_ != patterns_built_) kept_couplings_ = couplings_;
+    kept_patterns_ = patterns_built_;
+    if (preconditioner_) preconditioner_->keep_pattern();
+    if (condensed_) condensed_->keep();
 }
 
-solve::FactorStatus Equilibrium::factorise() {
+void EquilibriumTangent::rollback() {
+    const ScopedTimer timer(timings_, Part::assembly);
+    if (kept_patterns_ != patterns_built_) {
+        use_pattern(kept_couplings_);
+        kept_patterns_ = patterns_built_;
+    }
+    if (preconditioner_) preconditioner_->restore_pattern();
+    if (condensed_) condensed_->restore();
+}
+
+EquilibriumMemory EquilibriumTangent::memory() const {
+    EquilibriumMemory memory;
+    if (kept_patterns_ > 0) memory.couplings = kept_couplings_;
+    if (preconditioner_) memory.springs = preconditioner_->kept_pattern();
+    if (condensed_ && condensed_->kept() != nullptr) memory.laws = *condensed_->kept();
+    return memory;
+}
+
+void EquilibriumTangent::recall(const EquilibriumMemory& memory) {
+    if (!memory.couplings.empty()) {
+        kept_couplings_ = memory.couplings;
+        use_pattern(kept_couplings_);
+        kept_patterns_ = patterns_built_;
+    }
+    if (preconditioner_ && memory.springs) preconditioner_->restore_pattern(*memory.springs);
+    if (condensed_ && memory.laws) condensed_->restore(*memory.laws);
+}
+
+solve::FactorStatus EquilibriumTangent::factorise() {
     if (stale_preconditioner_) preconditioner_->stiffness_changed();
     stale_preconditioner_ = false;
-    std::vector<SoftContact> contacts;
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p)
-        for (Index j = 0; j < model_.pairs[p]->size(); ++j) contacts.push_back(soften(p, j));
-    return preconditioner_->factorise(std::move(contacts));
+    std::vector<SoftContact> soft;
+    for (const Term* term : terms_) term->add_soft(soft);
+    return preconditioner_->factorise(std::move(soft));
 }
 
-SoftContact Equilibrium::soften(std::size_t p, Index j) const {
-    const model::ContactEvaluation& evaluation = contact_[p];
-    const model::ContactPair& pair = evaluation.pair();
-    SoftContact soft;
-    const auto law = evaluation.law(j).residual(evaluation.state(j, lambda_[p][j]), statuses_[p][j]);
-    const Index slave = pair.slaves().node[j];
-    const Mat3 mirrored = symmetry_directions(slave), kept = Mat3::Identity() - mirrored;
-    soft.coupling = first_coupling_[p] + j;
-    soft.where.slave = slave;
-    soft.D = kept * law.by_lambda + mirrored;
-    soft.c = evaluation.stiffness(j);
-    if (!evaluation.point(j).found || !contact::is_closed(statuses_[p][j])) return soft;
-    soft.normal = evaluation.point(j).normal;
-    soft.B = kept * (law.by_gap * soft.normal.transpose() + law.by_drift);
-    evaluation.follow_master(j, soft.where.masters, soft.where.follow);
-    return soft;
+void EquilibriumTangent::precondition(const double* r, double* z) {
+    preconditioner_->apply(unknowns_, r, z);
 }
 
-void Equilibrium::precondition(const double* r, double* z) {
-    preconditioner_->apply(*matrix_, r, z);
+void EquilibriumTangent::update_stiffness() {
+    if (bodies_.update_stiffness(at_)) stale_preconditioner_ = stale_matrix_ = true;
 }
 
-void Equilibrium::linearise_bodies() {
-    const ScopedTimer timer(timings_, Part::assembly);
-    if (linearised_ || bodies_.linearise(u_)) stale_preconditioner_ = stale_matrix_ = true;
+void EquilibriumTangent::linearise() {
+    update_stiffness();
+    for (Term* term : terms_) term->linearise(at_);
 }
 
-void Equilibrium::linearise() {
-    linearise_bodies();
-    const ScopedTimer timer(timings_, Part::contact);
-    tangents_.resize(static_cast<std::size_t>(first_coupling_.back()));
-    open_laws_.assign(tangents_.size(), Mat3::Zero());
-    bearing_.clear();
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactEvaluation& evaluation = contact_[p];
-        const model::ContactPair& pair = evaluation.pair();
-        std::vector<char> reached;
-        for (Index j = 0; j < pair.size(); ++j) reached.push_back(reaches(p, j));
-        evaluation.prepare_variations(reached, threads_);
-        ContactTangent* own = tangents_.data() + first_coupling_[p];
-        parallel_for(threads_, pair.size(), [&](Index begin, Index end) {
-            for (Index j = begin; j < end; ++j) linearise(p, j, contact::VariationForm::products, own[j]);
-        });
-        for (Index j = 0; j < pair.size(); ++j)
-            if (own[j].reaches)
-                bearing_.push_back({&own[j], &evaluation, j, lambda_[p][j], evaluation.point_nodes(j), soften(p, j)});
-            else
-                open_laws_[static_cast<std::size_t>(first_coupling_[p] + j)] = own[j].D;
-    }
-}
-
-void Equilibrium::multiply(const double* x, double* y) {
+void EquilibriumTangent::multiply(const double* x, double* y) {
     std::vector<Vec3>&u = product_u_, &f = product_f_;
-    u.assign(u_.size(), Vec3::Zero());
-    f.assign(u_.size(), Vec3::Zero());
-    for (Index node = 0; node < model_.nodes(); ++node) {
+    u.assign(at_.u.size(), Vec3::Zero());
+    f.assign(at_.u.size(), Vec3::Zero());
+    for (Index node = 0; node < constraints_.nodes(); ++node) {
         Vec3 local = Vec3::Zero();
         for (int k = 0; k < 3; ++k)
             if (const Index e = constraints_.equation(node, k); e != Constraints::held) local(k) = x[e];
         u[node] = constraints_.to_global(node, local);
     }
-    bodies_.tangent().multiply_add(u, f, threads_);
-    const auto moved = [&](Index node) -> const Vec3& { return u[node]; };
-    const auto add = [&](Index node, const Vec3& force) { f[node] += force; };
-    const auto change = [&](Index coupling) {
-        const double* force = x + matrix_->multiplier(coupling);
-        return constraints_.to_global(matrix_->couplings()[coupling].slave, Vec3(force[0], force[1], force[2]));
-    };
-    product_on_.resize(bearing_.size());
-    product_law_.resize(bearing_.size());
-    parallel_for(threads_, static_cast<Index>(bearing_.size()), [&](Index begin, Index end) {
-        for (Index j = begin; j < end; ++j)
-            product_law_[j] = bearing_[j].multiply(moved, change(bearing_[j].law.coupling), product_on_[j]);
-    });
-    std::size_t next = 0;
-    for (Index coupling = 0; coupling < first_coupling_.back(); ++coupling) {
-        const Index slave = matrix_->couplings()[coupling].slave;
-        const Vec3 lambda = change(coupling);
-        Vec3 law;
-        if (next < bearing_.size() && bearing_[next].law.coupling == coupling) {
-            bearing_[next].scatter(product_on_[next], lambda, add);
-            law = product_law_[next++];
-        } else {
-            law = open_laws_[coupling] * lambda;
-            f[slave] -= lambda;
-        }
-        law = constraints_.to_local(slave, law);
-        for (int k = 0; k < 3; ++k) y[matrix_->contact_row(coupling, k)] = law(k);
-    }
-    for (Index node = 0; node < model_.nodes(); ++node) {
+    for (Term* term : terms_) term->add_product({u, x}, f, y);
+    for (Index node = 0; node < constraints_.nodes(); ++node) {
         const Vec3 local = constraints_.to_local(node, f[node]);
         for (int k = 0; k < 3; ++k)
-            if (const Index row = matrix_->equilibrium_row(node, k); row != Constraints::held) y[row] = local(k);
+            if (const Index row = unknowns_.equilibrium_row(node, k); row != Constraints::held) y[row] = local(k);
     }
 }
 
-bool Equilibrium::solve(const double* b, double* x, double allowed) {
+bool EquilibriumTangent::solve(const double* b, double* x, double allowed) {
     // condensation takes for granted that a body's solution balances: where displacements are large and forces small, round-off
     // is in the way, and only the tangent itself tells
     constexpr int most_corrections = 2;
-    condensed_->set(bearing_);
-    Eigen::Map<Vector> solution(x, size_);
-    Vector left = Eigen::Map<const Vector>(b, size_), more(size_), product(size_);
+    condensed_->set(contact_.bearing());
+    const Index size = unknowns_.size();
+    Eigen::Map<Vector> solution(x, size);
+    Vector left = Eigen::Map<const Vector>(b, size), more(size), product(size);
     solution.setZero();
     for (int k = 0; k <= most_corrections; ++k) {
-        if (!condensed_->solve(*matrix_, open_laws_, left.data(), more.data(), allowed, timings_)) return false;
+        if (!condensed_->solve(unknowns_, contact_.open_laws(), left.data(), more.data(), allowed, timings_))
+            return false;
         if (!more.allFinite()) return false;
         solution += more;
         const ScopedTimer timer(timings_, Part::solve);
         multiply(x, product.data());
-        left = Eigen::Map<const Vector>(b, size_) - product;
+        left = Eigen::Map<const Vector>(b, size) - product;
         if (left.norm() <= 2 * allowed) return true; // its own measure, and round-off
     }
     return false;
 }
 
-const solve::SparseMatrix& Equilibrium::jacobian() {
-    linearise_bodies();
+void EquilibriumTangent::cover_patterns() {
+    std::vector<model::Coupling> couplings = couplings_;
+    bool covered = true;
+    for (const Term* term : terms_) covered = term->add_pattern(couplings) && covered;
+    if (!covered) use_pattern(std::move(couplings));
+}
+
+const solve::SparseMatrix& EquilibriumTangent::jacobian() {
+    update_stiffness();
     {
         const ScopedTimer timer(timings_, Part::assembly);
-        matrix_->build();
-        if (stale_matrix_) matrix_->stiffness_changed();
+        const bool contact = unknowns_.couplings() > 0;
+        if (contact) cover_patterns();
+        if (!matrix_) {
+            matrix_ = std::make_unique<model::SystemMatrix>(constraints_, bodies_.bodies().tangent(), couplings_);
+            if (may_buckle_) matrix_->expect_buckling();
+            if (!bodies_.bodies().symmetric()) matrix_->expect_unsymmetric();
+        } else if (stale_matrix_) {
+            matrix_->stiffness_changed();
+        }
         stale_matrix_ = false;
-        if (model_.pairs.empty()) return matrix_->matrix(); // constant without finite strain: factorised once
-        cover_patches();
+        if (!contact) return matrix_->matrix(); // constant without finite strain: factorised once
         matrix_->reset();
     }
-    constexpr Index batch = 64; // tangents held at a time: each takes some 100 kB on a smooth master
-    if (tangents_.size() < batch) tangents_.resize(batch);
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactEvaluation& evaluation = contact_[p];
-        const model::ContactPair& pair = evaluation.pair();
-        {
-            const ScopedTimer timer(timings_, Part::contact);
-            std::vector<char> reached;
-            for (Index j = 0; j < pair.size(); ++j) reached.push_back(reaches(p, j));
-            evaluation.prepare_variations(reached, threads_);
-        }
-        for (Index first = 0; first < pair.size(); first += batch) {
-            const Index count = std::min(batch, pair.size() - first);
-            {
-                const ScopedTimer timer(timings_, Part::contact);
-                parallel_for(threads_, count, [&](Index begin, Index end) {
-                    for (Index k = begin; k < end; ++k)
-                        linearise(p, first + k, contact::VariationForm::matrices, tangents_[k]);
-                });
-            }
-            const ScopedTimer timer(timings_, Part::assembly);
-            parallel_lanes(threads_, [&](Lane lane) { // each the rows of its own nodes, in the order of the slaves
-                for (Index k = 0; k < count; ++k) {
-                    const ContactTangent& t = tangents_[k];
-                    const Index j = first + k, coupling = first_coupling_[p] + j;
-                    if (t.reaches)
-                        matrix_->add_contact(coupling, evaluation.point_nodes(j), t.A, t.D, t.E, t.G, lane);
-                    else
-                        matrix_->add_contact(coupling, t.D, lane);
-                }
-            });
-        }
-    }
+    for (Term* term : terms_) term->add_derivatives(*matrix_);
     matrix_->finish();
     return matrix_->matrix();
 }

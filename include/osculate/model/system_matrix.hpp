@@ -4,6 +4,7 @@
 #include "osculate/core/parallel.hpp"
 #include "osculate/model/block_matrix.hpp"
 #include "osculate/model/constraints.hpp"
+#include "osculate/model/unknowns.hpp"
 #include "osculate/solve/sparse_matrix.hpp"
 
 #include <array>
@@ -18,31 +19,19 @@ struct Coupling {
     std::vector<Index> masters; ///< global nodes, ascending; empty: an open node that presses on nothing
 };
 
-/// Unknowns: equation numbers of Constraints for the displacements, then three components of contact force per coupling, in
-/// the local frame of the slave node. A slave node's three equilibrium rows and its three contact rows change places, so
-/// that both keep a large diagonal: equilibrium is solved for the contact force, the contact law for the displacement.
-/// Where a displacement component is held it has no equilibrium row, and the contact row stays with the contact force.
+/// Rows and columns are as Unknowns says.
 class SystemMatrix {
 public:
-    enum class Build { at_once, when_asked };
     /// Without couplings the matrix is the symmetric stiffness of the free components.
-    /// @param when  what is said of rows and unknowns needs no values; whoever may never need them asks by build()
-    SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings,
-                 Build when = Build::at_once);
-    /// Makes pattern and values, if that has not been done.
-    void build();
+    SystemMatrix(const Constraints& constraints, const BlockMatrix& K, std::vector<Coupling> couplings);
 
-    [[nodiscard]] Index size() const { return size_; }
+    [[nodiscard]] Index size() const { return unknowns_.size(); }
     [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
     /// Whether every node of `masters` (global) is in the pattern of coupling j.
     [[nodiscard]] bool covers(Index j, std::span<const Index> masters) const;
     [[nodiscard]] const std::vector<Coupling>& couplings() const { return couplings_; }
 
-    /// Rows of the residual: equilibrium of component k of a node (or Constraints::held), contact law of coupling j.
-    [[nodiscard]] Index equilibrium_row(Index node, int k) const;
-    [[nodiscard]] Index contact_row(Index j, int k) const;
-    /// First unknown of the contact force of coupling j.
-    [[nodiscard]] Index multiplier(Index j) const { return displacement_equations_ + 3 * j; }
+    [[nodiscard]] const Unknowns& unknowns() const { return unknowns_; }
 
     /// Says that K may lose its positive definiteness.
     void expect_buckling() { matrix_.may_turn_indefinite = true; }
@@ -88,8 +77,7 @@ private:
     const Constraints* constraints_;
     const BlockMatrix* K_;
     std::vector<Coupling> couplings_;
-    std::vector<Index> exchanged_; ///< (nodes) coupling that changes rows with the node, -1 none
-    Index displacement_equations_ = 0, size_ = 0;
+    Unknowns unknowns_;
     std::vector<Index> first_;              ///< (blocks + 1) first unknown of each block
     std::vector<Index> block_row_start_{0}; ///< (blocks + 1)
     std::vector<Index> block_column_, block_offset_;

@@ -5,7 +5,7 @@
 #include "osculate/core/timing.hpp"
 #include "osculate/model/body_compliance.hpp"
 #include "osculate/model/model.hpp"
-#include "osculate/model/system_matrix.hpp"
+#include "osculate/model/unknowns.hpp"
 #include "osculate/solve/dense_lu.hpp"
 #include "osculate/solve/gmres.hpp"
 #include "osculate/time/contact_laws.hpp"
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] int factorisations() const { return factorisations_; }
     /// x with |b - J x| <= allowed. False where K or T is singular, or GMRES gets nowhere.
     /// @param D  (couplings) by lambda, of those that bear on nothing
-    [[nodiscard]] bool solve(const model::SystemMatrix& rows, std::span<const Mat3> D, const double* b, double* x,
+    [[nodiscard]] bool solve(const model::Unknowns& rows, std::span<const Mat3> D, const double* b, double* x,
                              double allowed, Timings& timings);
 
 private:

@@ -3,7 +3,7 @@
 
 #include "osculate/model/model.hpp"
 #include "osculate/model/penalty_stiffness.hpp"
-#include "osculate/model/system_matrix.hpp"
+#include "osculate/model/unknowns.hpp"
 #include "osculate/solve/direct_solver.hpp"
 #include "osculate/solve/multigrid.hpp"
 
@@ -14,7 +14,7 @@ namespace osculate::time {
 
 /// Linearised contact law of one slave node, B w + D lambda = r, w the motion of the slave relative to its facet.
 struct SoftContact {
-    Index coupling = -1; ///< of SystemMatrix
+    Index coupling = -1; ///< of Unknowns
     model::Spring where; ///< its stiffness is set here
     Vec3 normal = Vec3::Zero();
     Mat3 B = Mat3::Zero(), D = Mat3::Identity();
@@ -44,7 +44,7 @@ public:
     /// Factorises for the contacts given, every coupling of the pairs among them.
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
     /// z = P^-1 r; `rows` says where the rows of the residual are.
-    void apply(const model::SystemMatrix& rows, const double* r, double* z) const;
+    void apply(const model::Unknowns& rows, const double* r, double* z) const;
     [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
 
 private:

@@ -55,8 +55,6 @@ struct LadderResult {
                                        const std::vector<std::vector<contact::Status>>& statuses,
                                        const LadderOptions& options);
 
-using Statuses = std::vector<std::vector<contact::Status>>;
-
 /// 1 semismooth Newton: statuses follow the iterate
 /// 2 the same from the last state instead of the predicted one: a prediction that overruns the elastic slip of a node
 ///   that sticks can send Newton round in the slip branch

@@ -250,13 +250,13 @@ Json to_json(const time::Checkpoint& run) {
             {"contact", contact},
             {"ledger", to_json(run.ledger)},
             {"moved", run.moved},
-            {"attempts", run.attempts},
-            {"stabilised_steps", run.stabilised_steps},
-            {"steps_at_round_off", run.steps_at_round_off},
-            {"factorisations", run.factorisations},
-            {"gmres_iterations", run.gmres_iterations},
-            {"refreshed_patches", run.refreshed_patches},
-            {"paths_followed", run.paths_followed},
+            {"attempts", run.counts.attempts},
+            {"stabilised_steps", run.counts.stabilised_steps},
+            {"steps_at_round_off", run.counts.steps_at_round_off},
+            {"factorisations", run.counts.factorisations},
+            {"gmres_iterations", run.counts.gmres_iterations},
+            {"refreshed_patches", run.counts.refreshed_patches},
+            {"paths_followed", run.counts.paths_followed},
             {"memory", to_json(run.memory)},
             {"patches", patches}};
 }
@@ -276,13 +276,13 @@ time::Checkpoint checkpoint(const Json& json) {
     run.ledger = ledger(member(json, "ledger"));
     if (!member(json, "moved").is_boolean()) incomplete("moved");
     run.moved = json["moved"].get<bool>();
-    run.attempts = number<int>(json, "attempts");
-    run.stabilised_steps = number<int>(json, "stabilised_steps");
-    run.steps_at_round_off = number<int>(json, "steps_at_round_off");
-    run.factorisations = number<long>(json, "factorisations");
-    run.gmres_iterations = number<long>(json, "gmres_iterations");
-    run.refreshed_patches = number<long>(json, "refreshed_patches");
-    run.paths_followed = number<long>(json, "paths_followed");
+    run.counts.attempts = number<int>(json, "attempts");
+    run.counts.stabilised_steps = number<int>(json, "stabilised_steps");
+    run.counts.steps_at_round_off = number<int>(json, "steps_at_round_off");
+    run.counts.factorisations = number<long>(json, "factorisations");
+    run.counts.gmres_iterations = number<long>(json, "gmres_iterations");
+    run.counts.refreshed_patches = number<long>(json, "refreshed_patches");
+    run.counts.paths_followed = number<long>(json, "paths_followed");
     run.memory = equilibrium_memory(member(json, "memory"));
     for (const Json& pair : member(json, "patches")) run.patches.push_back(refitted_patches(pair));
     return run;

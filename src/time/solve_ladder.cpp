@@ -142,7 +142,7 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
     result.outcome = KinsolOutcome::stopped;
     const std::vector<Vec3> start = equilibrium.displacements(z);
     // a wide gap is crossed in a few strides, and nothing is gone through that should have been met
-    double gap = how.gap;
+    double gap = how.gap();
     const auto stride = [&] { return std::max(how.finest, 0.5 * gap); };
     const auto too_far = [&] { return std::max(how.finest, gap); };
     std::vector<Vec3> anchor = start;

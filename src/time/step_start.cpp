@@ -1,8 +1,8 @@
-/// What Stepper::run_stage starts a step from: loads, first iterate, first statuses, accelerations, scale of the forces.
+#include "time/step_start.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/core/rounded_sum.hpp"
 #include "osculate/time/post_mortem.hpp"
-#include "osculate/time/stepper.hpp"
 #include "time/number.hpp"
 
 #include <Eigen/QR>
@@ -15,11 +15,22 @@ namespace osculate::time {
 using contact::Status;
 using model::Constraints;
 
-StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, const std::vector<Vec3>& prescribed_start,
-                          double elapsed) const {
+std::vector<double> times_to_hit(const Stage& stage, double t_start) {
+    std::vector<double> corners;
+    for (const Course& course : stage.courses)
+        corners.insert(corners.end(), course.corners.begin(), course.corners.end());
+    std::vector<double> times = corners_between(std::move(corners), t_start, stage.duration, stage.steps);
+    const double step = stage.duration / stage.steps;
+    for (int k = 1; k <= stage.steps; ++k) times.push_back(t_start + k * step);
+    std::ranges::sort(times);
+    return times;
+}
+
+StepLoad load_at(const model::Model& model, const Stage& stage, const Constraints& constraints,
+                 const std::vector<Vec3>& prescribed_start, double elapsed) {
     const double ramp = stage.ramp ? elapsed / stage.duration : 1;
     StepLoad load;
-    load.force.resize(model_.X.size());
+    load.force.resize(model.X.size());
     for (std::size_t i = 0; i < load.force.size(); ++i)
         load.force[i] = stage.force_start[i] + ramp * (stage.force_end[i] - stage.force_start[i]);
     std::vector<double> value;
@@ -38,7 +49,7 @@ StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, co
         load.pressures.push_back({&pressure.faces, now, now});
     }
     load.prescribed = prescribed_start;
-    for (Index node = 0; node < model_.nodes(); ++node)
+    for (Index node = 0; node < model.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
             if (const auto* c = constraints.constraint(node, k); c != nullptr && c->driven) {
                 const double start = prescribed_start[node](k);
@@ -48,8 +59,9 @@ StepLoad Stepper::load_at(const Stage& stage, const Constraints& constraints, co
     return load;
 }
 
-void Stepper::predict(const Constraints& constraints, const std::vector<Vec3>& prescribed, std::vector<Vec3>& u) const {
-    for (const model::Body& body : model_.bodies) {
+void predict(const model::Model& model, const Constraints& constraints, const std::vector<Vec3>& prescribed,
+             std::vector<Vec3>& u) {
+    for (const model::Body& body : model.bodies) {
         Vec3 centre = Vec3::Zero();
         for (const Vec3& X : body.mesh.nodes) centre += X / static_cast<double>(body.nodes());
         double size = 0;
@@ -86,32 +98,48 @@ void Stepper::predict(const Constraints& constraints, const std::vector<Vec3>& p
     }
 }
 
-bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statuses& statuses) const {
+namespace {
+/// Contact of pair p at displacements u, in a step from a state.
+model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const model::State& state,
+                                   const std::vector<Vec3>& u) {
+    const std::size_t n = u.size();
+    std::vector<Vec3> x(n), tails(n);
+    const auto place = [&](const std::vector<Vec3>& at) {
+        for (std::size_t i = 0; i < n; ++i) tails[i] = rounded_off(context.model.X[i], at[i], x[i]);
+    };
+    model::ContactEvaluation evaluation(*context.model.pairs[p]);
+    place(state.u);
+    evaluation.begin_step(x, state.contact[p], context.timings, context.options.threads, tails);
+    place(u);
+    evaluation.evaluate(x, context.timings, context.options.threads, tails);
+    return evaluation;
+}
+} // namespace
+
+bool starting_statuses(RunContext& context, const BodyForces& bodies, const model::State& state,
+                       const std::vector<Vec3>& u, Statuses& statuses) {
     statuses.clear();
     bool any = false;
-    for (const auto& history : state_.contact) {
+    for (const auto& history : state.contact) {
         statuses.push_back(history.status);
         any = any || std::none_of(history.status.begin(), history.status.end(), contact::is_closed);
     }
     if (!any) return false;
+    std::vector<Vec3> unused;
+    if (!bodies.evaluate(u, unused).admissible()) return false;
 
-    Vector F(z.size());
-    equilibrium.set_statuses(statuses, StatusRule::frozen, false);
-    if (equilibrium.residual(z.data(), F.data()) == solve::NonlinearProblem::Verdict::shorten) return false;
     bool forced = false;
     for (std::size_t p = 0; p < statuses.size(); ++p) {
-        const model::ContactEvaluation& evaluation = equilibrium.contact()[p];
-        const model::ContactPair& pair = evaluation.pair();
         if (std::any_of(statuses[p].begin(), statuses[p].end(), contact::is_closed)) continue;
+        const model::ContactEvaluation evaluation = evaluated(context, p, state, u);
+        const model::ContactPair& pair = evaluation.pair();
         // "closed where g < 0" would start a smooth master, which leaves a small gap everywhere, without any support
-        double least = std::numeric_limits<double>::max();
-        for (Index j = 0; j < pair.size(); ++j)
-            if (evaluation.point(j).found) least = std::min(least, evaluation.point(j).gap);
+        const double least = evaluation.least_gap();
         for (Index j = 0; j < pair.size(); ++j) {
-            if (!evaluation.point(j).found) continue;
-            const double tolerance =
-                pair.options().closing_tolerance * pair.surface().facet_size(evaluation.point(j).facet);
-            if (least > tolerance || evaluation.point(j).gap > std::max(least, 0.0) + tolerance) continue;
+            const contact::ContactPoint& point = evaluation.point(j);
+            if (!point.found) continue;
+            const double tolerance = pair.options().closing_tolerance * pair.surface().facet_size(point.facet);
+            if (least > tolerance || point.gap > std::max(least, 0.0) + tolerance) continue;
             statuses[p][j] = pair.options().friction > 0 ? Status::stick : Status::glide;
             forced = true;
         }
@@ -119,42 +147,42 @@ bool Stepper::starting_statuses(Equilibrium& equilibrium, const Vector& z, Statu
     return forced;
 }
 
-StabilisationOptions Stepper::stabilisation_options(const model::ContactEvaluations& contact) const {
+StabilisationOptions stabilisation_options(RunContext& context, const model::State& state, const std::vector<Vec3>& u) {
     StabilisationOptions how;
-    how.share = [this]() -> const std::vector<double>& {
-        if (volume_shares_.empty()) volume_shares_ = model::volume_shares(model_);
-        return volume_shares_;
-    };
-    how.farthest = characteristic_length_;
+    how.share = [&context]() -> const std::vector<double>& { return context.volume_shares(); };
+    how.farthest = context.characteristic_length;
     constexpr double part = 0.05; // of the model, where there is no facet to compare with
-    how.finest = part * characteristic_length_;
-    how.gap = 2 * how.finest; // of no account without pairs
-    if (model_.pairs.empty()) return how;
-    how.gap = how.farthest;
-    for (const model::ContactEvaluation& evaluation : contact) {
-        how.finest = std::min(how.finest, evaluation.pair().finest());
-        how.gap = std::min(how.gap, evaluation.least_gap());
-    }
+    how.finest = part * context.characteristic_length;
+    for (const auto& pair : context.model.pairs) how.finest = std::min(how.finest, pair->finest());
+    how.gap = [&context, &state, u, how] {
+        if (context.model.pairs.empty()) return 2 * how.finest; // of no account
+        double least = how.farthest;
+        for (std::size_t p = 0; p < context.model.pairs.size(); ++p)
+            least = std::min(least, evaluated(context, p, state, u).least_gap());
+        return least;
+    };
     return how;
 }
 
-void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& constraints,
-                                        const std::vector<Vec3>& force) {
+namespace {
+std::vector<Vec3> initial_acceleration(RunContext& context, const Stage& stage, const Constraints& constraints,
+                                       const model::State& state, const std::vector<Vec3>& force) {
+    const model::Model& model = context.model;
     const Dynamics& dynamics = *stage.dynamics;
-    const model::BlockMatrix& M = model_.mass(dynamics.lumped_mass);
-    const auto n = static_cast<std::size_t>(model_.nodes());
-    const std::vector<Vec3> own = body_forces(model_, dynamics, state_, options_.threads);
-    std::vector<Vec3> f = force, x = model_.X;
+    const model::BlockMatrix& M = model.mass(dynamics.lumped_mass);
+    const auto n = static_cast<std::size_t>(model.nodes());
+    const std::vector<Vec3> own = body_forces(model, dynamics, state, context.options.threads);
+    std::vector<Vec3> f = force, x = model.X;
     for (std::size_t i = 0; i < n; ++i) {
         f[i] -= own[i];
-        x[i] += state_.u[i];
+        x[i] += state.u[i];
     }
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
-        model::ContactEvaluation evaluation(*model_.pairs[p]);
-        evaluation.begin_step(x, state_.contact[p], timings_, options_.threads);
-        evaluation.evaluate(x, timings_, options_.threads);
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        model::ContactEvaluation evaluation(*model.pairs[p]);
+        evaluation.begin_step(x, state.contact[p], context.timings, context.options.threads);
+        evaluation.evaluate(x, context.timings, context.options.threads);
         for (Index j = 0; j < evaluation.pair().size(); ++j)
-            evaluation.for_each_force(j, state_.contact[p].lambda[j],
+            evaluation.for_each_force(j, state.contact[p].lambda[j],
                                       [&](Index node, const Vec3& own_force) { f[node] += own_force; });
     }
     model::PenaltyStiffness free_mass(constraints, M);
@@ -177,18 +205,40 @@ void Stepper::find_initial_acceleration(const Stage& stage, const Constraints& c
     for (Index i = 0; i < right.size(); ++i)
         if (empty[static_cast<std::size_t>(i)] != 0) right(i) = 0;
     solver->solve(right.data(), a.data());
-    state_.a.assign(n, Vec3::Zero());
-    constraints.scatter(a.data(), std::vector<Vec3>(n, Vec3::Zero()), state_.a);
+    std::vector<Vec3> result(n, Vec3::Zero());
+    constraints.scatter(a.data(), std::vector<Vec3>(n, Vec3::Zero()), result);
+    return result;
+}
+} // namespace
+
+void start_motion(RunContext& context, const Stage& stage, const Constraints& constraints, StepLoad load,
+                  Progress& progress) {
+    const model::Model& model = context.model;
+    model::State& state = progress.state;
+    // a later one, after statics, starts at rest
+    state.v = progress.moved ? std::vector<Vec3>(model.X.size(), Vec3::Zero()) : model.initial_velocity;
+    progress.moved = true;
+    for (Index node = 0; node < model.nodes(); ++node) { // what holds a body does not move with it
+        Vec3 v = constraints.to_local(node, state.v[node]);
+        for (int k = 0; k < 3; ++k)
+            if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
+        state.v[node] = constraints.to_global(node, v);
+    }
+    add_follower_forces(load.pressures, model, state.u, load.force);
+    state.a = initial_acceleration(context, stage, constraints, state, load.force);
+    progress.ledger = opened(model, *stage.dynamics, state);
 }
 
-double Stepper::reference_force(const Stage& stage, const StepLoad& load, const Equilibrium& equilibrium,
-                                double dt) const {
+double reference_force(const RunContext& context, const Stage& stage, const Constraints& constraints,
+                       const model::State& state, const StepLoad& load, double dt) {
+    const model::Model& model = context.model;
+    const StepperOptions& options = context.options;
     const auto norm = [](const std::vector<Vec3>& f) {
         double sum = 0;
         for (const Vec3& v : f) sum += v.squaredNorm();
         return std::sqrt(sum);
     };
-    std::vector<Vec3> internal = model::internal_force(model_, state_.u, options_.threads);
+    std::vector<Vec3> internal = model::internal_force(model, state.u, options.threads);
     double external = 0;
     if (load.pressures.empty()) {
         external = norm(load.force);
@@ -196,64 +246,62 @@ double Stepper::reference_force(const Stage& stage, const StepLoad& load, const 
         std::vector<Vec3> force = load.force;
         std::vector<FollowerLoad> pressures = load.pressures;
         for (FollowerLoad& pressure : pressures) pressure.start = pressure.end;
-        add_follower_forces(pressures, model_, state_.u, force);
+        add_follower_forces(pressures, model, state.u, force);
         external = norm(force);
     }
     double carried = std::max(external, norm(internal));
     if (stage.dynamics) {
         // a thousandth of the force that would stop every motion within the step
         constexpr double share = 1e-3;
-        const model::BlockMatrix& M = model_.mass(stage.dynamics->lumped_mass);
-        for (const auto& [motion, factor] : {std::pair{&state_.a, 1.0}, std::pair{&state_.v, share / dt}}) {
+        const model::BlockMatrix& M = model.mass(stage.dynamics->lumped_mass);
+        for (const auto& [motion, factor] : {std::pair{&state.a, 1.0}, std::pair{&state.v, share / dt}}) {
             std::fill(internal.begin(), internal.end(), Vec3::Zero());
-            M.multiply_add(*motion, internal, options_.threads);
+            M.multiply_add(*motion, internal, options.threads);
             carried = std::max(carried, factor * norm(internal));
         }
         // inertia of the last digit of positions, which gaps are made of: no tolerance can ask for less
         double largest = 0;
         for (const bool displacements : {true, false}) {
-            std::vector<Vec3> x = state_.u;
-            for (std::size_t i = 0; i < x.size() && !displacements; ++i) x[i] += model_.X[i];
+            std::vector<Vec3> x = state.u;
+            for (std::size_t i = 0; i < x.size() && !displacements; ++i) x[i] += model.X[i];
             std::fill(internal.begin(), internal.end(), Vec3::Zero());
-            M.multiply_add(x, internal, options_.threads);
+            M.multiply_add(x, internal, options.threads);
             for (const Vec3& f : internal) largest = std::max(largest, f.cwiseAbs().maxCoeff());
-            if (model_.pairs.empty()) break;
+            if (model.pairs.empty()) break;
         }
-        const double digit = std::numeric_limits<double>::epsilon() / options_.tolerance;
+        const double digit = std::numeric_limits<double>::epsilon() / options.tolerance;
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
         carried = std::max(carried, digit * by_u * largest);
     }
-    double farthest = largest_displacement();
+    double farthest = largest_displacement(state);
     for (const Vec3& u : load.prescribed) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
-    const double round_off = round_off_force() * farthest;
+    const double round_off = context.round_off_force() * farthest;
     if (carried > round_off) return carried;
     // driven nodes that move ahead of their bodies; by a small part of it, as elements may not bear the whole
     constexpr double part = 1e-3;
-    std::vector<Vec3> u = state_.u;
-    for (Index i = 0; i < model_.nodes(); ++i) {
-        const Vec3 now = equilibrium.constraints().to_local(i, u[i]);
+    std::vector<Vec3> u = state.u;
+    for (Index i = 0; i < model.nodes(); ++i) {
+        const Vec3 now = constraints.to_local(i, u[i]);
         Vec3 moved = now;
         for (int k = 0; k < 3; ++k)
-            if (equilibrium.constraints().constraint(i, k) != nullptr)
-                moved(k) += part * (load.prescribed[i](k) - now(k));
-        u[i] = equilibrium.constraints().to_global(i, moved);
+            if (constraints.constraint(i, k) != nullptr) moved(k) += part * (load.prescribed[i](k) - now(k));
+        u[i] = constraints.to_global(i, moved);
     }
-    const double driven = norm(model::internal_force(model_, u, options_.threads)) / part;
+    const double driven = norm(model::internal_force(model, u, options.threads)) / part;
     return std::max(driven, round_off);
 }
 
-double Stepper::largest_displacement() const {
+double largest_displacement(const model::State& state) {
     double farthest = 0;
-    for (const Vec3& u : state_.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
+    for (const Vec3& u : state.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
     return farthest;
 }
 
-double Stepper::round_off_force() const {
-    // the last digits of displacements, over neighbours; sums of the forces themselves lose no more, see multiply_add_relative()
-    return std::numeric_limits<double>::epsilon() / options_.tolerance * largest_stiffness_;
+double RunContext::round_off_force() const {
+    return std::numeric_limits<double>::epsilon() / options.tolerance * largest_stiffness;
 }
 
-double Stepper::imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses, bool forced) {
+double imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses, bool forced) {
     Vector F(z.size());
     equilibrium.set_statuses(statuses, StatusRule::natural, forced);
     if (equilibrium.residual(z.data(), F.data()) == solve::NonlinearProblem::Verdict::shorten) return 1;

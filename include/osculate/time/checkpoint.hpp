@@ -4,27 +4,16 @@
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/time/equilibrium_memory.hpp"
-#include "osculate/time/ledger.hpp"
+#include "osculate/time/progress.hpp"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace osculate::time {
 
-struct Checkpoint {
-    std::size_t stage = 0;
-    double stage_start = 0;                 ///< time, s
-    std::vector<Vec3> displacement_start{}; ///< (nodes) at the stage's start, local axes, m
-    std::size_t reached = 0;                ///< times to hit of the stage that lie behind
-    double dt = 0;                          ///< of the next attempt, s
-    model::State state;
-    Ledger ledger;
-    bool moved = false; ///< a dynamic stage has begun
-    int attempts = 0, stabilised_steps = 0, steps_at_round_off = 0;
-    long factorisations = 0, gmres_iterations = 0, refreshed_patches = 0, paths_followed = 0;
+struct Checkpoint : Progress {
     EquilibriumMemory memory;
-    std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs)
+    std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs) of the state's masters
 };
 
 /// What in a checkpoint cannot belong to a model, in words: sizes, numbers of nodes and facets out of range, values that are

@@ -11,10 +11,10 @@ namespace osculate::time {
 /// equilibrium holds without them.
 struct StabilisationOptions {
     std::function<const std::vector<double>&()>
-        share;           ///< model::volume_shares, when needed; none: the rung is left out
-    double finest = 0;   ///< m, motions below it end on this side of whatever they meet
-    double gap = 0;      ///< m, smallest at the start
-    double farthest = 0; ///< m, travel after which a body counts as held by nothing
+        share;                   ///< model::volume_shares, when needed; none: the rung is left out
+    double finest = 0;           ///< m, motions below it end on this side of whatever they meet
+    std::function<double()> gap; ///< m, smallest at the start, when needed
+    double farthest = 0;         ///< m, travel after which a body counts as held by nothing
 };
 
 struct LadderOptions {

@@ -6,6 +6,7 @@
 #include "osculate/time/checkpoint.hpp"
 #include "osculate/time/equilibrium.hpp"
 #include "osculate/time/ledger.hpp"
+#include "osculate/time/progress.hpp"
 #include "osculate/time/solve_ladder.hpp"
 #include "osculate/time/stage.hpp"
 
@@ -14,7 +15,7 @@
 
 namespace osculate::time {
 
-struct FailedAttempt;
+struct RunContext;
 struct PostMortem;
 
 struct StepperOptions {
@@ -62,6 +63,7 @@ public:
 class Stepper {
 public:
     Stepper(const model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings);
+    ~Stepper();
 
     /// Runs every stage. Throws RunFailure with the cause in words when a step cannot be solved at its smallest size;
     /// everything accepted before has been observed.
@@ -70,72 +72,17 @@ public:
     /// @throws RunFailure where it cannot be one
     void resume(Checkpoint checkpoint);
 
-    [[nodiscard]] const model::State& state() const { return state_; } ///< accepted last; its arrays stay in place
-    [[nodiscard]] long factorisations() const { return factorisations_; }
-    [[nodiscard]] long gmres_iterations() const { return gmres_iterations_; }
-    /// Master patches fitted anew between steps, see contact::MasterSurface::refitted().
-    [[nodiscard]] long refreshed_patches() const { return refreshed_patches_; }
-    /// Paths of slave nodes that were followed facet by facet, see CollisionCheck.
-    [[nodiscard]] long paths_followed() const { return paths_followed_; }
-    /// Steps accepted on the rung `stabilised`, see climb().
-    [[nodiscard]] int stabilised_steps() const { return stabilised_steps_; }
-    /// Steps accepted with a residual above the tolerance but at the round-off of its rows, see Equilibrium::rests().
-    [[nodiscard]] int steps_at_round_off() const { return steps_at_round_off_; }
+    [[nodiscard]] const model::State& state() const {
+        return progress_.state;
+    } ///< accepted last; its arrays stay in place
+    [[nodiscard]] const RunCounts& counts() const { return progress_.counts; }
     [[nodiscard]] double end_time() const;
 
 private:
-    /// @param from  where to go on in it; null: at its start
-    void run_stage(const Stage& stage, StepObserver& observer, const Checkpoint* from);
-    /// Largest of Integrator::local_error() over the nodes with mass, free directions, m. @param worst  whose it is
-    [[nodiscard]] double local_error(const Dynamics& dynamics, const model::Constraints& constraints,
-                                     const std::vector<Vec3>& a, double dt, Index& worst) const;
-    /// Fits strongly bent patches of the accepted state's masters anew.
-    void refresh_patches();
-    [[nodiscard]] StepLoad load_at(const Stage& stage, const model::Constraints& constraints,
-                                   const std::vector<Vec3>& prescribed_start, double elapsed) const;
-    /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
-    void predict(const model::Constraints& constraints, const std::vector<Vec3>& prescribed,
-                 std::vector<Vec3>& u) const;
-    /// Statuses to start from; true where a pair is brought into contact by hand because nothing of it is closed yet.
-    [[nodiscard]] bool starting_statuses(Equilibrium& equilibrium, const Vector& z, Statuses& statuses) const;
-    /// What forces are measured by, N; 0 where nothing acts yet.
-    [[nodiscard]] double reference_force(const Stage& stage, const StepLoad& load, const Equilibrium& equilibrium,
-                                         double dt) const;
-    /// Reference force over displacement that round-off calls for, N/m: internal forces of a rigid motion are round-off of
-    /// stiffness times displacement.
-    [[nodiscard]] double round_off_force() const;
-    [[nodiscard]] double largest_displacement() const; ///< component of the accepted state, m
-    /// Norm of the residual at z, contact laws included: the reference where it is initial overlap alone that acts, N.
-    [[nodiscard]] static double imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses,
-                                          bool forced);
-    /// M a = f - K u - C v + contact forces of the state, a = 0 along held directions.
-    void find_initial_acceleration(const Stage& stage, const model::Constraints& constraints,
-                                   const std::vector<Vec3>& force);
-    /// Velocities, accelerations and ledger at the start of the first dynamic stage after statics, or at all.
-    void start_motion(const Stage& stage, const model::Constraints& constraints, StepLoad load);
-    /// Of the last rung of an attempt from displacements u, contact evaluated there.
-    [[nodiscard]] StabilisationOptions stabilisation_options(const model::ContactEvaluations& contact) const;
-    /// The attempt's row of the diary.
-    Attempt diary(const Decision& decision, const LadderResult& result, const Equilibrium& equilibrium, double time,
-                  double dt, int iterations);
-    /// Examines the attempt, tells the observer and throws RunFailure.
-    [[noreturn]] void give_up(const FailedAttempt& failed, Equilibrium& equilibrium, StepObserver& observer) const;
-
-    const model::Model& model_;
     std::vector<Stage> stages_;
-    StepperOptions options_;
-    Timings& timings_;
-    model::State state_;
-    Ledger ledger_;
-    bool moved_ = false; ///< a dynamic stage has begun
-    int attempts_ = 0;
-    int stabilised_steps_ = 0, steps_at_round_off_ = 0;
-    std::unique_ptr<Audit> audit_;        ///< null: not wanted
-    std::unique_ptr<Checkpoint> resumed_; ///< until run() has gone on from it
-    long factorisations_ = 0, gmres_iterations_ = 0, refreshed_patches_ = 0, paths_followed_ = 0;
-    double characteristic_length_ = 1;
-    double largest_stiffness_ = 0;              ///< model::largest_stiffness
-    mutable std::vector<double> volume_shares_; ///< model::volume_shares, once a ladder has asked for them
+    std::unique_ptr<RunContext> context_;
+    Progress progress_;
+    std::unique_ptr<const Checkpoint> resumed_; ///< until run() has gone on from it
 };
 
 } // namespace osculate::time

@@ -380,10 +380,10 @@ void RunRecorder::count_up() {
     summary_.total_seconds = spent.total;
     summary_.cpu_seconds = spent.cpu;
     summary_.peak_memory_bytes = spent.peak_bytes;
-    summary_.factorisations = stepper_.factorisations();
-    summary_.gmres_iterations = stepper_.gmres_iterations();
-    summary_.steps.stabilised = stepper_.stabilised_steps();
-    summary_.steps.at_round_off = stepper_.steps_at_round_off();
+    summary_.factorisations = stepper_.counts().factorisations;
+    summary_.gmres_iterations = stepper_.counts().gmres_iterations;
+    summary_.steps.stabilised = stepper_.counts().stabilised_steps;
+    summary_.steps.at_round_off = stepper_.counts().steps_at_round_off;
     summary_.timings = timings_;
     summary_.checks = checks_.checks();
     if (plan_.stepper.audit || !scene_.solver.audit) {

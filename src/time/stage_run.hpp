@@ -1,0 +1,84 @@
+#pragma once
+/// One stage of a run, step by step: prepare, trial, solve, judge; then commit or reject.
+
+#include "osculate/solve/kinsol_solver.hpp"
+#include "osculate/time/checkpoint.hpp"
+#include "osculate/time/collision_check.hpp"
+#include "osculate/time/equilibrium.hpp"
+#include "osculate/time/finite_check.hpp"
+#include "osculate/time/solve_ladder.hpp"
+#include "time/run_context.hpp"
+#include "time/step_evidence.hpp"
+
+#include <optional>
+
+namespace osculate::time {
+
+/// An attempt at a step.
+struct StepAttempt {
+    double time = 0, dt = 0; ///< at its end, s
+    double proposed = 0;     ///< dt where no time to hit were near
+    bool on_target = false;
+    std::vector<Vec3> force; ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
+    Vector z, unpredicted;   ///< start values, the last iterate afterwards; the same without prediction
+    Statuses statuses;       ///< to start from
+    bool forced = false;     ///< contact made by hand, see starting_statuses()
+    LadderOptions ladder;
+
+    StepEvidence evidence;
+    Decision decision;
+    LadderResult result;
+    int iterations = 0;
+    model::State next; ///< where solved
+    Ledger ledger;
+    std::optional<NotFinite> not_finite;
+    Index worst_in_time = -1;                    ///< node of StepEvidence::local_error
+    const contact::AuditResult* audit = nullptr; ///< null: there was none
+};
+
+class StageRun {
+public:
+    /// @param progress  moved on by every accepted step
+    /// @param from      where to go on in the stage; null: at its start
+    StageRun(RunContext& context, const Stage& stage, Progress& progress, StepObserver& observer,
+             const Checkpoint* from);
+    void run();
+
+private:
+    [[nodiscard]] StepAttempt prepare();
+    [[nodiscard]] StepLoad mean_load(const StepAttempt& attempt, std::vector<Vec3>& u) const;
+    [[nodiscard]] bool wants_trial(const StepAttempt& attempt) const;
+    /// With the statuses known at the start; its solution is where the equilibrium with contact starts from.
+    void trial(StepAttempt& attempt);
+    void solve(StepAttempt& attempt);
+    void gather_evidence(StepAttempt& attempt);
+    void gather_dynamic_evidence(StepAttempt& attempt);
+    void commit(StepAttempt& attempt);
+    void reject(const StepAttempt& attempt);
+    /// Its row of the diary.
+    [[nodiscard]] Attempt row_of(const StepAttempt& attempt);
+    [[nodiscard]] Checkpoint checkpoint() const;
+    /// Fits strongly bent patches of the accepted state's masters anew.
+    void refit_patches();
+    /// Examines the attempt, tells the observer and throws RunFailure.
+    [[noreturn]] void give_up(const StepAttempt& attempt);
+
+    RunContext& context_;
+    const Stage& stage_;
+    Progress& progress_;
+    StepObserver& observer_;
+    model::Constraints constraints_;
+    const Dynamics* dynamics_; ///< null in statics
+    Equilibrium equilibrium_;
+    solve::KinsolSolver solver_;
+    CollisionCheck collisions_;
+    std::optional<CentreMasses> centres_; ///< of dynamic stages
+    std::vector<double> targets_;         ///< times to hit
+    bool bounded_;                        ///< interpenetration is
+    // of one step
+    int repeats_ = 0;
+    double lost_per_second_ = 0; ///< by closing gaps, in the last attempt that was cut for it
+    std::vector<Attempt> attempts_;
+};
+
+} // namespace osculate::time

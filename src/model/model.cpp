@@ -161,6 +161,16 @@ BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
     return K;
 }
 
+Index body_index(const Model& model, Index node) {
+    const auto after = std::ranges::find_if(model.bodies, [&](const Body& body) { return body.first_node > node; });
+    return node < 0 || node >= model.nodes() ? -1 : static_cast<Index>(after - model.bodies.begin()) - 1;
+}
+
+const Body* body_of(const Model& model, Index node) {
+    const Index b = body_index(model, node);
+    return b < 0 ? nullptr : &model.bodies[static_cast<std::size_t>(b)];
+}
+
 std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u, int threads) {
     std::vector<Vec3> f(u.size(), Vec3::Zero());
     model.K.multiply_add_relative(u, f, threads);

@@ -4,20 +4,13 @@
 
 namespace osculate::output {
 
-namespace {
-Index body_of(const model::Model& model, Index node) {
-    const auto after = std::ranges::find_if(model.bodies, [&](const model::Body& b) { return b.first_node > node; });
-    return static_cast<Index>(after - model.bodies.begin()) - 1;
-}
-} // namespace
-
 ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
     const model::ContactPair& term = *snapshot.model().pairs[pair];
     const std::vector<contact::Status>& status = snapshot.state().contact[pair].status;
     ContactResultants sum;
     if (snapshot.audit() != nullptr)
-        sum.penetration = snapshot.audit()->between(body_of(snapshot.model(), term.slaves().node.front()),
-                                                    body_of(snapshot.model(), term.master_nodes().front()));
+        sum.penetration = snapshot.audit()->between(model::body_index(snapshot.model(), term.slaves().node.front()),
+                                                    model::body_index(snapshot.model(), term.master_nodes().front()));
     for (Index j = 0; j < term.size(); ++j) {
         const contact::ContactState contact = snapshot.contact(pair, j);
         const bool partner =

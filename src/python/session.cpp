@@ -1,5 +1,6 @@
 #include "python/session.hpp"
 
+#include "osculate/app/advice.hpp"
 #include "osculate/output/history.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 
@@ -165,8 +166,8 @@ void Session::accepted(const time::AcceptedStep& step) {
     wait_at(Phase::step);
 }
 
-void Session::gave_up(const time::PostMortem& found, const time::FailedIterate*) {
-    post_mortem_ = output::in_words(found);
+void Session::gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) {
+    post_mortem_ = output::in_words(app::advised(found, iterate));
 }
 
 } // namespace osculate::python

@@ -18,13 +18,6 @@ std::vector<std::vector<mesh::Facet>> outer_facets(const model::Model& model) {
     return bodies;
 }
 
-Index body_of(const model::Model& model, Index node) {
-    for (std::size_t b = 0; b < model.bodies.size(); ++b)
-        if (node >= model.bodies[b].first_node && node < model.bodies[b].first_node + model.bodies[b].nodes())
-            return static_cast<Index>(b);
-    return -1;
-}
-
 std::pair<Index, Index> ordered(Index a, Index b) {
     return {std::min(a, b), std::max(a, b)};
 }
@@ -35,8 +28,8 @@ Audit::Audit(const model::Model& model) : model_(model), surfaces_(outer_facets(
     const contact::AuditResult first = surfaces_.examine(model.X);
     for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
     for (const auto& pair : model.pairs) // contact lifts what overlaps
-        drawn_.erase(
-            ordered(body_of(model, pair->slaves().node.front()), body_of(model, pair->master_nodes().front())));
+        drawn_.erase(ordered(model::body_index(model, pair->slaves().node.front()),
+                             model::body_index(model, pair->master_nodes().front())));
 }
 
 const contact::AuditResult& Audit::examine(const std::vector<Vec3>& u) {

@@ -10,6 +10,7 @@ namespace osculate::time {
 
 using contact::Status;
 using model::Body;
+using model::body_of;
 using model::ContactPair;
 
 namespace {
@@ -38,12 +39,6 @@ bool is_loose(const FailedAttempt& failed, const BodyHold& hold) {
 }
 
 } // namespace
-
-const Body* body_of(const model::Model& model, Index node) {
-    for (const Body& body : model.bodies)
-        if (node >= body.first_node && node < body.first_node + body.nodes()) return &body;
-    return nullptr;
-}
 
 std::vector<BodyHold> holds_before(const FailedAttempt& failed) {
     const model::Model& model = failed.model;

@@ -5,8 +5,6 @@
 
 namespace osculate::time {
 
-/// The body of a global node; null for none.
-[[nodiscard]] const model::Body* body_of(const model::Model& model, Index node);
 /// How contact stood at the last accepted state, body by body. Evaluates the contact points there.
 [[nodiscard]] std::vector<BodyHold> holds_before(const FailedAttempt& failed);
 /// Adds what holds the bodies at the last iterate, at which `equilibrium` has been evaluated.

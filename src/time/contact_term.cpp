@@ -120,8 +120,7 @@ contact::ContactResidual ContactTerm::law(std::size_t p, Index j) const {
 void ContactTerm::add_forces(std::vector<Vec3>& f) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j)
-            evaluations_[p].for_each_force(j, lambda_[p][j],
-                                           [&](Index node, const Vec3& force) { f[node] -= force; });
+            evaluations_[p].for_each_force(j, lambda_[p][j], [&](Index node, const Vec3& force) { f[node] -= force; });
 }
 
 Index ContactTerm::write_rows(double* F) const {
@@ -131,8 +130,7 @@ Index ContactTerm::write_rows(double* F) const {
             const Index coupling = first_[p] + j, slave = unknowns_.slave(coupling);
             const Vec3 value = law(p, j).value;
             const Mat3 mirrored = symmetry_directions(slave);
-            const Vec3 local =
-                constraints_.to_local(slave, Vec3(value - mirrored * value + mirrored * lambda_[p][j]));
+            const Vec3 local = constraints_.to_local(slave, Vec3(value - mirrored * value + mirrored * lambda_[p][j]));
             for (int k = 0; k < 3; ++k) F[unknowns_.contact_row(coupling, k)] = local(k);
             const contact::ContactPoint& point = evaluations_[p].point(j);
             if (point.found && !(std::isfinite(point.gap) && point.normal.allFinite())) {

@@ -109,13 +109,13 @@ void ContactTerm::add_product(const Direction& d, std::vector<Vec3>& f, double* 
 bool ContactTerm::add_pattern(std::vector<model::Coupling>& couplings) const {
     bool covered = true;
     const auto covers = [](const model::Coupling& coupling, const std::vector<Index>& masters) {
-        return std::ranges::all_of(
-            masters, [&](Index node) { return std::ranges::binary_search(coupling.masters, node); });
+        return std::ranges::all_of(masters,
+                                   [&](Index node) { return std::ranges::binary_search(coupling.masters, node); });
     };
     for (std::size_t p = 0; p < evaluations_.size() && covered; ++p)
         for (Index j = 0; j < evaluations_[p].pair().size() && covered; ++j)
-            covered = !reaches(p, j) || covers(couplings[static_cast<std::size_t>(first_[p] + j)],
-                                               evaluations_[p].point_nodes(j));
+            covered = !reaches(p, j) ||
+                      covers(couplings[static_cast<std::size_t>(first_[p] + j)], evaluations_[p].point_nodes(j));
     if (covered) return true;
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {

@@ -14,6 +14,7 @@ namespace osculate::time {
 
 using contact::Status;
 using model::Body;
+using model::body_of;
 using model::ContactPair;
 
 namespace {
@@ -239,7 +240,6 @@ PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium) {
         std::tie(p, j) = slave_of(model, global_node(model, first.body, first.node));
     }
     if (p >= 0) found.contact = place(model, equilibrium.contact()[p], j, state.contact[p].status[j]);
-    advise(found, failed);
     return found;
 }
 
@@ -264,10 +264,7 @@ PostMortem examine(const LoadNotFinite& failure, const model::Model& model, cons
     for (const model::Set& set : model.sets)
         if (set.name == loaded && !key.starts_with(body_force))
             found.body = model.bodies[static_cast<std::size_t>(set.body)].name;
-    found.advice.push_back({"stages." + stage.name + "." + key,
-                            "give it a finite value at every time from 0 to " + number(stage.duration) +
-                                " s after the stage's start; at " + number(failure.elapsed()) +
-                                " s it has none. Move a pole of the expression out of the stage, or use a table"});
+    found.missing_load = {failure.course(), failure.elapsed(), stage.duration};
     return found;
 }
 

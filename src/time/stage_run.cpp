@@ -284,7 +284,7 @@ void StageRun::give_up(const StepAttempt& attempt) {
                     (attempt.result.adrift >= 0 ? "" : ", the smallest allowed,") + " failed. " + row.cause;
     model::State state = equilibrium_.state(attempt.z);
     state.time = row.time;
-    const FailedIterate iterate{state, equilibrium_};
+    const FailedIterate iterate{failed, state, equilibrium_};
     observer_.gave_up(found, &iterate);
     throw RunFailure(found.message);
 }

@@ -21,14 +21,9 @@ CentreMasses::CentreMasses(const model::Model& model, const Dynamics& dynamics, 
                 if (constraints.constraint(node, k) != nullptr)
                     free[b] = free[b] && constraints.frame(node).col(k).array().abs() < across;
         }
-    const auto owner = [&](Index node) {
-        std::size_t b = 0;
-        while (b + 1 < model.bodies.size() && model.bodies[b + 1].first_node <= node) ++b;
-        return b;
-    };
     for (const auto& pair : model.pairs) {
-        slave.push_back(owner(pair->slaves().node.front()));
-        master.push_back(owner(pair->master_nodes().front()));
+        slave.push_back(static_cast<std::size_t>(model::body_index(model, pair->slaves().node.front())));
+        master.push_back(static_cast<std::size_t>(model::body_index(model, pair->master_nodes().front())));
     }
 }
 

@@ -48,6 +48,9 @@ struct Model {
     [[nodiscard]] const BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
+/// Number of the body of a global node, and the body; -1 and null for no node.
+[[nodiscard]] Index body_index(const Model& model, Index node);
+[[nodiscard]] const Body* body_of(const Model& model, Index node);
 /// f_int(u) of all bodies, (nodes) N.
 [[nodiscard]] std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u, int threads);
 /// Strain energy of all bodies, J.

@@ -10,7 +10,8 @@ namespace osculate::time {
 /// are added to.
 class BodyTerm final : public Term {
 public:
-    BodyTerm(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, Timings& timings, int threads);
+    BodyTerm(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, Timings& timings,
+             int threads);
 
     /// The next evaluate() is linear in the displacements about u, (nodes) m. Of no concern without finite strain.
     void linearise_next_about(const std::vector<Vec3>& u) {

@@ -26,9 +26,10 @@ class EquilibriumTangent final : public solve::Preconditioner, public solve::Tan
 public:
     /// @param terms  of the residual, `bodies` and `contact` among them; all of it must outlive this object
     /// @param at     where the residual was evaluated last
-    EquilibriumTangent(const model::Model& model, const model::Constraints& constraints, const model::Unknowns& unknowns,
-                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact, const Iterate& at,
-                       const TangentChoice& choice, Timings& timings, int threads);
+    EquilibriumTangent(const model::Model& model, const model::Constraints& constraints,
+                       const model::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
+                       ContactTerm& contact, const Iterate& at, const TangentChoice& choice, Timings& timings,
+                       int threads);
 
     /// Opens an attempt over dt (0 in statics); changed: the bodies' stiffness has other values.
     void begin(double dt, bool changed);
@@ -69,12 +70,12 @@ private:
     const Iterate& at_;
     Timings& timings_;
     int threads_;
-    bool may_buckle_, products_;                            ///< products_: the tangent goes by what it does
+    bool may_buckle_, products_;                              ///< products_: the tangent goes by what it does
     std::vector<model::Coupling> couplings_, kept_couplings_; ///< pattern of the matrix; at the last commit
     long patterns_built_ = 0, kept_patterns_ = 0;
-    std::unique_ptr<model::SystemMatrix> matrix_;           ///< null: not asked for yet
-    std::unique_ptr<ContactPreconditioner> preconditioner_; ///< none where the tangent is symmetric
-    std::unique_ptr<CondensedTangent> condensed_;           ///< where bodies are linear
+    std::unique_ptr<model::SystemMatrix> matrix_;              ///< null: not asked for yet
+    std::unique_ptr<ContactPreconditioner> preconditioner_;    ///< none where the tangent is symmetric
+    std::unique_ptr<CondensedTangent> condensed_;              ///< where bodies are linear
     bool stale_preconditioner_ = false, stale_matrix_ = false; ///< the stiffness of the bodies has moved on
     std::vector<Vec3> product_u_, product_f_;                  ///< scratch of multiply()
 };

@@ -75,6 +75,14 @@ struct Advice {
     std::vector<std::string> set{}; ///< KEY=VALUE as `--set` takes them, which do as it says; empty: in words alone
 };
 
+/// A load or a motion without a value.
+struct MissingLoad {
+    std::string course;  ///< its name, as in Course
+    double elapsed = 0;  ///< since the stage's start, s
+    double duration = 0; ///< of the stage, s
+};
+
+/// What is known of a failure. `advice` and `no_remedy` are for whoever knows the keys of a scene to fill in.
 struct PostMortem {
     Cause cause = Cause::iterations_exhausted;
     std::string message; ///< the run's own sentence
@@ -88,6 +96,7 @@ struct PostMortem {
     Vec3 X = Vec3::Zero(), x = X;        ///< where it was at first, and is at the last iterate, m
     std::optional<ContactPlace> contact; ///< of that node, or of one whose status went to and fro
     std::optional<ElementPlace> element;
+    std::optional<MissingLoad> missing_load{};
     double residual = 0;                     ///< of the last solve, relative
     double reference_force = 0;              ///< what it is relative to, N
     Vec3 out_of_balance = Vec3::Zero();      ///< force that nothing balances at the node, N
@@ -138,9 +147,6 @@ private:
 /// @param t_start    of the stage, s  @param last_time  of the last accepted state, s
 [[nodiscard]] PostMortem examine(const LoadNotFinite& failure, const model::Model& model, const Stage& stage,
                                  double t_start, double last_time);
-/// Adds what to change, or why nothing helps, to an otherwise complete post-mortem.
-void advise(PostMortem& found, const FailedAttempt& failed);
-
 /// A failed solve in one sentence; fills in the attempt's body, node and value.
 [[nodiscard]] std::string explain(const model::Model& model, const LadderResult& result, const Equilibrium& equilibrium,
                                   Attempt& attempt);

@@ -16,6 +16,7 @@
 namespace osculate::time {
 
 struct RunContext;
+struct FailedAttempt;
 struct PostMortem;
 
 struct StepperOptions {
@@ -42,6 +43,7 @@ struct AcceptedStep {
 
 /// The last iterate of the attempt at which a run gave up, valid during StepObserver::gave_up only.
 struct FailedIterate {
+    const FailedAttempt& attempt;
     const model::State& state;      ///< time: what the attempt aimed at
     const Equilibrium& equilibrium; ///< evaluated at `state` where that is finite
 };

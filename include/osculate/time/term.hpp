@@ -21,8 +21,9 @@ struct StepLoad {
 
 /// A point of the iteration.
 struct Iterate {
-    std::vector<Vec3> u;       ///< (nodes) displacements, m
-    std::vector<Vec3> x, tail; ///< (nodes) positions and the digits they lack: x + tail = X + u to the last digit of u, m
+    std::vector<Vec3> u; ///< (nodes) displacements, m
+    std::vector<Vec3> x,
+        tail; ///< (nodes) positions and the digits they lack: x + tail = X + u to the last digit of u, m
     const double* z = nullptr; ///< all unknowns; null at the start of an attempt
 };
 

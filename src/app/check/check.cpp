@@ -41,9 +41,7 @@ struct Check {
 };
 
 const model::Body& owner(const model::Model& model, Index node) {
-    std::size_t b = 0;
-    while (b + 1 < model.bodies.size() && model.bodies[b + 1].first_node <= node) ++b;
-    return model.bodies[b];
+    return *model::body_of(model, node);
 }
 
 double modulus(const LoadedScene& loaded, Index node) {

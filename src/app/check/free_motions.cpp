@@ -106,9 +106,7 @@ public:
 
 private:
     [[nodiscard]] std::size_t body_of(Index node) const {
-        std::size_t b = 0;
-        while (b + 1 < plan_.model.bodies.size() && plan_.model.bodies[b + 1].first_node <= node) ++b;
-        return b;
+        return static_cast<std::size_t>(model::body_index(plan_.model, node));
     }
 
     void add(const model::ContactEvaluation& evaluation) {

@@ -2,6 +2,7 @@
 
 #include "app/plan/gaps.hpp"
 #include "app/report/plots.hpp"
+#include "osculate/app/advice.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run_report.hpp"
 #include "osculate/app/version.hpp"
@@ -298,7 +299,8 @@ RunRecorder::Spent RunRecorder::spent_so_far() const {
             usage.ru_maxrss * 1024}; // Linux counts in kB
 }
 
-void RunRecorder::gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) {
+void RunRecorder::gave_up(const time::PostMortem& examined, const time::FailedIterate* iterate) {
+    const time::PostMortem found = advised(examined, iterate);
     post_mortem_ = output::in_words(found);
     try {
         on_disk(timings_, [&] {

@@ -53,7 +53,7 @@ public:
     void between_steps(const std::function<time::Checkpoint()>& checkpoint) override;
 
     /// Writes post_mortem.json and, where the scene asks for it, the last iterate into the folder failed/.
-    void gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) override;
+    void gave_up(const time::PostMortem& examined, const time::FailedIterate* iterate) override;
 
     /// Every frame so far is written when it returns.
     void wait_for_frames();

@@ -1,24 +1,29 @@
 /// What to change after a failure. Every piece names a key of the scene, and where a value can be told, `--set` takes it.
 
+#include "osculate/app/advice.hpp"
+
 #include "osculate/core/without_traps.hpp"
-#include "osculate/time/post_mortem.hpp"
-#include "time/body_hold.hpp"
-#include "time/number.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+#include <fmt/format.h>
 
-namespace osculate::time {
+namespace osculate::app {
+
+using model::body_of;
+using time::Cause;
+using time::FailedAttempt;
+using time::PostMortem;
 
 namespace {
 
+std::string number(double value) {
+    return fmt::format("{:g}", value);
+}
+
 /// A round number for an override.
 std::string rounded(double value) {
-    std::ostringstream text;
-    text << std::setprecision(2) << value;
-    return text.str();
+    return fmt::format("{:.2g}", value);
 }
 
 /// The numbers of all nodes of facets, ascending.
@@ -110,9 +115,9 @@ private:
     }
 
     void unsupported() {
-        const auto at = std::ranges::find(found_.bodies, found_.body, &BodyHold::body);
+        const auto at = std::ranges::find(found_.bodies, found_.body, &time::BodyHold::body);
         if (at == found_.bodies.end()) return;
-        const BodyHold& loose = *at;
+        const time::BodyHold& loose = *at;
         const std::string ways = loose.free_motions.empty()
                                      ? "free in " + std::to_string(loose.free_by_supports) + " ways but for contact"
                                      : "free " + listed(loose.free_motions);
@@ -277,7 +282,7 @@ private:
             constexpr double most = 0.02;
             return steps_smaller_by(std::min(failed_.decision.value, most), least, why);
         }
-        const StepLimits& limits = failed_.stage.limits;
+        const time::StepLimits& limits = failed_.stage.limits;
         const double depth = std::abs(failed_.decision.value), unit = unit_of_depth();
         steps_smaller_by(limits.allowed_interpenetration * unit / depth, least, why);
         const std::string words = limits.in_metres ? " m" : " (of the facet size)";
@@ -356,7 +361,7 @@ private:
                     std::ranges::count(one.master_nodes(), intrusion.node) > 0 ? sides_swapped(one)
                                                                                : std::vector<std::string>{});
             constexpr double in_dynamics = 0.05; // the default there
-            if (const StepLimits& limits = failed_.stage.limits;
+            if (const time::StepLimits& limits = failed_.stage.limits;
                 known && (limits.in_metres || limits.allowed_interpenetration > in_dynamics))
                 change(in_stage("control.allowed_interpenetration"), number(in_dynamics),
                        number(in_dynamics) + ", so that no node is carried past a surface");
@@ -412,11 +417,26 @@ private:
     std::string stage_;
 };
 
-} // namespace
-
-void advise(PostMortem& found, const FailedAttempt& failed) {
-    const WithoutTraps nan; // values of failed solves are compared
-    Adviser(found, failed).advise();
+/// Of a load or a motion without a value.
+void advise_on_load(PostMortem& found) {
+    const auto& [course, elapsed, duration] = *found.missing_load;
+    std::string key = course; // components of a body force have no key of their own
+    if (key.starts_with("body_force.")) key = key.substr(0, key.rfind('.'));
+    found.advice.push_back({"stages." + found.stage + "." + key,
+                            "give it a finite value at every time from 0 to " + number(duration) +
+                                " s after the stage's start; at " + number(elapsed) +
+                                " s it has none. Move a pole of the expression out of the stage, or use a table"});
 }
 
-} // namespace osculate::time
+} // namespace
+
+PostMortem advised(PostMortem found, const time::FailedIterate* iterate) {
+    const WithoutTraps nan; // values of failed solves are compared
+    if (iterate != nullptr)
+        Adviser(found, iterate->attempt).advise();
+    else if (found.missing_load)
+        advise_on_load(found);
+    return found;
+}
+
+} // namespace osculate::app

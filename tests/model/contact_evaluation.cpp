@@ -1,4 +1,4 @@
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 
 #include "osculate/mesh/generators.hpp"
 #include "support/differences.hpp"
@@ -36,69 +36,71 @@ protected:
         const std::vector<Index> master_nodes = surface->vertex_nodes();
         ContactOptions options;
         options.friction = 0.3;
-        term = std::make_unique<ContactTerm>("pair", x, slaves, std::move(surface), MasterNodes{master_nodes},
+        pair = std::make_unique<ContactPair>("pair", x, slaves, std::move(surface), MasterNodes{master_nodes},
                                              std::move(master), options);
-        term->begin_step(x, term->initial_history(), timings, 1);
-        term->evaluate(x, timings, 1);
+        evaluation = std::make_unique<ContactEvaluation>(*pair);
+        evaluation->begin_step(x, pair->initial_history(), timings, 1);
+        evaluation->evaluate(x, timings, 1);
     }
-    [[nodiscard]] Index slave(Index j) const { return term->slaves().node[j]; }
+    [[nodiscard]] Index slave(Index j) const { return pair->slaves().node[j]; }
 
     std::vector<Vec3> x;
-    std::unique_ptr<ContactTerm> term;
+    std::unique_ptr<ContactPair> pair;
+    std::unique_ptr<ContactEvaluation> evaluation;
     Timings timings;
 };
 
 TEST_P(FlatPair, FindsEachSlaveOverItsFacet) {
-    ASSERT_EQ(term->size(), 3);
-    EXPECT_TRUE(term->point(0).found);
-    EXPECT_NEAR(term->point(0).gap, 0.1, round_off);
-    EXPECT_NEAR(term->point(1).gap, -0.05, round_off);
-    EXPECT_FALSE(term->point(2).found) << "beside the master";
-    EXPECT_TRUE(term->point_nodes(2).empty());
-    EXPECT_EQ(term->facet_changes(), 0);
+    ASSERT_EQ(pair->size(), 3);
+    EXPECT_TRUE(evaluation->point(0).found);
+    EXPECT_NEAR(evaluation->point(0).gap, 0.1, round_off);
+    EXPECT_NEAR(evaluation->point(1).gap, -0.05, round_off);
+    EXPECT_FALSE(evaluation->point(2).found) << "beside the master";
+    EXPECT_TRUE(evaluation->point_nodes(2).empty());
+    EXPECT_EQ(evaluation->facet_changes(), 0);
 }
 
 TEST_P(FlatPair, NamesPatchNodesInTheOrderOfTheirWeights) {
     for (Index j = 0; j < 2; ++j) {
         Vec3 foot = Vec3::Zero();
-        for (std::size_t i = 0; i < term->point_nodes(j).size(); ++i)
-            foot += term->point(j).weights(static_cast<Index>(i)) * x[term->point_nodes(j)[i]];
-        EXPECT_LT((foot - term->point(j).foot).norm(), round_off);
-        EXPECT_EQ(term->patch_nodes(term->facets()[j]), term->point_nodes(j));
+        for (std::size_t i = 0; i < evaluation->point_nodes(j).size(); ++i)
+            foot += evaluation->point(j).weights(static_cast<Index>(i)) * x[evaluation->point_nodes(j)[i]];
+        EXPECT_LT((foot - evaluation->point(j).foot).norm(), round_off);
+        EXPECT_EQ(evaluation->patch_nodes(evaluation->facets()[j]), evaluation->point_nodes(j));
     }
 }
 
 TEST_P(FlatPair, HasNoDriftWhenBothSidesMoveTogether) {
     for (Vec3& p : x) p += Vec3(0.3, -0.2, 0.1);
-    term->evaluate(x, timings, 1);
-    for (Index j = 0; j < 2; ++j) EXPECT_LT(term->state(j, x, Vec3::Zero()).drift.norm(), round_off);
+    evaluation->evaluate(x, timings, 1);
+    for (Index j = 0; j < 2; ++j) EXPECT_LT(evaluation->state(j, Vec3::Zero()).drift.norm(), round_off);
 }
 
 TEST_P(FlatPair, MeasuresTheDriftOfTheSlaveSinceTheStepBegan) {
     const Vec3 slip(0.04, -0.03, 0.02), lambda(1, 2, 3);
     x[slave(0)] += slip;
-    term->evaluate(x, timings, 1);
-    const contact::ContactState state = term->state(0, x, lambda);
+    evaluation->evaluate(x, timings, 1);
+    const contact::ContactState state = evaluation->state(0, lambda);
     EXPECT_LT((state.drift - slip).norm(), round_off);
     EXPECT_EQ(state.lambda, lambda);
-    EXPECT_EQ(state.gap, term->point(0).gap);
-    term->begin_step(x, term->initial_history(), timings, 1);
-    term->evaluate(x, timings, 1);
-    EXPECT_LT(term->state(0, x, lambda).drift.norm(), round_off) << "measured anew from the next step";
+    EXPECT_EQ(state.gap, evaluation->point(0).gap);
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
+    evaluation->evaluate(x, timings, 1);
+    EXPECT_LT(evaluation->state(0, lambda).drift.norm(), round_off) << "measured anew from the next step";
 }
 
 TEST_P(FlatPair, HasTheExactVariationOfTheDrift) {
     Random random(81);
     for (Vec3& p : x) p += random.vector(0.02); // so that feet and weights move with every node
-    term->evaluate(x, timings, 1);
+    evaluation->evaluate(x, timings, 1);
     const double step = 1e-5, tolerance = 1e-6; // round-off 1e-12 / 1e-5 and curvature 1e-10, with a margin
     for (Index j = 0; j < 2; ++j) {
         Matrix dd;
         contact::ContactVariation variation;
-        term->vary(j, x, variation);
-        term->drift_variation(j, x, variation, dd);
+        evaluation->vary(j, variation);
+        evaluation->drift_variation(j, variation, dd);
         std::vector<Index> touched{slave(j)};
-        touched.insert(touched.end(), term->point_nodes(j).begin(), term->point_nodes(j).end());
+        touched.insert(touched.end(), evaluation->point_nodes(j).begin(), evaluation->point_nodes(j).end());
         Vector y(3 * static_cast<Index>(touched.size()));
         for (std::size_t i = 0; i < touched.size(); ++i) y.segment<3>(3 * static_cast<Index>(i)) = x[touched[i]];
         const Matrix differences = osculate::testing::central_differences(
@@ -106,46 +108,46 @@ TEST_P(FlatPair, HasTheExactVariationOfTheDrift) {
                 std::vector<Vec3> moved = x;
                 for (std::size_t i = 0; i < touched.size(); ++i)
                     moved[touched[i]] = at.segment<3>(3 * static_cast<Index>(i));
-                term->evaluate(moved, timings, 1);
-                return term->state(j, moved, Vec3::Zero()).drift;
+                evaluation->evaluate(moved, timings, 1);
+                return evaluation->state(j, Vec3::Zero()).drift;
             },
             y, step);
         EXPECT_LT(osculate::testing::relative_difference(dd, differences), tolerance);
-        term->evaluate(x, timings, 1);
+        evaluation->evaluate(x, timings, 1);
     }
 }
 
 TEST_P(FlatPair, FollowsASlidingSlaveFromFacetToFacet) {
-    const Index before = term->facets()[0];
+    const Index before = evaluation->facets()[0];
     x[slave(0)].x() += 0.5;
-    term->evaluate(x, timings, 2);
-    EXPECT_NE(term->facets()[0], before);
-    EXPECT_EQ(term->facet_changes(), 1);
-    EXPECT_NEAR(term->point(0).gap, 0.1, round_off);
+    evaluation->evaluate(x, timings, 2);
+    EXPECT_NE(evaluation->facets()[0], before);
+    EXPECT_EQ(evaluation->facet_changes(), 1);
+    EXPECT_NEAR(evaluation->point(0).gap, 0.1, round_off);
 }
 
 /// The projection itself does not depend on the facet on a flat master, so the latch costs nothing here.
 TEST_P(FlatPair, StaysOnItsFacetAfterFourChangesInOneAttempt) {
     for (int change = 0; change < 7; ++change) {
         x[slave(0)].x() += change % 2 == 0 ? 0.5 : -0.5;
-        term->evaluate(x, timings, 1);
-        EXPECT_EQ(term->facet_changes(), change < 4) << change;
+        evaluation->evaluate(x, timings, 1);
+        EXPECT_EQ(evaluation->facet_changes(), change < 4) << change;
     }
-    term->begin_step(x, term->initial_history(), timings, 1);
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
     x[slave(0)].x() -= 0.5;
-    term->evaluate(x, timings, 1);
-    EXPECT_EQ(term->facet_changes(), 1) << "a new attempt is free again";
+    evaluation->evaluate(x, timings, 1);
+    EXPECT_EQ(evaluation->facet_changes(), 1) << "a new attempt is free again";
 }
 
 TEST_P(FlatPair, SearchesOpenSlavesAnewAndKeepsTheFacetsOfClosedOnes) {
-    ContactHistory history = term->initial_history();
-    history.facet = term->facets();
+    ContactHistory history = pair->initial_history();
+    history.facet = evaluation->facets();
     history.status[1] = contact::Status::stick;
     const Index kept = history.facet[1];
     for (Index j = 0; j < 2; ++j) x[slave(j)] += Vec3(1.5, 0, 0);
-    term->begin_step(x, history, timings, 1);
-    EXPECT_NE(term->facets()[0], history.facet[0]);
-    EXPECT_EQ(term->facets()[1], kept);
+    evaluation->begin_step(x, history, timings, 1);
+    EXPECT_NE(evaluation->facets()[0], history.facet[0]);
+    EXPECT_EQ(evaluation->facets()[1], kept);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, FlatPair, ::testing::Bool(),
@@ -153,18 +155,20 @@ INSTANTIATE_TEST_SUITE_P(Of, FlatPair, ::testing::Bool(),
 
 TEST_P(FlatPair, LetsHeldSlavesStickElastically) {
     const Vec3 lambda_start(0.3, -0.2, 2), drift(0.01, 0.02, 0);
-    ContactHistory history = term->initial_history();
+    ContactHistory history = pair->initial_history();
     history.lambda[1] = lambda_start;
-    term->begin_step(x, history, timings, 1);
-    term->hold({0, 1, 0});
+    evaluation->begin_step(x, history, timings, 1);
+    evaluation->hold({0, 1, 0});
     const contact::ContactState moved{lambda_start, 0, Vec3::UnitZ(), drift};
-    const Vec3 exact = term->law(0).residual(moved, contact::Status::stick).value;
-    const Vec3 spring = term->law(1).residual(moved, contact::Status::stick).value;
-    EXPECT_LT((exact - term->stiffness(0) * drift).norm(), round_off) << "no drift at all";
-    EXPECT_LT((spring - 100 * term->stiffness(1) * drift).norm(), round_off) << "from the force at the start";
+    const Vec3 exact = evaluation->law(0).residual(moved, contact::Status::stick).value;
+    const Vec3 spring = evaluation->law(1).residual(moved, contact::Status::stick).value;
+    EXPECT_LT((exact - evaluation->stiffness(0) * drift).norm(), round_off) << "no drift at all";
+    EXPECT_LT((spring - 100 * evaluation->stiffness(1) * drift).norm(), round_off) << "from the force at the start";
     const contact::ContactState loaded{Vec3(1, 1, 2), 0, Vec3::UnitZ(), Vec3::Zero()};
-    EXPECT_LT(term->law(0).residual(loaded, contact::Status::stick).value.norm(), round_off) << "whatever its force";
-    EXPECT_GT(term->law(1).residual(loaded, contact::Status::stick).value.norm(), 1) << "no drift, no other force";
+    EXPECT_LT(evaluation->law(0).residual(loaded, contact::Status::stick).value.norm(), round_off)
+        << "whatever its force";
+    EXPECT_GT(evaluation->law(1).residual(loaded, contact::Status::stick).value.norm(), 1)
+        << "no drift, no other force";
 }
 
 /// Motions that leave no doubt about the side of a node are small against facets and against what lies behind them.
@@ -179,12 +183,13 @@ TEST(Thinness, OfAFacetIsThatOfItsThinnestVertex) {
         nodes.thickness.assign(static_cast<std::size_t>(vertices), 2.0);
         if (thin) nodes.thickness[0] = 0.1;
         auto master = contact::make_facets_surface(*surface);
-        ContactTerm term("pair", x, SlaveNodes{{slave}, {1}, {1}, {}},
-                         std::make_unique<mesh::HalfEdgeSurface>(*surface), std::move(nodes), std::move(master), {});
-        EXPECT_NEAR(term.finest(), thin ? 0.1 : 1, round_off);
+        const ContactPair pair("pair", x, SlaveNodes{{slave}, {1}, {1}, {}},
+                               std::make_unique<mesh::HalfEdgeSurface>(*surface), std::move(nodes), std::move(master),
+                               {});
+        EXPECT_NEAR(pair.finest(), thin ? 0.1 : 1, round_off);
         for (Index f = 0; f < surface->facet_count(); ++f) {
             const auto v = surface->facet_vertices(f);
-            EXPECT_EQ(term.thickness(f), thin && std::ranges::count(v, 0) > 0 ? 0.1 : 2);
+            EXPECT_EQ(pair.thickness(f), thin && std::ranges::count(v, 0) > 0 ? 0.1 : 2);
         }
     }
 }
@@ -207,16 +212,17 @@ TEST(UnseenGaps, AreThoseOfSlaveNodesWhoseFacetsOverlapNothing) {
         slaves.facets.push_back({{slaves.node[0], slaves.node[1], slaves.node[2], slaves.node[3]}, 4});
         ContactOptions options;
         options.discretisation = Discretisation::mortar;
-        ContactTerm term("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master), options);
+        const ContactPair pair("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master), options);
+        ContactEvaluation evaluation(pair);
         Timings timings;
-        term.begin_step(x, term.initial_history(), timings, 1);
-        term.evaluate(x, timings, 1);
+        evaluation.begin_step(x, pair.initial_history(), timings, 1);
+        evaluation.evaluate(x, timings, 1);
         for (Index j = 0; j < 4; ++j) {
-            EXPECT_EQ(term.point(j).found, !upright);
+            EXPECT_EQ(evaluation.point(j).found, !upright);
             if (upright)
-                EXPECT_NEAR(term.unseen_gap(j, x), x[term.slaves().node[j]].z(), round_off);
+                EXPECT_NEAR(evaluation.unseen_gap(j), x[pair.slaves().node[j]].z(), round_off);
             else
-                EXPECT_EQ(term.unseen_gap(j, x), std::numeric_limits<double>::infinity());
+                EXPECT_EQ(evaluation.unseen_gap(j), std::numeric_limits<double>::infinity());
         }
     }
 }
@@ -239,42 +245,44 @@ protected:
         x.emplace_back(2.1, 0.6, 0.1);
         ContactOptions options;
         options.changes_before_latch = 2;
-        term = std::make_unique<ContactTerm>("pair", x, SlaveNodes{{slave}, {0.25}, {3}, {}}, std::move(surface),
+        pair = std::make_unique<ContactPair>("pair", x, SlaveNodes{{slave}, {0.25}, {3}, {}}, std::move(surface),
                                              std::move(nodes), std::move(master), options);
+        evaluation = std::make_unique<ContactEvaluation>(*pair);
     }
     /// The facet that is seen from above the edge, or from beside it.
     Index seen_from(bool above) {
         x[slave] = {above ? 2.1 : 2.2, 0.6, above ? 0.2 : 0.1};
-        term->evaluate(x, timings, 1);
-        EXPECT_TRUE(term->point(0).found);
-        return term->point(0).side;
+        evaluation->evaluate(x, timings, 1);
+        EXPECT_TRUE(evaluation->point(0).found);
+        return evaluation->point(0).side;
     }
 
     std::vector<Vec3> x;
     Index slave = 0;
-    std::unique_ptr<ContactTerm> term;
+    std::unique_ptr<ContactPair> pair;
+    std::unique_ptr<ContactEvaluation> evaluation;
     Timings timings;
 };
 
 TEST_F(CreasePair, LatchesASlaveThatSeesNowOneSideNowTheOther) {
-    term->begin_step(x, term->initial_history(), timings, 1);
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
     const Index above = seen_from(true), beside = seen_from(false);
     EXPECT_NE(above, beside);
-    EXPECT_FALSE(term->hit(0).latched) << "one change of side";
+    EXPECT_FALSE(evaluation->hit(0).latched) << "one change of side";
     seen_from(true);
     EXPECT_EQ(seen_from(false), above) << "two: it stays";
-    EXPECT_TRUE(term->hit(0).latched);
+    EXPECT_TRUE(evaluation->hit(0).latched);
 }
 
 /// A rejected attempt leaves no trace: the next one is free to see another side at first.
 TEST_F(CreasePair, ForgetsTheSideOfTheAttemptBefore) {
-    term->begin_step(x, term->initial_history(), timings, 1);
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
     const Index above = seen_from(true);
-    term->begin_step(x, term->initial_history(), timings, 1);
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
     EXPECT_NE(seen_from(false), above);
     seen_from(true);
     seen_from(true);
-    EXPECT_FALSE(term->hit(0).latched) << "one change of side in this attempt";
+    EXPECT_FALSE(evaluation->hit(0).latched) << "one change of side in this attempt";
 }
 
 } // namespace

@@ -27,8 +27,7 @@ time::StepLimits limits_of(const std::string& stage) {
     return compile(scene, build_meshes(scene), 1, timings).stages.at(0).limits;
 }
 
-/// In facet sizes. Statics take half a facet without a trial first, and hold what they accept to more; what inertia carries on
-/// is stopped at a twentieth.
+/// In facet sizes. Statics look for it once a step of their size was cut, and hold what they accept to more.
 TEST(CompiledStages, AllowAnInterpenetrationThatIsUsualInStaticsAndInDynamics) {
     const time::StepLimits statics = limits_of("{steps: 1}"), dynamics = limits_of("{analysis: dynamic}");
     EXPECT_EQ(statics.allowed_interpenetration, 0.5);

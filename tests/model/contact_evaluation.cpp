@@ -150,6 +150,66 @@ TEST_P(FlatPair, SearchesOpenSlavesAnewAndKeepsTheFacetsOfClosedOnes) {
     EXPECT_EQ(evaluation->facets()[1], kept);
 }
 
+/// Positions that are rounded leave their last digits to be added to gap and drift.
+TEST_P(FlatPair, AddsTheLastDigitsThatPositionsLack) {
+    const Vec3 at_the_start(1e-9, 2e-9, -3e-9), now(-4e-9, 1e-9, 5e-9), together(7e-9, -8e-9, 9e-9);
+    std::vector<Vec3> start(x.size(), Vec3::Zero()), tails(x.size(), together);
+    start[slave(0)] = at_the_start;
+    tails[slave(0)] = together + now;
+    evaluation->begin_step(x, pair->initial_history(), timings, 1, start);
+    evaluation->evaluate(x, timings, 1, tails);
+    const contact::ContactState state = evaluation->state(0, Vec3::Zero());
+    const double last_digit = 1e-15; // of positions, m
+    EXPECT_NEAR(state.gap - evaluation->point(0).gap, now.z(), last_digit);
+    EXPECT_LT((state.drift - (now - at_the_start)).norm(), 10 * last_digit);
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
+    evaluation->evaluate(x, timings, 1);
+    EXPECT_EQ(evaluation->state(0, Vec3::Zero()).gap, evaluation->point(0).gap) << "whatever was before";
+}
+
+TEST_P(FlatPair, HasEvaluationsThatKnowNothingOfOneAnother) {
+    const ContactEvaluation copy = *evaluation;
+    ContactEvaluation other(*pair);
+    std::vector<Vec3> elsewhere = x;
+    for (Index j = 0; j < 2; ++j) elsewhere[slave(j)] += Vec3(0.7, -0.4, 0.3);
+    other.begin_step(elsewhere, pair->initial_history(), timings, 1);
+    other.evaluate(elsewhere, timings, 1);
+    for (Index j = 0; j < 2; ++j) {
+        EXPECT_EQ(evaluation->point(j).gap, copy.point(j).gap);
+        EXPECT_NE(other.point(j).gap, copy.point(j).gap);
+    }
+    evaluation->evaluate(elsewhere, timings, 1);
+    other.begin_step(x, pair->initial_history(), timings, 1);
+    other.evaluate(x, timings, 1);
+    for (Index j = 0; j < 2; ++j) { // to the bit
+        EXPECT_EQ(other.point(j).gap, copy.point(j).gap);
+        EXPECT_EQ(other.point(j).weights, copy.point(j).weights);
+        EXPECT_EQ(other.point_nodes(j), copy.point_nodes(j));
+        EXPECT_NE(evaluation->point(j).gap, copy.point(j).gap);
+        EXPECT_EQ(copy.drift(j), Vec3(Vec3::Zero()));
+        EXPECT_FALSE(evaluation->drift(j).isZero(0));
+    }
+}
+
+/// Patches that were fitted anew belong to a state, not to the pair: a step that is taken back has the surface it had.
+TEST_P(FlatPair, TakesTheMasterSurfaceOfTheState) {
+    std::vector<Vec3> vertices;
+    for (const Index node : pair->master_nodes()) vertices.push_back(x[node]);
+    ContactHistory history = pair->initial_history();
+    EXPECT_EQ(history.master, pair->master());
+    const auto before = evaluation->point_nodes(0);
+    history.master = GetParam() ? contact::make_facets_surface(pair->surface())
+                                : contact::make_rpim_surface(pair->surface(), vertices, {});
+    evaluation->begin_step(x, history, timings, 1);
+    evaluation->evaluate(x, timings, 1);
+    EXPECT_EQ(evaluation->master(), history.master);
+    EXPECT_NE(evaluation->point_nodes(0), before);
+    EXPECT_NEAR(evaluation->point(0).gap, 0.1, round_off);
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
+    evaluation->evaluate(x, timings, 1);
+    EXPECT_EQ(evaluation->point_nodes(0), before);
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, FlatPair, ::testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Rpim" : "Facets"; });
 

@@ -134,7 +134,7 @@ BENCHMARK(project_rpim)->Name("project/rpim")->Arg(4)->Arg(5)->Arg(6);
                 benchmark::RegisterBenchmark(
                     (std::string("evaluate/") + shape + (variation ? "/variation/" : "/values/") + kind).c_str(),
                     evaluate, shape, kind, variation);
-        benchmark::RegisterBenchmark((std::string("place/") + shape).c_str(), place, shape);
+        benchmark::RegisterBenchmark((std::string("prepare/") + shape).c_str(), place, shape);
         for (const char* kind : {"rpim", "blend"})
             benchmark::RegisterBenchmark((std::string("build/") + shape + "/" + kind).c_str(), fit, shape, kind)
                 ->Unit(benchmark::kMillisecond);

@@ -14,7 +14,7 @@ GROUPS = [
     ("Evaluation, half-tube, with variation", "evaluate/half_tube/variation/", "slave point"),
     ("Evaluation, flat block 25 x 25, values", "evaluate/block/values/", "slave point"),
     ("Evaluation, flat block 25 x 25, with variation", "evaluate/block/variation/", "slave point"),
-    ("Placing the patches of blend in a configuration", "place/", "patch"),
+    ("Placing the patches of blend in a configuration", "prepare/", "patch"),
     ("Building the patches of the half-tube", "build/half_tube/", "patch"),
     ("Building the patches of the flat block", "build/block/", "patch"),
     ("Fit of one patch, nodes a side", "patch/fit/", "patch"),

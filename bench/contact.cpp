@@ -28,10 +28,11 @@ void evaluate(benchmark::State& state, const std::string& shape, const std::stri
     for (const SlavePoint& point : points) hits.push_back(search.global(point.s, on.x));
     contact::ContactPoint point;
     contact::ContactVariation variation;
+    std::unique_ptr<contact::Placement> placement;
     for (auto _ : state) {
-        master->prepare(hits, on.x, 1);
+        master->place(hits, on.x, 1, placement);
         for (std::size_t k = 0; k < points.size(); ++k) {
-            master->evaluate(points[k].s, hits[k], on.x, point, with_variation ? &variation : nullptr);
+            master->evaluate(points[k].s, hits[k], on.x, point, with_variation ? &variation : nullptr, placement.get());
             benchmark::DoNotOptimize(point.gap);
         }
     }
@@ -39,12 +40,13 @@ void evaluate(benchmark::State& state, const std::string& shape, const std::stri
 }
 
 /// Placing all patches of a surface in one configuration; an item is a vertex.
-void prepare(benchmark::State& state, const std::string& shape) {
+void place(benchmark::State& state, const std::string& shape) {
     const Surface& on = surface(shape);
     const auto master = make(on, "blend");
     std::vector<contact::FacetHit> hits(static_cast<std::size_t>(on.topology.facet_count()));
     for (std::size_t f = 0; f < hits.size(); ++f) hits[f].facet = static_cast<Index>(f);
-    for (auto _ : state) master->prepare(hits, on.x, 1);
+    std::unique_ptr<contact::Placement> placement;
+    for (auto _ : state) master->place(hits, on.x, 1, placement);
     state.SetItemsProcessed(state.iterations() * on.topology.vertex_count());
 }
 
@@ -132,7 +134,7 @@ BENCHMARK(project_rpim)->Name("project/rpim")->Arg(4)->Arg(5)->Arg(6);
                 benchmark::RegisterBenchmark(
                     (std::string("evaluate/") + shape + (variation ? "/variation/" : "/values/") + kind).c_str(),
                     evaluate, shape, kind, variation);
-        benchmark::RegisterBenchmark((std::string("prepare/") + shape).c_str(), prepare, shape);
+        benchmark::RegisterBenchmark((std::string("prepare/") + shape).c_str(), place, shape);
         for (const char* kind : {"rpim", "blend"})
             benchmark::RegisterBenchmark((std::string("build/") + shape + "/" + kind).c_str(), fit, shape, kind)
                 ->Unit(benchmark::kMillisecond);

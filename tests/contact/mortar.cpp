@@ -48,21 +48,29 @@ struct Pairing {
     Slave slave;
     Mortar mortar;
     FacetSearch search;
+    FacetTracking tracking;
     std::vector<ContactPoint> points;
-    std::vector<Index> facet_of_node;
 
     Pairing(const Surface& surface, std::unique_ptr<MasterSurface> geometry, Slave above)
         : master(surface), shape(std::move(geometry)), slave(std::move(above)),
-          mortar(surface.topology, *shape, slave.facets, slave.X, {}), search(surface.topology),
-          points(slave.X.size()) {
+          mortar(surface.topology, slave.facets, slave.X, {}), search(surface.topology), points(slave.X.size()) {
         search.build(master.x);
-        for (const Vec3& s : slave.X) facet_of_node.push_back(search.global(s, master.x).facet);
+        tracking.changes_before_latch = 4;
+        tracking.changes.assign(slave.X.size(), 0);
+        for (const Vec3& s : slave.X) {
+            tracking.hits.push_back(search.global(s, master.x));
+            tracking.facet.push_back(tracking.hits.back().facet);
+        }
         evaluate(slave.X, master.x);
     }
-    void evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x) {
-        mortar.begin(s, x, search, facet_of_node, 1);
-        (void)mortar.evaluate(s, x, search, 0, 4, facet_of_node, points, 1);
+    [[nodiscard]] PairPositions at(const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
+        return {*shape, search, s, x};
     }
+    void evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x) {
+        mortar.begin(at(s, x), tracking, 1);
+        (void)mortar.evaluate(at(s, x), tracking, points, 1);
+    }
+    [[nodiscard]] Index carriers(Index j) const { return mortar.carriers(j, points[static_cast<std::size_t>(j)]); }
 };
 
 constexpr double round_off = 1e-12;
@@ -84,7 +92,7 @@ TEST_P(FlatMortar, HandsAConstantPressureToTheMasterAsItsElementsTakeIt) {
         const ContactPoint& point = pairing.points[j];
         ASSERT_TRUE(point.found);
         EXPECT_NEAR(point.weights.sum(), 1, round_off);
-        for (Index i = 0; i < pairing.mortar.carriers(static_cast<Index>(j)); ++i)
+        for (Index i = 0; i < pairing.carriers(static_cast<Index>(j)); ++i)
             got(point.nodes[i]) += pairing.slave.area[j] * point.weights(i);
     }
     Vector exact = Vector::Zero(got.size());
@@ -168,15 +176,15 @@ TEST(Mortar, VariesAsItsDifferencesSay) {
     std::vector<Vec3> s = pairing.slave.X;
     for (Vec3& at : s) at += 0.02 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     pairing.evaluate(s, master.x);
-    pairing.mortar.prepare_variations(s, master.x, std::vector<char>(s.size(), 1), 1);
+    pairing.mortar.prepare_variations(pairing.at(s, master.x), std::vector<char>(s.size(), 1), 1);
     const Index V = master.topology.vertex_count(), j = 7;
     ContactVariation variation;
     const ContactPoint point = pairing.points[j];
     ASSERT_TRUE(point.found);
-    pairing.mortar.vary(j, point, variation);
+    pairing.mortar.vary(j, pairing.at(s, master.x), pairing.tracking.hits[j], point, variation);
     std::vector<Index> nodes{V + j};
     nodes.insert(nodes.end(), point.nodes.begin(), point.nodes.end());
-    const Index carried = pairing.mortar.carriers(j);
+    const Index carried = pairing.carriers(j);
     constexpr double h = 1e-5, truncation = 1e-7;     // h^2 over the facets' size, round-off / h
     for (std::size_t k = 0; k < nodes.size(); k += 5) // evaluating the whole pairing takes its time
         for (int c = 0; c < 3; ++c) {
@@ -191,7 +199,7 @@ TEST(Mortar, VariesAsItsDifferencesSay) {
             EXPECT_NEAR((moved[0].gap - moved[1].gap) / (2 * h), variation.dg(column), truncation);
             EXPECT_LT(((moved[0].normal - moved[1].normal) / (2 * h) - variation.dn.col(column)).norm(),
                       truncation * 100); // curvatures of shaken patches are large
-            ASSERT_EQ(pairing.mortar.carriers(j), carried);
+            ASSERT_EQ(pairing.carriers(j), carried);
             EXPECT_LT(((moved[0].weights - moved[1].weights).head(carried) / (2 * h) - variation.dweights.col(column))
                           .cwiseAbs()
                           .maxCoeff(),

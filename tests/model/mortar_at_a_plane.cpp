@@ -1,6 +1,6 @@
 /// Half of a mortar pair at a symmetry plane that misses the origin, against the whole pair.
 
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 #include "support/random.hpp"
 
 #include <cmath>
@@ -18,7 +18,8 @@ constexpr double plane = 5; ///< at x = 5
 /// of both beyond it.
 struct Bowl {
     std::vector<Vec3> x;
-    std::unique_ptr<ContactTerm> term;
+    std::unique_ptr<ContactPair> pair;
+    std::unique_ptr<ContactEvaluation> evaluation;
     Timings timings;
 
     explicit Bowl(bool half) {
@@ -80,11 +81,12 @@ struct Bowl {
         options.hysteresis = 0;
         options.discretisation = Discretisation::mortar;
         auto master = contact::make_blend_surface(*surface, vertices, {});
-        term = std::make_unique<ContactTerm>("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master),
+        pair = std::make_unique<ContactPair>("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master),
                                              options, &smooth);
-        term->begin_step(x, term->initial_history(), timings, 1);
+        evaluation = std::make_unique<ContactEvaluation>(*pair);
+        evaluation->begin_step(x, pair->initial_history(), timings, 1);
     }
-    void evaluate() { term->evaluate(x, timings, 1); }
+    void evaluate() { evaluation->evaluate(x, timings, 1); }
     /// Moves every node alike on both sides of the plane; nodes on it stay on it.
     void deform() {
         for (Vec3& p : x) {
@@ -101,16 +103,16 @@ TEST(MortarAtAPlane, HasTheGapsNormalsAndDriftsOfTheWhole) {
     half.evaluate();
     whole.evaluate();
     constexpr double patch_round_off = 1e-10; // machine epsilon times the condition of patches
-    const auto at = [](const Bowl& bowl, Index j) { return bowl.x[bowl.term->slaves().node[j]]; };
+    const auto at = [](const Bowl& bowl, Index j) { return bowl.x[bowl.pair->slaves().node[j]]; };
     int on_plane = 0;
-    for (Index j = 0; j < half.term->size(); ++j) {
+    for (Index j = 0; j < half.pair->size(); ++j) {
         Index same = 0;
-        while ((at(whole, same) - at(half, j)).norm() > patch_round_off) ASSERT_LT(++same, whole.term->size());
-        const contact::ContactPoint &one = half.term->point(j), &other = whole.term->point(same);
+        while ((at(whole, same) - at(half, j)).norm() > patch_round_off) ASSERT_LT(++same, whole.pair->size());
+        const contact::ContactPoint &one = half.evaluation->point(j), &other = whole.evaluation->point(same);
         ASSERT_TRUE(one.found && other.found);
         EXPECT_NEAR(one.gap, other.gap, patch_round_off) << at(half, j).transpose();
         EXPECT_LT((one.normal - other.normal).norm(), patch_round_off) << at(half, j).transpose();
-        EXPECT_LT((half.term->drift(j, half.x) - whole.term->drift(same, whole.x)).norm(), patch_round_off)
+        EXPECT_LT((half.evaluation->drift(j) - whole.evaluation->drift(same)).norm(), patch_round_off)
             << at(half, j).transpose();
         on_plane += at(half, j).x() == plane;
     }
@@ -131,26 +133,26 @@ TEST(MortarAtAPlane, VariesAsItsDifferencesSay) {
         half.evaluate();
         auto& n = normals.emplace_back();
         auto& d = drifts.emplace_back();
-        for (Index j = 0; j < half.term->size(); ++j) {
-            n.push_back(half.term->point(j).normal);
-            d.push_back(half.term->drift(j, half.x));
+        for (Index j = 0; j < half.pair->size(); ++j) {
+            n.push_back(half.evaluation->point(j).normal);
+            d.push_back(half.evaluation->drift(j));
         }
     }
     half.x = x;
     half.evaluate();
-    half.term->prepare_variations(x, std::vector<char>(static_cast<std::size_t>(half.term->size()), 1), 1);
-    for (Index j = 0; j < half.term->size(); ++j) {
+    half.evaluation->prepare_variations(std::vector<char>(static_cast<std::size_t>(half.pair->size()), 1), 1);
+    for (Index j = 0; j < half.pair->size(); ++j) {
         contact::ContactVariation variation;
-        half.term->vary(j, x, variation);
+        half.evaluation->vary(j, variation);
         Matrix dd, dn = variation.dn;
-        half.term->drift_variation(j, x, variation, dd);
-        contact::MatrixX3 E = half.term->master_force_by_lambda(j);
-        half.term->fold(j, dd, E);
-        E = half.term->master_force_by_lambda(j);
-        half.term->fold(j, dn, E);
-        const auto& nodes = half.term->point_nodes(j);
+        half.evaluation->drift_variation(j, variation, dd);
+        contact::MatrixX3 E = half.evaluation->master_force_by_lambda(j);
+        half.evaluation->fold(j, dd, E);
+        E = half.evaluation->master_force_by_lambda(j);
+        half.evaluation->fold(j, dn, E);
+        const auto& nodes = half.evaluation->point_nodes(j);
         Vector dy(3 + 3 * static_cast<Index>(nodes.size()));
-        dy.head<3>() = way[half.term->slaves().node[j]];
+        dy.head<3>() = way[half.pair->slaves().node[j]];
         for (std::size_t i = 0; i < nodes.size(); ++i) dy.segment<3>(3 + 3 * static_cast<Index>(i)) = way[nodes[i]];
         const auto k = static_cast<std::size_t>(j);
         EXPECT_LT((dn * dy - (normals[0][k] - normals[1][k]) / (2 * step)).norm(), differences) << j;

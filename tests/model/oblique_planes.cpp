@@ -1,7 +1,7 @@
 /// Pairs whose master ends at symmetry planes 60 degrees apart: products of the two reflections are turns, whose transpose
 /// is another image.
 
-#include "osculate/model/contact_term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
 #include "support/random.hpp"
 
 #include <cmath>
@@ -73,23 +73,24 @@ protected:
         auto master = GetParam() == Master::rpim    ? contact::make_rpim_surface(*surface, vertices, {})
                       : GetParam() == Master::blend ? contact::make_blend_surface(*surface, vertices, {})
                                                     : contact::make_facets_surface(*surface);
-        term = std::make_unique<ContactTerm>("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master),
+        pair = std::make_unique<ContactPair>("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master),
                                              options);
+        evaluation = std::make_unique<ContactEvaluation>(*pair);
         for (Vec3& p : x) p += random.vector(0.03); // images follow: a surface without any regularity
-        term->begin_step(x, term->initial_history(), timings, 1);
+        evaluation->begin_step(x, pair->initial_history(), timings, 1);
         for (Vec3& p : x) p += random.vector(0.02);
-        term->evaluate(x, timings, 1);
+        evaluation->evaluate(x, timings, 1);
         for (std::size_t i = 0; i < x.size(); ++i) way.push_back(random.vector(1));
         std::vector<char> all(slaves.node.size(), 1);
-        term->prepare_variations(x, all, 1);
-        for (Index j = 0; j < term->size(); ++j) ASSERT_TRUE(term->point(j).found) << j;
+        evaluation->prepare_variations(all, 1);
+        for (Index j = 0; j < pair->size(); ++j) ASSERT_TRUE(evaluation->point(j).found) << j;
     }
 
     /// Motion along `way` of the nodes of slave j's contact, (3+3n).
     [[nodiscard]] Vector motion(Index j) const {
-        const auto& nodes = term->point_nodes(j);
+        const auto& nodes = evaluation->point_nodes(j);
         Vector dy(3 + 3 * static_cast<Index>(nodes.size()));
-        dy.head<3>() = way[term->slaves().node[j]];
+        dy.head<3>() = way[pair->slaves().node[j]];
         for (std::size_t i = 0; i < nodes.size(); ++i) dy.segment<3>(3 + 3 * static_cast<Index>(i)) = way[nodes[i]];
         return dy;
     }
@@ -99,16 +100,17 @@ protected:
         const auto at = [&](double t) -> Vector {
             std::vector<Vec3> moved = x;
             for (std::size_t i = 0; i < x.size(); ++i) moved[i] += t * way[i];
-            term->evaluate(moved, timings, 1);
-            return f(moved);
+            evaluation->evaluate(moved, timings, 1);
+            return f();
         };
         const Vector ahead = at(step), behind = at(-step);
-        term->evaluate(x, timings, 1);
+        evaluation->evaluate(x, timings, 1);
         return (ahead - behind) / (2 * step);
     }
     [[nodiscard]] Vector master_forces(Index j, const Vec3& lambda) const {
-        Vector f(3 * term->carriers(j));
-        for (Index i = 0; i < term->carriers(j); ++i) f.segment<3>(3 * i) = term->master_force(j, i, lambda);
+        Vector f(3 * evaluation->carriers(j));
+        for (Index i = 0; i < evaluation->carriers(j); ++i)
+            f.segment<3>(3 * i) = evaluation->master_force(j, i, lambda);
         return f;
     }
 
@@ -118,71 +120,72 @@ protected:
     static constexpr double round_off = 1e-12;
 
     std::vector<Vec3> x, way;
-    std::unique_ptr<ContactTerm> term;
+    std::unique_ptr<ContactPair> pair;
+    std::unique_ptr<ContactEvaluation> evaluation;
     Timings timings;
     Random random{91};
 };
 
 TEST_P(ObliquePlanes, AUnitNormalForceDoesTheWorkOfTheGap) {
     if (GetParam() == Master::mortar) GTEST_SKIP() << "its gap is an average over several slave nodes";
-    for (Index j = 0; j < term->size(); ++j) {
-        const Vec3 n = term->point(j).normal;
+    for (Index j = 0; j < pair->size(); ++j) {
+        const Vec3 n = evaluation->point(j).normal;
         contact::ContactVariation variation;
-        term->vary(j, x, variation);
-        double work = n.dot(way[term->slaves().node[j]]);
+        evaluation->vary(j, variation);
+        double work = n.dot(way[pair->slaves().node[j]]);
         const Vector forces = master_forces(j, n);
-        for (Index i = 0; i < term->carriers(j); ++i)
-            work += forces.segment<3>(3 * i).dot(way[term->point_nodes(j)[i]]);
-        const double by_gap = difference([&](const auto&) { return Vector::Constant(1, term->point(j).gap); })(0);
+        for (Index i = 0; i < evaluation->carriers(j); ++i)
+            work += forces.segment<3>(3 * i).dot(way[evaluation->point_nodes(j)[i]]);
+        const double by_gap = difference([&] { return Vector::Constant(1, evaluation->point(j).gap); })(0);
         EXPECT_NEAR(variation.dg.leftCols<3>().norm() * work, by_gap, differences()) << j;
     }
 }
 
 TEST_P(ObliquePlanes, ForcesOnTheMasterAndTheirDerivativesByTheForceAgree) {
-    for (Index j = 0; j < term->size(); ++j) {
+    for (Index j = 0; j < pair->size(); ++j) {
         const Vec3 lambda = random.vector(1);
-        contact::MatrixX3 E = term->master_force_by_lambda(j);
-        Matrix A = Matrix::Zero(3, 3 + 3 * static_cast<Index>(term->point_nodes(j).size()));
-        term->fold(j, A, E);
+        contact::MatrixX3 E = evaluation->master_force_by_lambda(j);
+        Matrix A = Matrix::Zero(3, 3 + 3 * static_cast<Index>(evaluation->point_nodes(j).size()));
+        evaluation->fold(j, A, E);
         EXPECT_LT((E * lambda - master_forces(j, lambda)).norm(), round_off) << j;
     }
 }
 
 TEST_P(ObliquePlanes, ForcesOnTheMasterChangeAsTheirDerivativesSay) {
-    for (Index j = 0; j < term->size(); ++j) {
+    for (Index j = 0; j < pair->size(); ++j) {
         const Vec3 lambda = random.vector(1);
-        const Vector expected = difference([&](const auto&) { return master_forces(j, lambda); });
+        const Vector expected = difference([&] { return master_forces(j, lambda); });
         contact::ContactVariation variation;
-        term->vary(j, x, variation);
+        evaluation->vary(j, variation);
         Matrix G;
-        term->master_force_by_y(j, lambda, variation, G);
-        term->fold(j, G);
+        evaluation->master_force_by_y(j, lambda, variation, G);
+        evaluation->fold(j, G);
         EXPECT_LT((G * motion(j) - expected).norm(), differences() * expected.norm()) << j;
         Vector dy = motion(j), df;
-        term->master_force_along(j, lambda, variation, dy, df);
+        evaluation->master_force_along(j, lambda, variation, dy, df);
         EXPECT_LT((df - expected).norm(), differences() * expected.norm()) << j;
     }
 }
 
 TEST_P(ObliquePlanes, TheDriftChangesAsItsDerivativesSay) {
-    for (Index j = 0; j < term->size(); ++j) {
-        const Vector expected = difference([&](const auto& moved) -> Vector { return term->drift(j, moved); });
+    for (Index j = 0; j < pair->size(); ++j) {
+        const Vector expected = difference([&]() -> Vector { return evaluation->drift(j); });
         contact::ContactVariation variation;
-        term->vary(j, x, variation);
+        evaluation->vary(j, variation);
         Matrix dd;
-        contact::MatrixX3 E = term->master_force_by_lambda(j);
-        term->drift_variation(j, x, variation, dd);
-        term->fold(j, dd, E);
+        contact::MatrixX3 E = evaluation->master_force_by_lambda(j);
+        evaluation->drift_variation(j, variation, dd);
+        evaluation->fold(j, dd, E);
         EXPECT_LT((dd * motion(j) - expected).norm(), differences() * expected.norm()) << j;
     }
 }
 
 /// The images meet in the line of both planes: along it they all move alike.
 TEST_P(ObliquePlanes, FollowingTheMasterIsToMoveAsItsImagesDo) {
-    for (Index j = 0; j < term->size(); ++j) {
+    for (Index j = 0; j < pair->size(); ++j) {
         std::vector<Index> nodes;
         std::vector<Mat3> follow;
-        term->follow_master(j, nodes, follow);
+        evaluation->follow_master(j, nodes, follow);
         Vec3 closest = Vec3::Zero(), lifted = Vec3::Zero();
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             lifted += follow[i] * Vec3::UnitZ();
@@ -191,7 +194,7 @@ TEST_P(ObliquePlanes, FollowingTheMasterIsToMoveAsItsImagesDo) {
         EXPECT_LT((lifted - Vec3::UnitZ()).norm(), round_off) << j;
         if (GetParam() == Master::mortar) continue;
         // every image is linear here: of the positions themselves it makes the closest point
-        EXPECT_NEAR((closest - x[term->slaves().node[j]]).norm(), term->hit(j).distance, round_off) << j;
+        EXPECT_NEAR((closest - x[pair->slaves().node[j]]).norm(), evaluation->hit(j).distance, round_off) << j;
     }
 }
 

@@ -40,7 +40,7 @@ TEST(Fields, BodyFieldsAreThoseOfTheirBody) {
     reactions[12] = {1, 2, 3}; // the cap's first node
     std::vector<Vec3> rest(blocks.model.X.size(), Vec3::Zero());
     rest[13] = {4, 5, 6};
-    const Snapshot snapshot(blocks.model, blocks.state, reactions, rest);
+    const Snapshot snapshot(blocks.model, blocks.state, blocks.contact, reactions, rest);
     EXPECT_EQ(vector_at(values(FieldPlace::body, "displacement", snapshot, 0), 0), Vec3(0, 0, 0));
     EXPECT_EQ(vector_at(values(FieldPlace::body, "displacement", snapshot, 1), 0), TwoBlocks::shift);
     EXPECT_EQ(vector_at(values(FieldPlace::body, "reaction", snapshot, 1), 0), Vec3(1, 2, 3));
@@ -101,11 +101,12 @@ TEST(Fields, GlidingIsShownAsSlip) {
 TEST(Fields, MasterForcesAnswerTheSlaves) {
     const TwoBlocks blocks;
     const Snapshot snapshot = blocks.snapshot();
-    const model::ContactTerm& pair = *blocks.model.pairs[0];
+    const model::ContactPair& pair = *blocks.model.pairs[0];
     const std::vector<double> master = values(FieldPlace::master, "contact_force", snapshot, 0);
     Vec3 force = 4 * TwoBlocks::force, moment = Vec3::Zero();
     for (Index j = 0; j < 6; ++j) // at the foot, where master and slave meet
-        if (pair.point(j).found) moment += pair.point(j).foot.cross(blocks.state.contact[0].lambda[j]);
+        if (const contact::ContactPoint& point = blocks.contact[0].point(j); point.found)
+            moment += point.foot.cross(blocks.state.contact[0].lambda[j]);
     for (std::size_t i = 0; i < pair.master_nodes().size(); ++i) {
         const Vec3 f = vector_at(master, static_cast<Index>(i));
         force += f;

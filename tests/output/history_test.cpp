@@ -36,7 +36,7 @@ TEST(ContactResultants, PenetrationOfAnOpenPairIsNotNegative) {
     Timings unused;
     std::vector<Vec3> x = blocks.model.X;
     for (Index i = 12; i < 24; ++i) x[i].z() += 0.3;
-    blocks.model.pairs[0]->evaluate(x, unused, 1);
+    blocks.contact[0].evaluate(x, unused, 1);
     EXPECT_EQ(contact_resultants(blocks.snapshot(), 0).penetration, 0);
 }
 
@@ -46,10 +46,11 @@ TEST(ContactResultants, PenetrationIsThatOfNodesBehindTheSurfaceAsWell) {
     constexpr double depth = 2.1; // in facets of 1 m
     std::vector<Vec3> x = blocks.model.X;
     for (Index i = 12; i < 24; ++i) x[i].z() -= depth;
-    const model::ContactTerm& pair = *blocks.model.pairs[0];
-    blocks.model.pairs[0]->evaluate(x, unused, 1);
+    model::ContactEvaluation& evaluation = blocks.contact[0];
+    evaluation.evaluate(x, unused, 1);
     bool behind = false;
-    for (Index j = 0; j < pair.size(); ++j) behind = behind || (pair.point(j).behind && !pair.point(j).found);
+    for (Index j = 0; j < evaluation.pair().size(); ++j)
+        behind = behind || (evaluation.point(j).behind && !evaluation.point(j).found);
     ASSERT_TRUE(behind);
     EXPECT_NEAR(contact_resultants(blocks.snapshot(), 0).penetration, depth, 1e-14);
 }
@@ -58,6 +59,7 @@ class HistoryFile : public InTemporaryFolder {};
 
 TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
     TwoBlocks blocks;
+    blocks.contact.clear();
     blocks.model.pairs.clear();
     blocks.model.sets = {{"bed", 0, {0, 1}, {}}, {"side", 0, {1, 2}, {}}, {"free", 0, {3}, {}}};
     const Vec3 skew = Vec3(3, 4, 0) / 5;
@@ -74,7 +76,7 @@ TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
     EXPECT_EQ(reactions[3], Vec3(0, 0, 0)) << "round-off of free nodes is no reaction";
     {
         History history(folder / "history.csv", blocks.model, true, {0, 1}, false);
-        history.row({blocks.model, blocks.state, reactions}, constraints, 0.5, 3, nullptr);
+        history.row({blocks.model, blocks.state, blocks.contact, reactions}, constraints, 0.5, 3, nullptr);
         // bed: 11 (0.6, 0.8, 0) + (5, 0, 0); side: (0, 10, 0) + (0, 0, 20)
         EXPECT_EQ(content(folder / "history.csv"),
                   "time,dt,iterations,set.bed.reaction_x,set.bed.reaction_y,set.bed.reaction_z,set.side.reaction_x,"

@@ -15,6 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr double round_off = 1e-12;
+const model::ContactEvaluations no_contact;
 
 /// An affine displacement, small enough to do no harm.
 Vec3 affine(const Vec3& X) {
@@ -60,7 +61,7 @@ TEST(PointProbe, IsExactInDistortedElementsOfEveryType) {
         model.bodies.push_back(std::move(body));
         model::State state;
         for (const Vec3& node : model.X) state.u.push_back(affine(node));
-        const auto rows = make_point_probe(model, 0, X, {"displacement"})->rows(Snapshot(model, state, {}));
+        const auto rows = make_point_probe(model, 0, X, {"displacement"})->rows(Snapshot(model, state, no_contact, {}));
         EXPECT_NEAR((Eigen::Map<const Vec3>(rows[0].data()) - affine(X)).norm(), 0, round_off)
             << static_cast<int>(type);
     }
@@ -143,7 +144,7 @@ TEST(NodesProbe, TakesTheMeanOverTheAreaByTheShapeFunctions) {
         for (const Vec3& X : model.X) state.u.emplace_back(quadratic ? X.x() * X.x() : X.x(), 0, 0);
         const auto probe = make_nodes_probe(model, top, {"displacement"}, {"area_mean"});
         EXPECT_EQ(names(*probe).front(), "area_mean_displacement_x [m]");
-        EXPECT_NEAR(probe->rows(Snapshot(model, state, {}))[0][0], quadratic ? 4.0 / 3 : 1, round_off);
+        EXPECT_NEAR(probe->rows(Snapshot(model, state, no_contact, {}))[0][0], quadratic ? 4.0 / 3 : 1, round_off);
         top.facets.clear();
         EXPECT_THROW((void)make_nodes_probe(model, top, {"displacement"}, {"area_mean"}), std::invalid_argument);
     }

@@ -24,7 +24,7 @@ public:
         state.time = 2.5;
         state.u.assign(model.X.size(), Vec3::Zero());
         for (Index i = 0; i < model.bodies[1].nodes(); ++i) state.u[model.bodies[1].first_node + i] = shift;
-        model::ContactTerm& pair = *model.pairs[0];
+        const model::ContactPair& pair = *model.pairs[0];
         state.contact.push_back(pair.initial_history());
         for (Index j = 0; j < pair.size(); ++j) {
             const double x = slave_X(j).x();
@@ -33,17 +33,21 @@ public:
             state.contact[0].lambda[j] = force;
         }
         Timings unused;
-        pair.begin_step(model.X, pair.initial_history(), unused, 1);
+        contact = model::contact_evaluations(model);
+        contact[0].begin_step(model.X, pair.initial_history(), unused, 1);
         std::vector<Vec3> x = model.X;
         for (std::size_t i = 0; i < x.size(); ++i) x[i] += state.u[i];
-        pair.evaluate(x, unused, 1);
+        contact[0].evaluate(x, unused, 1);
     }
 
-    [[nodiscard]] Snapshot snapshot() const { return {model, state, std::vector<Vec3>(model.X.size(), Vec3::Zero())}; }
+    [[nodiscard]] Snapshot snapshot() const {
+        return {model, state, contact, std::vector<Vec3>(model.X.size(), Vec3::Zero())};
+    }
     [[nodiscard]] Vec3 slave_X(Index j) const { return model.X[model.pairs[0]->slaves().node[j]]; }
 
     model::Model model;
     model::State state;
+    model::ContactEvaluations contact; ///< at `state`
 
 private:
     void add_body(const std::string& name, mesh::Mesh mesh) {
@@ -71,7 +75,7 @@ private:
         auto surface = std::make_unique<mesh::HalfEdgeSurface>(facets(0, "z_max"), model.X);
         auto shape = contact::make_facets_surface(*surface);
         const std::vector<Index> vertices = surface->vertex_nodes();
-        model.pairs.push_back(std::make_unique<model::ContactTerm>("joint", model.X, std::move(slaves),
+        model.pairs.push_back(std::make_unique<model::ContactPair>("joint", model.X, std::move(slaves),
                                                                    std::move(surface), model::MasterNodes{vertices},
                                                                    std::move(shape), model::ContactOptions{0.3}));
     }

@@ -35,6 +35,7 @@ struct SceneRun {
     app::Plan plan;
     Timings timings;
     std::vector<RunStep> steps;
+    model::ContactEvaluations contact; ///< at the end of the last step
     int attempts = 0;
 };
 
@@ -72,11 +73,12 @@ public:
         if (step.ledger != nullptr) kept.ledger = *step.ledger;
         const auto x = [&](Index node) -> Vec3 { return model.X[node] + step.state.u[node]; };
         for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-            const model::ContactTerm& pair = *model.pairs[p];
+            const model::ContactEvaluation& evaluation = step.equilibrium.contact()[p];
+            const model::ContactPair& pair = evaluation.pair();
             PairForces forces;
             for (Index j = 0; j < pair.size(); ++j) {
                 const Vec3& lambda = step.state.contact[p].lambda[j];
-                const contact::ContactPoint& point = pair.point(j);
+                const contact::ContactPoint& point = evaluation.point(j);
                 const Index slave = pair.slaves().node[j];
                 forces.on_slave += lambda;
                 forces.moment_on_slave += x(slave).cross(lambda);
@@ -85,10 +87,10 @@ public:
                 forces.normal += normal;
                 forces.friction += (lambda - normal * point.normal).norm();
                 forces.penetration = std::max(forces.penetration, -point.gap);
-                for (std::size_t i = 0; i < pair.point_nodes(j).size(); ++i) {
-                    const Vec3 f = pair.master_force(j, static_cast<Index>(i), lambda);
+                for (std::size_t i = 0; i < evaluation.point_nodes(j).size(); ++i) {
+                    const Vec3 f = evaluation.master_force(j, static_cast<Index>(i), lambda);
                     forces.on_master += f;
-                    forces.moment_on_master += x(pair.point_nodes(j)[i]).cross(f);
+                    forces.moment_on_master += x(evaluation.point_nodes(j)[i]).cross(f);
                 }
             }
             kept.pairs.push_back(forces);
@@ -101,6 +103,7 @@ public:
         }
         for (const Vec3& f : step.stage.force_end) kept.load += f;
         run_.steps.push_back(std::move(kept));
+        run_.contact = step.equilibrium.contact();
     }
 
 private:

@@ -19,15 +19,16 @@ struct SlaveNode {
 
 /// Those of the first pair after the last step.
 inline std::vector<SlaveNode> slave_nodes(const SceneRun& run) {
-    const model::ContactTerm& pair = *run.plan.model.pairs.front();
+    const model::ContactEvaluation& evaluation = run.contact.front();
+    const model::ContactPair& pair = evaluation.pair();
     const auto& lambda = run.steps.back().state.contact.front().lambda;
     std::vector<SlaveNode> nodes;
     for (Index j = 0; j < pair.size(); ++j) {
         SlaveNode node;
         node.X = run.plan.model.X[pair.slaves().node[j]];
         node.area = pair.slaves().area[j];
-        if (pair.point(j).found) {
-            const Vec3& n = pair.point(j).normal;
+        if (evaluation.point(j).found) {
+            const Vec3& n = evaluation.point(j).normal;
             node.normal = lambda[j].dot(n);
             node.traction = lambda[j] - node.normal * n;
         }

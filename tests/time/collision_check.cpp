@@ -41,6 +41,7 @@ protected:
         limits.allowed_interpenetration = 0.01; // of a facet
         start.u.assign(plan.model.X.size(), Vec3::Zero());
         for (const auto& pair : plan.model.pairs) start.contact.push_back(pair->initial_history());
+        contact = model::contact_evaluations(plan.model);
     }
     /// Moves the cube by d.
     void move_cube(std::vector<Vec3>& u, const Vec3& d) const {
@@ -48,11 +49,11 @@ protected:
     }
     /// What there is to say of a trial that ends at displacements u.
     [[nodiscard]] StepEvidence trial(const std::vector<Vec3>& u) {
-        CollisionCheck check(plan.model, limits, true, timings, 1);
+        CollisionCheck check(plan.model, contact, limits, true, timings, 1);
         check.begin_step(start);
         std::vector<Vec3> x = plan.model.X;
         for (std::size_t i = 0; i < x.size(); ++i) x[i] += u[i];
-        plan.model.pairs[0]->evaluate(x, timings, 1);
+        contact[0].evaluate(x, timings, 1);
         StepEvidence evidence;
         check.add_trial(u, evidence);
         return evidence;
@@ -66,6 +67,7 @@ protected:
     app::Plan plan;
     StepLimits limits;
     model::State start;
+    model::ContactEvaluations contact;
 };
 
 /// The plate turns upright about its middle, as far as straight paths do: its points s go to (s(1-t), s t). The cube
@@ -108,11 +110,11 @@ TEST_F(Paths, AreNotFollowedWhereTheMotionCannotReach) {
     const Vec3 together(3, 2, -5);
     for (Vec3& v : u) v += together;
     move_cube(u, {0, 0, -0.55});
-    CollisionCheck check(plan.model, limits, true, timings, 1);
+    CollisionCheck check(plan.model, contact, limits, true, timings, 1);
     check.begin_step(start);
     std::vector<Vec3> x = plan.model.X;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += u[i];
-    plan.model.pairs[0]->evaluate(x, timings, 1);
+    contact[0].evaluate(x, timings, 1);
     StepEvidence evidence;
     check.add_trial(u, evidence);
     EXPECT_EQ(check.take_paths_followed(), 0);

@@ -74,14 +74,14 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
     state.v = state.a = state.u;
-    const model::ContactTerm& pair = *plan.model.pairs[0];
+    const model::ContactPair& pair = *plan.model.pairs[0];
     state.contact.push_back(pair.initial_history());
     std::vector<double> by_step;
     for (const double dt : {1e-3, 5e-4}) {
         equilibrium.begin_attempt(state, {state.u, state.u, {}}, dt);
-        by_step.push_back(pair.stiffness(0) - pair.slaves().stiffness[0]);
-        EXPECT_DOUBLE_EQ(pair.stiffness(0),
-                         pair.slaves().stiffness[0] + equilibrium.bodies().inertia(pair.slaves().node[0]));
+        const double c = equilibrium.contact()[0].stiffness(0);
+        by_step.push_back(c - pair.slaves().stiffness[0]);
+        EXPECT_DOUBLE_EQ(c, pair.slaves().stiffness[0] + equilibrium.bodies().inertia(pair.slaves().node[0]));
     }
     EXPECT_GT(by_step[0], 0);
     EXPECT_NEAR(by_step[1], 4 * by_step[0], 1e-9 * by_step[1]);

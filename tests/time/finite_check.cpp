@@ -51,7 +51,7 @@ public:
         return sound_->patch_vertices(facet);
     }
     void evaluate(const Vec3& s, const contact::FacetHit& hit, const std::vector<Vec3>& x, contact::ContactPoint& point,
-                  contact::ContactVariation* variation) const override {
+                  contact::ContactVariation* variation, const contact::Placement*) const override {
         sound_->evaluate(s, hit, x, point, variation);
         point.gap += gap_;
         point.normal.x() += normal_;
@@ -70,13 +70,13 @@ protected:
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     }
     void plant(double gap, double normal) {
-        const model::ContactTerm& sound = *plan.model.pairs[0];
+        const model::ContactPair& sound = *plan.model.pairs[0];
         auto surface = std::make_unique<mesh::HalfEdgeSurface>(sound.surface().facets(), plan.model.X);
         auto master = std::make_unique<FaultySurface>(contact::make_facets_surface(*surface), gap, normal);
         model::MasterNodes nodes{surface->vertex_nodes()};
         plan.model.pairs[0] =
-            std::make_unique<model::ContactTerm>("joint", plan.model.X, sound.slaves(), std::move(surface),
-                                                 std::move(nodes), std::move(master), sound.options());
+            std::make_unique<const model::ContactPair>("joint", plan.model.X, sound.slaves(), std::move(surface),
+                                                       std::move(nodes), std::move(master), sound.options());
     }
     /// What the run failed by; empty: it did not.
     std::string run() {
@@ -91,6 +91,7 @@ protected:
     void attempted(const Attempt&, const std::vector<IterationRecord>&) override {}
     void accepted(const AcceptedStep& step) override {
         states.push_back(step.state);
+        contact = step.equilibrium.contact();
         ledger = *step.ledger;
     }
     void gave_up(const PostMortem& post_mortem, const FailedIterate*) override { found = post_mortem; }
@@ -98,6 +99,7 @@ protected:
     app::Plan plan;
     Timings timings;
     std::vector<model::State> states;
+    model::ContactEvaluations contact; ///< at the last of them
     Ledger ledger;
     PostMortem found;
 };
@@ -106,7 +108,7 @@ TEST_F(Flight, WithoutFaultsIsAccepted) {
     plant(0, 0);
     EXPECT_EQ(run(), "");
     ASSERT_EQ(states.size(), 2u);
-    EXPECT_FALSE(find_not_finite(plan.model, states.back(), &ledger));
+    EXPECT_FALSE(find_not_finite(contact, states.back(), &ledger));
 }
 
 TEST_F(Flight, IsGivenUpWhereTheGapOfAnOpenNodeIsNoNumber) {
@@ -145,7 +147,7 @@ TEST_F(Flight, EveryPartOfAStateIsLookedAt) {
     const Index node = plan.model.bodies[1].first_node + 2, slave = 1;
     for (const double bad : {nan, infinite, -infinite}) {
         const auto expect = [&](const model::State& state, const Ledger& books, const std::string& what, Index where) {
-            const auto flaw = find_not_finite(plan.model, state, &books);
+            const auto flaw = find_not_finite(contact, state, &books);
             ASSERT_TRUE(flaw) << what;
             EXPECT_EQ(flaw->what, what);
             EXPECT_EQ(flaw->node, where);

@@ -50,7 +50,7 @@ public:
         return facets_->patch_vertices(facet);
     }
     void evaluate(const Vec3& s, const contact::FacetHit& hit, const std::vector<Vec3>& x, contact::ContactPoint& point,
-                  contact::ContactVariation* variation) const override {
+                  contact::ContactVariation* variation, const contact::Placement*) const override {
         facets_->evaluate(s, hit, x, point, variation);
         if (!place_.vertices.empty()) point.found = point.found && distance(x, place_.vertices) > place_.radius;
     }
@@ -74,8 +74,9 @@ protected:
         auto surface = std::make_unique<mesh::HalfEdgeSurface>(pair().surface().facets(), model.X);
         auto facets = std::make_unique<Trap>(contact::make_facets_surface(*surface), trap);
         model::MasterNodes nodes{surface->vertex_nodes()};
-        model.pairs[0] = std::make_unique<model::ContactTerm>("joint", model.X, pair().slaves(), std::move(surface),
-                                                              std::move(nodes), std::move(facets), pair().options());
+        model.pairs[0] =
+            std::make_unique<const model::ContactPair>("joint", model.X, pair().slaves(), std::move(surface),
+                                                       std::move(nodes), std::move(facets), pair().options());
         constraints = std::make_unique<model::Constraints>(model.nodes(), plan.stages[0].constraints);
         // an LU factorisation tells at once that nothing holds the cap
         equilibrium =
@@ -96,7 +97,7 @@ protected:
     }
     /// An attempt, with nothing remembered of the one before.
     void begin() { equilibrium->begin_attempt(state, load, 1); }
-    [[nodiscard]] const model::ContactTerm& pair() const { return *plan.model.pairs[0]; }
+    [[nodiscard]] const model::ContactPair& pair() const { return *plan.model.pairs[0]; }
     /// Where the master's vertices are with statuses as given, and the statuses that the solution calls for.
     std::pair<std::vector<Vec3>, Statuses> solved_with(const Statuses& statuses) {
         Vector z = start;

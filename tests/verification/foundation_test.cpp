@@ -23,12 +23,13 @@ const SceneRun& foundation(const std::string& mesh, const std::string& surface) 
 
 /// Nodal contact pressure along the line y = 0 of the interface, by x.
 std::vector<double> centre_line(const SceneRun& run) {
-    const model::ContactTerm& pair = *run.plan.model.pairs[0];
+    const model::ContactEvaluation& evaluation = run.contact[0];
+    const model::ContactPair& pair = evaluation.pair();
     std::vector<std::pair<double, double>> line;
     for (Index j = 0; j < pair.size(); ++j) {
         const Vec3 X = run.plan.model.X[pair.slaves().node[j]];
         if (std::abs(X.y()) < 1e-9)
-            line.emplace_back(X.x(), run.steps[0].state.contact[0].lambda[j].dot(pair.point(j).normal) /
+            line.emplace_back(X.x(), run.steps[0].state.contact[0].lambda[j].dot(evaluation.point(j).normal) /
                                          pair.slaves().area[j]);
     }
     std::sort(line.begin(), line.end());

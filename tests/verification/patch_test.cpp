@@ -65,7 +65,7 @@ std::pair<double, double> deviation(const Case& c, const std::string& discretisa
     }
     support::SceneRun run;
     support::run_scene(run, support::scene_file("patch.yaml", two_blocks), overrides);
-    const model::ContactTerm& pair = *run.plan.model.pairs[0];
+    const model::ContactPair& pair = *run.plan.model.pairs[0];
     const double p = 1e6, strain = p / 1e9;
     double worst_p = 0, worst_u = 0;
     const model::State& state = run.steps.back().state;

@@ -68,12 +68,13 @@ struct Outcome final : time::StepObserver {
         std::vector<Vec3> f = model::internal_force(model, step.state.u, 1);
         for (std::size_t i = 0; i < f.size(); ++i) f[i] -= step.equilibrium.external_force()[i];
         for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-            const model::ContactTerm& pair = *model.pairs[p];
+            const model::ContactEvaluation& evaluation = step.equilibrium.contact()[p];
+            const model::ContactPair& pair = evaluation.pair();
             for (Index j = 0; j < pair.size(); ++j) {
                 const Vec3& lambda = step.state.contact[p].lambda[j];
                 f[pair.slaves().node[j]] -= lambda;
-                for (Index i = 0; pair.point(j).found && i < pair.carriers(j); ++i)
-                    f[pair.point_nodes(j)[i]] -= pair.master_force(j, i, lambda);
+                for (Index i = 0; evaluation.point(j).found && i < evaluation.carriers(j); ++i)
+                    f[evaluation.point_nodes(j)[i]] -= evaluation.master_force(j, i, lambda);
             }
         }
         const double allowed = plan.stepper.tolerance * step.equilibrium.reference_force();

@@ -68,7 +68,7 @@ protected:
     /// Columns: the contact force of coupling j, global components.
     [[nodiscard]] Matrix force_basis(Index j) const {
         Matrix B = Matrix::Zero(3, system.size());
-        B.middleCols<3>(system.multiplier(j)) = constraints.frame(system.couplings()[j].slave);
+        B.middleCols<3>(system.unknowns().multiplier(j)) = constraints.frame(system.couplings()[j].slave);
         return B;
     }
     /// Global equilibrium (3 nodes x size) and contact laws (3 x size each) put into their rows.
@@ -76,11 +76,11 @@ protected:
         Matrix J = Matrix::Zero(system.size(), system.size());
         for (Index node = 0; node < nodes; ++node)
             for (int k = 0; k < 3; ++k)
-                if (const Index row = system.equilibrium_row(node, k); row != Constraints::held)
+                if (const Index row = system.unknowns().equilibrium_row(node, k); row != Constraints::held)
                     J.row(row) = constraints.frame(node).col(k).transpose() * equilibrium.middleRows<3>(3 * node);
         for (Index j = 0; j < static_cast<Index>(laws.size()); ++j)
             for (int k = 0; k < 3; ++k)
-                J.row(system.contact_row(j, k)) =
+                J.row(system.unknowns().contact_row(j, k)) =
                     constraints.frame(system.couplings()[j].slave).col(k).transpose() * laws[j];
         return J;
     }
@@ -104,7 +104,7 @@ TEST(SystemMatrix, IsTheStiffnessOfTheFreeComponentsWithoutContact) {
     for (Index node = 0; node < nodes; ++node)
         for (int k = 0; k < 3; ++k) {
             const Index e = constraints.equation(node, k);
-            EXPECT_EQ(system.equilibrium_row(node, k), e);
+            EXPECT_EQ(system.unknowns().equilibrium_row(node, k), e);
             if (e != Constraints::held) B.block<3, 1>(3 * node, e) = constraints.frame(node).col(k);
         }
     ASSERT_EQ(system.size(), constraints.equations());
@@ -118,12 +118,12 @@ TEST_F(WithContact, GivesEveryRowToOneEquation) {
     std::vector<Index> rows;
     for (Index node = 0; node < nodes; ++node)
         for (int k = 0; k < 3; ++k) {
-            const Index row = system.equilibrium_row(node, k);
+            const Index row = system.unknowns().equilibrium_row(node, k);
             EXPECT_EQ(row == Constraints::held, constraints.equation(node, k) == Constraints::held);
             if (row != Constraints::held) rows.push_back(row);
         }
     for (Index j = 0; j < static_cast<Index>(system.couplings().size()); ++j)
-        for (int k = 0; k < 3; ++k) rows.push_back(system.contact_row(j, k));
+        for (int k = 0; k < 3; ++k) rows.push_back(system.unknowns().contact_row(j, k));
     std::sort(rows.begin(), rows.end());
     std::vector<Index> expected(static_cast<std::size_t>(system.size()));
     std::iota(expected.begin(), expected.end(), 0);
@@ -133,14 +133,14 @@ TEST_F(WithContact, GivesEveryRowToOneEquation) {
 
 TEST_F(WithContact, ExchangesTheRowsOfASlaveWithItsFirstContactForce) {
     for (int k = 0; k < 3; ++k) {
-        EXPECT_EQ(system.equilibrium_row(3, k), system.multiplier(0) + k);
-        EXPECT_EQ(system.contact_row(0, k), constraints.equation(3, k));
-        EXPECT_EQ(system.contact_row(5, k), system.multiplier(5) + k) << "the second pair of node 3 keeps its rows";
-        EXPECT_EQ(system.contact_row(3, k), system.multiplier(3) + k) << "node 2 is fixed";
-        EXPECT_EQ(system.equilibrium_row(8, k), constraints.equation(8, k)) << "not a slave";
+        EXPECT_EQ(system.unknowns().equilibrium_row(3, k), system.unknowns().multiplier(0) + k);
+        EXPECT_EQ(system.unknowns().contact_row(0, k), constraints.equation(3, k));
+        EXPECT_EQ(system.unknowns().contact_row(5, k), system.unknowns().multiplier(5) + k) << "the second pair of node 3 keeps its rows";
+        EXPECT_EQ(system.unknowns().contact_row(3, k), system.unknowns().multiplier(3) + k) << "node 2 is fixed";
+        EXPECT_EQ(system.unknowns().equilibrium_row(8, k), constraints.equation(8, k)) << "not a slave";
     }
-    EXPECT_EQ(system.contact_row(1, 1), system.multiplier(1) + 1) << "node 4 is held along y";
-    EXPECT_EQ(system.contact_row(1, 0), constraints.equation(4, 0));
+    EXPECT_EQ(system.unknowns().contact_row(1, 1), system.unknowns().multiplier(1) + 1) << "node 4 is held along y";
+    EXPECT_EQ(system.unknowns().contact_row(1, 0), constraints.equation(4, 0));
 }
 
 TEST_F(WithContact, HoldsStiffnessAndContactForcesAtFirst) {

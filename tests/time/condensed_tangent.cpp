@@ -35,7 +35,7 @@ TEST(CondensedTangent, SolvesForABodyThatContactAloneHolds) {
 /// The tangent of two bodies that nothing bears on.
 struct Apart {
     explicit Apart(const model::BlockMatrix& stiffness)
-        : K(stiffness), D(slaves.size(), Mat3::Identity()), rows(*press.constraints, K, couplings()),
+        : K(stiffness), D(slaves.size(), Mat3::Identity()), rows(*press.constraints, slaves),
           tangent(press.plan.model, *press.constraints, K, slaves, false, 1) {
         tangent.set(none);
     }
@@ -44,18 +44,13 @@ struct Apart {
         Vector x(b.size());
         return tangent.solve(rows, D, b.data(), x.data(), 1, press.timings);
     }
-    [[nodiscard]] std::vector<model::Coupling> couplings() const {
-        std::vector<model::Coupling> list;
-        for (const Index slave : slaves) list.push_back({slave, {}});
-        return list;
-    }
 
     Press press{LinearSolver::condensed};
     model::BlockMatrix K;
     std::vector<Index> slaves = press.plan.model.pairs[0]->slaves().node;
     std::vector<BearingContact> none;
     std::vector<Mat3> D;
-    model::SystemMatrix rows;
+    model::Unknowns rows;
     CondensedTangent tangent;
 };
 

@@ -1,5 +1,6 @@
 #include "osculate/time/post_mortem.hpp"
 
+#include "osculate/app/advice.hpp"
 #include "osculate/app/compile.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/reader.hpp"
@@ -47,7 +48,10 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
     decision.verdict = Verdict::give_up;
     decision.reason = Reason::solver;
     attempt.cause = explain(plan.model, result, equilibrium, attempt);
-    return examine({plan.model, stage, state, z, result, ladder, decision, {attempt}}, equilibrium);
+    const std::vector<Attempt> attempts{attempt};
+    const FailedAttempt failed{plan.model, stage, state, z, result, ladder, decision, attempts};
+    const FailedIterate iterate{failed, state, equilibrium};
+    return app::advised(examine(failed, equilibrium), &iterate);
 }
 
 /// The failure itself needs a scene of more than 100 000 nodes; here its outcome is given, and the words are looked at.

@@ -177,7 +177,7 @@ TEST_F(Ladder, TakesItsSpringsAwayFromABodyThatNothingHolds) {
     begin();
     const std::vector<double> shares = model::volume_shares(plan.model);
     ladder.stabilisation = {
-        .share = [&]() -> const std::vector<double>& { return shares; }, .finest = 0.05, .gap = 0.1, .farthest = 0.5};
+        .share = [&]() -> const std::vector<double>& { return shares; }, .finest = 0.05, .gap = [] { return 0.1; }, .farthest = 0.5};
     Vector z = start;
     const LadderResult result = climb(*equilibrium, *solver, z, start, all, true, ladder);
     EXPECT_EQ(result.outcome, KinsolOutcome::singular);

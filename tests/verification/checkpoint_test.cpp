@@ -24,8 +24,8 @@ struct PartOfARun {
         if (from != nullptr) stepper.resume(output::decode(*from).run);
         diary.every = checkpoint_every;
         stepper.run(diary);
-        refreshed = stepper.refreshed_patches();
-        paths = stepper.paths_followed();
+        refreshed = stepper.counts().refreshed_patches;
+        paths = stepper.counts().paths_followed;
     }
     struct Checkpoints final : time::StepObserver {
         Diary diary;

@@ -44,7 +44,7 @@ void run(Shot& shot, const scene::Scene& scene, const std::function<void(app::Pl
     if (change) change(shot.plan);
     time::Stepper stepper(shot.plan.model, shot.plan.stages, shot.plan.stepper, shot.timings);
     stepper.run(shot);
-    shot.paths = stepper.paths_followed();
+    shot.paths = stepper.counts().paths_followed;
 }
 
 void shoot(Shot& shot, const Overrides& overrides, const std::function<void(app::Plan&)>& change = {}) {

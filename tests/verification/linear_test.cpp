@@ -54,7 +54,7 @@ TEST(Bar, IsFactorisedOnceForAllSteps) {
         void accepted(const time::AcceptedStep& step) override { EXPECT_EQ(step.iterations, 1); }
     } observer;
     stepper.run(observer);
-    EXPECT_EQ(stepper.factorisations(), 1);
+    EXPECT_EQ(stepper.counts().factorisations, 1);
 }
 
 TEST(Bar, HangsUnderItsWeight) {

@@ -77,7 +77,7 @@ struct Outcome final : time::StepObserver {
         } catch (const RunFailure& caught) {
             failure = caught.what();
         }
-        at_round_off = stepper.steps_at_round_off();
+        at_round_off = stepper.counts().steps_at_round_off;
     }
     void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
     void accepted(const time::AcceptedStep& step) override {

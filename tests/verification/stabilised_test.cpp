@@ -57,7 +57,7 @@ struct Outcome final : time::StepObserver {
         } catch (const RunFailure& caught) {
             failure = caught.what();
         }
-        stabilised = stepper.stabilised_steps();
+        stabilised = stepper.counts().stabilised_steps;
     }
     void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>&) override {
         attempts.push_back(attempt);

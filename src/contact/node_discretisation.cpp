@@ -19,6 +19,7 @@ public:
                  int threads) override {
         at.master.place(tracking.hits, at.vertices, threads, placement_);
         const auto count = static_cast<Index>(points.size());
+        side_.resize(points.size(), -1);
         parallel_for(threads, count, [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j)
                 at.master.evaluate(at.slaves[j], tracking.hits[j], at.vertices, points[j], nullptr, placement_.get());

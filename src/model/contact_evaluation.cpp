@@ -181,7 +181,7 @@ contact::ContactState ContactEvaluation::state(Index j, const Vec3& lambda) cons
     contact::ContactState state{lambda, point.gap, point.normal, rubs ? drift(j) : Vec3(Vec3::Zero())};
     if (!point.found || tails_.slaves.empty()) return state;
     state.gap += discretisation_->gap_rounded_off(j, positions(), point);
-    if (rubs) state.drift += drift(j, tails_start_, tails_);
+    if (rubs && !tails_start_.slaves.empty()) state.drift += drift(j, tails_start_, tails_);
     return state;
 }
 

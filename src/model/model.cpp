@@ -162,8 +162,9 @@ BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
 }
 
 Index body_index(const Model& model, Index node) {
-    const auto after = std::ranges::find_if(model.bodies, [&](const Body& body) { return body.first_node > node; });
-    return node < 0 || node >= model.nodes() ? -1 : static_cast<Index>(after - model.bodies.begin()) - 1;
+    const auto owns = [&](const Body& b) { return node >= b.first_node && node < b.first_node + b.nodes(); };
+    const auto at = std::ranges::find_if(model.bodies, owns);
+    return at == model.bodies.end() ? -1 : static_cast<Index>(at - model.bodies.begin());
 }
 
 const Body* body_of(const Model& model, Index node) {

@@ -218,7 +218,7 @@ Session& session_of(const PairOf& pair) {
     return pair.run.cast<Session&>();
 }
 
-const model::ContactPair& term(const PairOf& pair) {
+const model::ContactPair& pair_of(const PairOf& pair) {
     return *session_of(pair).model().pairs[static_cast<std::size_t>(pair.index)];
 }
 
@@ -228,7 +228,7 @@ output::ContactResultants resultants(const PairOf& pair) {
 
 /// Body of the slave nodes, and their numbers within it.
 py::tuple slave_nodes(const PairOf& pair) {
-    const std::vector<Index>& global = term(pair).slaves().node;
+    const std::vector<Index>& global = pair_of(pair).slaves().node;
     for (const model::Body& of : session_of(pair).model().bodies)
         if (!global.empty() && global.front() >= of.first_node && global.front() < of.first_node + of.nodes())
             return py::make_tuple(of.name, within(of, global));
@@ -238,10 +238,10 @@ py::tuple slave_nodes(const PairOf& pair) {
 void add_pair(py::module_& module) {
     py::class_<PairOf> pair(module, "Pair",
                             "A contact pair of a run, at its last accepted step. Arrays have a row per slave node.");
-    pair.def_property_readonly("name", [](const PairOf& p) { return term(p).name(); })
+    pair.def_property_readonly("name", [](const PairOf& p) { return pair_of(p).name(); })
         .def_property_readonly("nodes", slave_nodes, "(body, numbers of the slave nodes within it)")
         .def_property_readonly(
-            "area", [](const PairOf& p) { return view(std::span(term(p).slaves().area), p.run); },
+            "area", [](const PairOf& p) { return view(std::span(pair_of(p).slaves().area), p.run); },
             "(n) m^2, tributary to each slave node in the reference configuration; a view")
         .def_property_readonly(
             "contact_force",
@@ -270,7 +270,7 @@ void add_pair(py::module_& module) {
                 return field_values(session_of(p), FieldPlace::master, p.index, name);
             },
             py::arg("name"), "Field of the master's vertices by its name in frames.")
-        .def("__repr__", [](const PairOf& p) { return "<osculate.Pair '" + term(p).name() + "'>"; });
+        .def("__repr__", [](const PairOf& p) { return "<osculate.Pair '" + pair_of(p).name() + "'>"; });
     for (const auto& [name, doc] :
          {std::pair{"gap", "(n) m, < 0 where it is passed; NaN without a partner"},
           std::pair{"status", "(n) 0 open, 1 stick, 2 slip"},

@@ -104,9 +104,9 @@ TEST(LeaveOut, NothingIsMadeWhileItRuns) {
     LittleRun run;
     run.stepper->run(run);
     EXPECT_EQ(run.steps, 3);
-    EXPECT_EQ(run.stepper->paths_followed(), 0);
-    EXPECT_EQ(run.stepper->refreshed_patches(), 0);
-    EXPECT_EQ(run.stepper->stabilised_steps(), 0);
+    EXPECT_EQ(run.stepper->counts().paths_followed, 0);
+    EXPECT_EQ(run.stepper->counts().refreshed_patches, 0);
+    EXPECT_EQ(run.stepper->counts().stabilised_steps, 0);
 }
 
 } // namespace

@@ -1,10 +1,10 @@
 // Assembly, products, factors and cycles of one elastic block that stands on its foot. Items are unknowns.
 
 #include "osculate/fe/element_block.hpp"
+#include "osculate/linear/body_compliance.hpp"
+#include "osculate/linear/penalty_stiffness.hpp"
 #include "osculate/mesh/generators.hpp"
-#include "osculate/model/body_compliance.hpp"
 #include "osculate/model/nodal_unknowns.hpp"
-#include "osculate/model/penalty_stiffness.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -15,7 +15,7 @@ namespace {
 struct Block {
     explicit Block(int n) {
         mesh::Mesh mesh = mesh::make_block(Vec3::Zero(), Vec3::Ones(), {n, n, n});
-        std::vector<model::NodeConstraint> held;
+        std::vector<linear::NodeConstraint> held;
         for (Index node = 0; node < mesh.node_count(); ++node) {
             const double z = mesh.nodes[node].z(), edge = 1e-9;
             if (z > 1 - edge) top.push_back(node);
@@ -27,15 +27,15 @@ struct Block {
         body.mesh = std::move(mesh);
         body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, fe::HexFormulation::full, {1e8, 0.3}));
         model.K = model::assemble_stiffness(model.bodies, model.nodes());
-        constraints = std::make_unique<model::Constraints>(model.nodes(), held);
-        stiffness = std::make_unique<model::PenaltyStiffness>(*constraints, model.K);
+        constraints = std::make_unique<linear::Constraints>(model.nodes(), held);
+        stiffness = std::make_unique<linear::PenaltyStiffness>(*constraints, model.K);
         stiffness->set_springs({});
     }
 
     model::Model model;
     std::vector<Index> top;
-    std::unique_ptr<model::Constraints> constraints;
-    std::unique_ptr<model::PenaltyStiffness> stiffness;
+    std::unique_ptr<linear::Constraints> constraints;
+    std::unique_ptr<linear::PenaltyStiffness> stiffness;
 };
 
 template <class Work> void measure(benchmark::State& state, const Block& block, Work&& work) {
@@ -67,7 +67,7 @@ void factor_cholesky(benchmark::State& state) {
 void factor_condensing(benchmark::State& state) {
     const Block block(static_cast<int>(state.range(0)));
     measure(state, block, [&] {
-        model::BodyCompliance compliance(*block.constraints, 0, block.model.nodes(), block.top, {});
+        linear::BodyCompliance compliance(*block.constraints, 0, block.model.nodes(), block.top, {});
         (void)compliance.factorise(block.stiffness->matrix(), 0);
     });
 }
@@ -92,7 +92,7 @@ void apply_cholesky(benchmark::State& state) {
 
 void apply_condensed(benchmark::State& state) {
     const Block block(static_cast<int>(state.range(0)));
-    model::BodyCompliance compliance(*block.constraints, 0, block.model.nodes(), block.top, {});
+    linear::BodyCompliance compliance(*block.constraints, 0, block.model.nodes(), block.top, {});
     (void)compliance.factorise(block.stiffness->matrix(), 0);
     const Vector f = Vector::Ones(compliance.W().rows());
     Vector u(f.size());

@@ -9,7 +9,7 @@ namespace {
 constexpr Index batch = 256; ///< elements computed before they are added up: 1 MB of hexahedral tangents
 }
 
-FiniteStrain::FiniteStrain(const std::vector<Body>& bodies, const BlockMatrix& pattern) {
+FiniteStrain::FiniteStrain(const std::vector<Body>& bodies, const linear::BlockMatrix& pattern) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         Index first = 0;
         for (std::size_t k = 0; k < bodies[b].mesh.blocks.size(); ++k) {
@@ -76,7 +76,7 @@ WorstElement FiniteStrain::add_forces(std::vector<Vec3>& f, int threads, Kernel&
     return worst;
 }
 
-template <class Kernel> void FiniteStrain::add_tangents(BlockMatrix& K, int threads, Kernel&& kernel) const {
+template <class Kernel> void FiniteStrain::add_tangents(linear::BlockMatrix& K, int threads, Kernel&& kernel) const {
     for (const Block& block : blocks_) {
         const Index n = block.kernel->nodes();
         std::vector<Matrix> tangent(batch, Matrix(3 * n, 3 * n));
@@ -97,7 +97,7 @@ WorstElement FiniteStrain::add_internal_force(const std::vector<Vec3>& X, const 
     });
 }
 
-void FiniteStrain::add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, BlockMatrix& K,
+void FiniteStrain::add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, linear::BlockMatrix& K,
                                int threads) const {
     add_tangents(K, threads, [&](const Block& block, Index e, Matrix& Ke) {
         return block.kernel->tangent(gather(block, e, X), gather(block, e, u), Ke);
@@ -113,7 +113,7 @@ WorstElement FiniteStrain::add_step_force(const std::vector<Vec3>& X, const std:
 }
 
 void FiniteStrain::add_step_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u0,
-                                    const std::vector<Vec3>& u1, const fe::StepMean& mean, BlockMatrix& K,
+                                    const std::vector<Vec3>& u1, const fe::StepMean& mean, linear::BlockMatrix& K,
                                     int threads) const {
     add_tangents(K, threads, [&](const Block& block, Index e, Matrix& Ke) {
         return block.kernel->step_tangent(gather(block, e, X), gather(block, e, u0), gather(block, e, u1), mean, Ke);

@@ -31,7 +31,7 @@ template <class F> void for_each_element(const Body& body, F&& f) {
 } // namespace
 
 namespace {
-BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
+linear::BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
     std::vector<std::vector<Index>> elements;
     for (const Body& body : bodies)
         for_each_element(body, [&](const fe::ElementKernel&, const std::vector<Index>& element,
@@ -146,8 +146,8 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
     return assembled;
 }
 
-BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
-    BlockMatrix K = pattern_of(bodies, nodes);
+linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
+    linear::BlockMatrix K = pattern_of(bodies, nodes);
     for (const Body& body : bodies) {
         Matrix Ke;
         for_each_element(
@@ -186,8 +186,8 @@ double largest_stiffness(const Model& model) {
     return largest;
 }
 
-BlockMatrix undeformed_stiffness(const Model& model, int threads) {
-    BlockMatrix K = model.K;
+linear::BlockMatrix undeformed_stiffness(const Model& model, int threads) {
+    linear::BlockMatrix K = model.K;
     const std::vector<Vec3> none(model.X.size(), Vec3::Zero());
     if (model.finite_strain) model.finite_strain->add_tangent(model.X, none, K, threads);
     return K;

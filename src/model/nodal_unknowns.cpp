@@ -4,7 +4,7 @@
 
 namespace osculate::model {
 
-solve::NodalUnknowns nodal_unknowns(const Model& model, const Constraints& constraints) {
+solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraints& constraints) {
     solve::NodalUnknowns result;
     Index moving = 0;
     for (Index node = 0; node < model.nodes(); ++node) moving += constraints.free_components(node) > 0;
@@ -15,8 +15,8 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const Constraints& const
         for (Index node = body.first_node; node < last; ++node)
             for (int k = 0; k < 3 && constraints.free_components(node) > 0; ++k) {
                 const Index e = constraints.equation(node, k), row = static_cast<Index>(result.equation.size());
-                result.equation.push_back(e == Constraints::held ? -1 : e);
-                if (e == Constraints::held) continue;
+                result.equation.push_back(e == linear::Constraints::held ? -1 : e);
+                if (e == linear::Constraints::held) continue;
                 const Vec3 d = constraints.frame(node).col(k);
                 result.near_kernel.row(row) << d.transpose(), (model.X[node] - centre).cross(d).transpose() / radius;
             }

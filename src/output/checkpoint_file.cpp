@@ -141,7 +141,7 @@ template <class T> std::vector<T> links(const Json& json, const char* name) {
     return list;
 }
 
-Json to_json(const time::ContactLaws& laws) {
+Json to_json(const linear::ContactLaws& laws) {
     Ragged<Index> nodes;
     std::vector<Mat3> by;
     for (const auto& terms : laws.terms) {
@@ -160,8 +160,8 @@ Json to_json(const time::ContactLaws& laws) {
             {"D", packed_matrices(laws.D)}};
 }
 
-time::ContactLaws contact_laws(const Json& json) {
-    time::ContactLaws laws;
+linear::ContactLaws contact_laws(const Json& json) {
+    linear::ContactLaws laws;
     laws.dt = number<double>(json, "dt");
     laws.couplings = unpacked<Index>(json, "couplings");
     const auto nodes = Ragged<Index>{unpacked<Index>(json, "count"), unpacked<Index>(json, "node")}.lists("laws");
@@ -179,17 +179,17 @@ time::ContactLaws contact_laws(const Json& json) {
     return laws;
 }
 
-Json to_json(const time::EquilibriumMemory& memory) {
+Json to_json(const equilibrium::EquilibriumMemory& memory) {
     Json json{{"couplings", links(memory.couplings)}};
     if (memory.springs) json["springs"] = links(*memory.springs);
     if (memory.laws) json["laws"] = to_json(*memory.laws);
     return json;
 }
 
-time::EquilibriumMemory equilibrium_memory(const Json& json) {
-    time::EquilibriumMemory memory;
-    memory.couplings = links<model::Coupling>(member(json, "couplings"), "couplings");
-    if (json.contains("springs")) memory.springs = links<model::Spring>(json["springs"], "springs");
+equilibrium::EquilibriumMemory equilibrium_memory(const Json& json) {
+    equilibrium::EquilibriumMemory memory;
+    memory.couplings = links<linear::Coupling>(member(json, "couplings"), "couplings");
+    if (json.contains("springs")) memory.springs = links<linear::Spring>(json["springs"], "springs");
     if (json.contains("laws")) memory.laws = contact_laws(json["laws"]);
     return memory;
 }

@@ -25,11 +25,11 @@ void append(std::vector<Cell>& cells, const Vec3& v) {
     for (int k = 0; k < 3; ++k) cells.emplace_back(v(k));
 }
 
-std::vector<Vec3> set_reactions(const Snapshot& snapshot, const model::Constraints& constraints) {
+std::vector<Vec3> set_reactions(const Snapshot& snapshot, const linear::Constraints& constraints) {
     std::vector<Vec3> sum(snapshot.model().sets.size(), Vec3::Zero());
     for (Index node = 0; node < constraints.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
-            if (const model::NodeConstraint* held = constraints.constraint(node, k);
+            if (const linear::NodeConstraint* held = constraints.constraint(node, k);
                 held != nullptr && held->set >= 0) {
                 const Vec3 axis = constraints.frame(node).col(k);
                 sum[held->set] += axis * axis.dot(snapshot.reactions()[node]);
@@ -39,7 +39,7 @@ std::vector<Vec3> set_reactions(const Snapshot& snapshot, const model::Constrain
 
 } // namespace
 
-std::vector<Vec3> nodal_reactions(const model::Constraints& constraints, const std::vector<Vec3>& unbalanced) {
+std::vector<Vec3> nodal_reactions(const linear::Constraints& constraints, const std::vector<Vec3>& unbalanced) {
     std::vector<Vec3> reactions(unbalanced.size());
     for (Index node = 0; node < constraints.nodes(); ++node)
         reactions[node] = constraints.reaction(node, unbalanced[node]);
@@ -74,7 +74,7 @@ History::History(const std::filesystem::path& path, const model::Model& model, b
     : pairs_(pairs), sets_(std::move(sets)), ledger_(ledger), table_(path, columns(model, pairs, sets_, ledger), keep) {
 }
 
-std::vector<Cell> History::cells(const Snapshot& snapshot, const model::Constraints& constraints, double dt,
+std::vector<Cell> History::cells(const Snapshot& snapshot, const linear::Constraints& constraints, double dt,
                                  int iterations, bool pairs, const std::vector<Index>& sets, bool ledger,
                                  const time::Ledger* energies_now) {
     std::vector<Cell> cells{snapshot.state().time, dt, long{iterations}};
@@ -99,7 +99,7 @@ std::vector<Cell> History::cells(const Snapshot& snapshot, const model::Constrai
     return cells;
 }
 
-void History::row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
+void History::row(const Snapshot& snapshot, const linear::Constraints& constraints, double dt, int iterations,
                   const time::Ledger* ledger) {
     table_.row(cells(snapshot, constraints, dt, iterations, pairs_, sets_, ledger_, ledger));
 }

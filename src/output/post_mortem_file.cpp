@@ -71,13 +71,13 @@ time::Attempt attempt(const Json& j) {
     return a;
 }
 
-Json written(const time::IterationRecord& i) {
+Json written(const equilibrium::IterationRecord& i) {
     return {
         {"iteration", i.iteration}, {"residual", i.residual}, {"status_changes", i.status_changes}, {"open", i.open},
         {"stick", i.stick},         {"slip", i.slip},         {"facet_changes", i.facet_changes}};
 }
 
-time::IterationRecord iteration(const Json& j) {
+equilibrium::IterationRecord iteration(const Json& j) {
     return {j.at("iteration"), real(j.at("residual")), j.at("status_changes"), j.at("open"),
             j.at("stick"),     j.at("slip"),           j.at("facet_changes")};
 }

@@ -69,7 +69,7 @@ void say_solve(std::string& text, const time::PostMortem& f) {
                     f.node >= 0 ? fmt::format("; out of balance at that node {} N", point(f.out_of_balance)) : ""));
     const std::size_t shown = std::min(f.iterations.size(), most_iterations);
     for (std::size_t i = f.iterations.size() - shown; i < f.iterations.size(); ++i) {
-        const time::IterationRecord& one = f.iterations[i];
+        const equilibrium::IterationRecord& one = f.iterations[i];
         say(text, i + shown == f.iterations.size() ? "iterations" : "",
             fmt::format("{:3}  {:9.3g}  open {}, stick {}, slip {}; {} changed{}", one.iteration, one.residual,
                         one.open, one.stick, one.slip, one.status_changes,

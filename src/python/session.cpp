@@ -141,7 +141,7 @@ void Session::wait_at(Phase phase) {
     if (closing_) throw app::Stopped("stopped at " + std::to_string(step_.time) + " s");
 }
 
-void Session::attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>&) {
+void Session::attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>&) {
     if (attempt.verdict == time::Verdict::accept) return;
     ++rejected_;
     bool waits = false;
@@ -153,7 +153,7 @@ void Session::attempted(const time::Attempt& attempt, const std::vector<time::It
 }
 
 void Session::accepted(const time::AcceptedStep& step) {
-    const model::Constraints& constraints = step.equilibrium.constraints();
+    const linear::Constraints& constraints = step.equilibrium.constraints();
     std::vector<Vec3> reactions;
     if (reactions_) reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
     has_reactions_ = reactions_;

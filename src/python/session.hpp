@@ -83,7 +83,7 @@ public:
 
 private:
     explicit Session(app::LoadedScene loaded, int threads);
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override;
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>& iterations) override;
     void accepted(const time::AcceptedStep& step) override;
     void gave_up(const time::PostMortem& found, const time::FailedIterate* iterate) override;
     void work();
@@ -107,7 +107,7 @@ private:
     int seen_ = 0; ///< number of the last one handed out
     int rejected_ = 0;
     bool completed_ = false;
-    const time::Equilibrium* equilibrium_ = nullptr; ///< while it waits in a step
+    const equilibrium::Equilibrium* equilibrium_ = nullptr; ///< while it waits in a step
     bool has_reactions_ = false;
     model::ContactEvaluations last_;           ///< see keep_last()
     std::optional<output::Snapshot> snapshot_; ///< of the last accepted step; none while the run computes

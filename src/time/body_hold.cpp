@@ -72,10 +72,10 @@ std::vector<BodyHold> holds_before(const FailedAttempt& failed) {
     return holds;
 }
 
-void hold_now(const FailedAttempt& failed, const Equilibrium& equilibrium, const model::State& state,
+void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equilibrium, const model::State& state,
               std::vector<BodyHold>& holds) {
     const model::Model& model = failed.model;
-    const model::Constraints& constraints = equilibrium.constraints();
+    const linear::Constraints& constraints = equilibrium.constraints();
     const std::vector<Vec3> x = positions(model, state);
     const double round_off = failed.ladder.tolerance * failed.ladder.reference_force;
     for (std::size_t b = 0; b < holds.size(); ++b) {

@@ -8,7 +8,7 @@ namespace osculate::time {
 /// How contact stood at the last accepted state, body by body. Evaluates the contact points there.
 [[nodiscard]] std::vector<BodyHold> holds_before(const FailedAttempt& failed);
 /// Adds what holds the bodies at the last iterate, at which `equilibrium` has been evaluated.
-void hold_now(const FailedAttempt& failed, const Equilibrium& equilibrium, const model::State& state,
+void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equilibrium, const model::State& state,
               std::vector<BodyHold>& holds);
 /// Of the bodies that nothing holds in statics, the freest; null where each is held.
 [[nodiscard]] const BodyHold* loose_body(const FailedAttempt& failed, const PostMortem& found);

@@ -33,28 +33,28 @@ std::string misfit(const model::ContactHistory& history, const model::ContactPai
     return {};
 }
 
-std::string misfit(const EquilibriumMemory& memory, const model::Model& model) {
+std::string misfit(const equilibrium::EquilibriumMemory& memory, const model::Model& model) {
     std::vector<Index> slaves;
     for (const auto& pair : model.pairs)
         slaves.insert(slaves.end(), pair->slaves().node.begin(), pair->slaves().node.end());
     if (!memory.couplings.empty()) {
-        if (!std::ranges::equal(memory.couplings, slaves, {}, &model::Coupling::slave)) return "slave nodes";
-        for (const model::Coupling& coupling : memory.couplings)
+        if (!std::ranges::equal(memory.couplings, slaves, {}, &linear::Coupling::slave)) return "slave nodes";
+        for (const linear::Coupling& coupling : memory.couplings)
             if (!within(coupling.masters, model.nodes()) || !std::ranges::is_sorted(coupling.masters))
                 return "master nodes";
     }
     if (memory.springs)
-        for (const model::Spring& spring : *memory.springs)
+        for (const linear::Spring& spring : *memory.springs)
             if (!within(spring.slave, model.nodes()) || !within(spring.masters, model.nodes())) return "springs";
     if (!memory.laws) return {};
-    const ContactLaws& laws = *memory.laws;
+    const linear::ContactLaws& laws = *memory.laws;
     const std::size_t count = laws.terms.size();
     if (!std::isfinite(laws.dt) || !within(laws.couplings, static_cast<Index>(slaves.size())) ||
         laws.couplings.size() > count || laws.B.size() != count || laws.D.size() != count || !finite(laws.B) ||
         !finite(laws.D))
         return "contact laws";
     for (const auto& terms : laws.terms)
-        for (const ContactLaws::Term& term : terms) // contact nodes are some of all
+        for (const linear::ContactLaws::Term& term : terms) // contact nodes are some of all
             if (!within(term.node, model.nodes()) || !term.by.allFinite()) return "contact laws";
     return {};
 }

@@ -1,6 +1,6 @@
 #include "osculate/time/force_balance.hpp"
 
-#include "time/nodal_field.hpp"
+#include "osculate/core/nodal_field.hpp"
 
 #include <algorithm>
 
@@ -23,7 +23,8 @@ Vec3 add_contact(const model::ContactEvaluation& evaluation, const std::vector<V
 
 } // namespace
 
-ForceBalance force_balance(const model::Model& model, const Equilibrium& equilibrium, const model::State& state) {
+ForceBalance force_balance(const model::Model& model, const equilibrium::Equilibrium& equilibrium,
+                           const model::State& state) {
     ForceBalance balance;
     NodalField contact(state.u.size(), Vec3::Zero());
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {

@@ -1,6 +1,6 @@
 #include "osculate/time/ledger.hpp"
 
-#include "time/nodal_field.hpp"
+#include "osculate/core/nodal_field.hpp"
 
 namespace osculate::time {
 
@@ -8,14 +8,15 @@ namespace {
 
 using Field = NodalField;
 
-Field times(const model::BlockMatrix& A, const Field& x) {
+Field times(const linear::BlockMatrix& A, const Field& x) {
     Field y(x.size(), Vec3::Zero());
     A.multiply_add(x, y, 1);
     return y;
 }
 
 /// Fills in what depends on the state alone.
-void take_stock(Ledger& ledger, const model::Model& model, const Dynamics& dynamics, const model::State& state) {
+void take_stock(Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
+                const model::State& state) {
     const Field p = times(model.mass(dynamics.lumped_mass), state.v);
     ledger.kinetic = 0.5 * dot(state.v, p);
     ledger.strain = model::strain_energy(model, state.u, 1);
@@ -29,14 +30,15 @@ void take_stock(Ledger& ledger, const model::Model& model, const Dynamics& dynam
 
 } // namespace
 
-Ledger opened(const model::Model& model, const Dynamics& dynamics, const model::State& state) {
+Ledger opened(const model::Model& model, const equilibrium::Dynamics& dynamics, const model::State& state) {
     Ledger ledger;
     take_stock(ledger, model, dynamics, state);
     return ledger;
 }
 
-Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics& dynamics,
-                const Equilibrium& equilibrium, const model::State& from, const model::State& to, const Field& force) {
+Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
+                const equilibrium::Equilibrium& equilibrium, const model::State& from, const model::State& to,
+                const Field& force) {
     Ledger next = ledger;
     take_stock(next, model, dynamics, to);
     const Field Du = weighted(1, to.u, -1, from.u);
@@ -44,7 +46,7 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics&
     double external = dot(Du, force);
     for (Index i = 0; i < model.nodes(); ++i)
         external += Du[i].dot(equilibrium.constraints().reaction(i, equilibrium.unbalanced()[i]));
-    const BodyWork work = equilibrium.bodies().work(to);
+    const equilibrium::BodyWork work = equilibrium.bodies().work(to);
     external += work.follower;
     double contact = 0, friction = 0;
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {

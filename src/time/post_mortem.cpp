@@ -48,12 +48,12 @@ ContactPlace place(const model::Model& model, const model::ContactEvaluation& ev
 }
 
 /// Nodes whose statuses changed, those that did most often first.
-std::vector<StatusChanges> changes_of(const model::Model& model, const std::vector<Statuses>& recent) {
+std::vector<StatusChanges> changes_of(const model::Model& model, const std::vector<equilibrium::Statuses>& recent) {
     std::vector<StatusChanges> all;
     for (std::size_t p = 0; p < model.pairs.size() && !recent.empty(); ++p)
         for (Index j = 0; j < model.pairs[p]->size(); ++j) {
             StatusChanges one;
-            for (const Statuses& statuses : recent)
+            for (const equilibrium::Statuses& statuses : recent)
                 if (one.sequence.empty() || one.sequence.back() != statuses[p][j])
                     one.sequence.push_back(statuses[p][j]);
             if (one.sequence.size() < 2) continue;
@@ -98,7 +98,7 @@ Cause cause_of_decision(const FailedAttempt& failed, const PostMortem& found) {
 }
 
 /// Body and node: those of the attempt, else of what changed in the contact, else where forces are least in balance.
-void find_place(const FailedAttempt& failed, const Equilibrium& equilibrium, PostMortem& found) {
+void find_place(const FailedAttempt& failed, const equilibrium::Equilibrium& equilibrium, PostMortem& found) {
     const Attempt& attempt = failed.attempts.back();
     found.body = attempt.body;
     found.node = attempt.node;
@@ -133,7 +133,7 @@ void name_node(const model::Model& model, Index node, Attempt& attempt) {
     }
 }
 
-std::string explain(const model::Model& model, const LadderResult& result, const Equilibrium& equilibrium,
+std::string explain(const model::Model& model, const LadderResult& result, const equilibrium::Equilibrium& equilibrium,
                     Attempt& attempt) {
     Index node = result.adrift >= 0 ? result.adrift : equilibrium.worst_node();
     if (result.failing_equation >= 0 && result.adrift < 0)
@@ -184,7 +184,7 @@ std::string explain(const model::Model& model, const LadderResult& result, const
     return text.str();
 }
 
-PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium) {
+PostMortem examine(const FailedAttempt& failed, equilibrium::Equilibrium& equilibrium) {
     constexpr std::size_t most_changes = 12; // nodes listed
     const model::Model& model = failed.model;
     const Attempt& attempt = failed.attempts.back();
@@ -218,7 +218,7 @@ PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium) {
     if (failed.z.allFinite()) { // contact points and forces at z: the last residual may have been beside it
         found.bodies = holds_before(failed);
         Vector F(failed.z.size());
-        equilibrium.set_statuses(equilibrium.statuses(), StatusRule::frozen, false);
+        equilibrium.set_statuses(equilibrium.statuses(), equilibrium::StatusRule::frozen, false);
         (void)equilibrium.residual(failed.z.data(), F.data());
         hold_now(failed, equilibrium, state, found.bodies);
     }

@@ -21,7 +21,7 @@ double largest_component(const std::vector<Vec3>& u) {
     return largest;
 }
 
-solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const LadderOptions& options) {
+solve::KinsolOptions kinsol_options(equilibrium::Equilibrium& equilibrium, Index size, const LadderOptions& options) {
     solve::KinsolOptions kinsol;
     kinsol.tolerance = options.tolerance;
     kinsol.max_iterations = options.max_iterations;
@@ -35,8 +35,8 @@ solve::KinsolOptions kinsol_options(Equilibrium& equilibrium, Index size, const 
 /// One KINSOL call. One that comes to rest at the round-off of every row counts as converged: Equilibrium::rests(). One that
 /// comes to rest at round-off of the internal forces as a whole does too, with a larger reference force from then on.
 /// @param rule  of the statuses: they go on from where it came to rest
-solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, StatusRule rule,
-                               LadderOptions& options) {
+solve::KinsolResult solve_once(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                               equilibrium::StatusRule rule, LadderOptions& options) {
     const auto size = static_cast<Index>(z.size());
     const auto call = [&] {
         solve::KinsolResult solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
@@ -62,7 +62,7 @@ solve::KinsolResult solve_once(Equilibrium& equilibrium, solve::KinsolSolver& so
 }
 
 /// Closes every second one of the nodes that `now` has open and `before` had closed; false when there are none.
-bool take_back_half(const Statuses& before, Statuses& now) {
+bool take_back_half(const equilibrium::Statuses& before, equilibrium::Statuses& now) {
     std::vector<std::pair<std::size_t, std::size_t>> released;
     for (std::size_t p = 0; p < now.size(); ++p)
         for (std::size_t j = 0; j < now[p].size(); ++j)
@@ -75,25 +75,25 @@ bool take_back_half(const Statuses& before, Statuses& now) {
     return true;
 }
 
-LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, Statuses statuses,
-                    LadderOptions& options) {
+LadderResult settle(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                    equilibrium::Statuses statuses, LadderOptions& options) {
     LadderResult result;
     result.rung = "frozen statuses";
-    std::set<Statuses> seen;
-    Statuses last = statuses;
+    std::set<equilibrium::Statuses> seen;
+    equilibrium::Statuses last = statuses;
     Vector last_z = z;
     // a smaller step is cheaper than a long search
     const int most_iterations = (options.last_chance ? 4 : 2) * options.max_iterations;
     for (int settling = 0; settling < most_settlings && result.iterations < most_iterations; ++settling) {
-        equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+        equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
         z = last_z;
         if (settling == 0) equilibrium.linearise_first_about(options.unpredicted);
-        auto solved = solve_once(equilibrium, solver, z, StatusRule::frozen, options);
+        auto solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::frozen, options);
         for (int k = 0; k < most_means && solved.outcome == KinsolOutcome::stopped; ++k) {
             const int before = solved.iterations;
             z = equilibrium.midpoint();
-            equilibrium.set_statuses(statuses, StatusRule::frozen, false);
-            solved = solve_once(equilibrium, solver, z, StatusRule::frozen, options);
+            equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
+            solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::frozen, options);
             solved.iterations += before;
         }
         result.iterations += solved.iterations;
@@ -104,7 +104,7 @@ LadderResult settle(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vecto
         if (solved.outcome != KinsolOutcome::converged) return result;
         last = equilibrium.statuses();
         last_z = z;
-        Statuses next = equilibrium.natural_statuses();
+        equilibrium::Statuses next = equilibrium.natural_statuses();
         if (next == last) return result;
         if (!seen.insert(next).second) {
             // statuses that go round for what is no more than round-off
@@ -128,8 +128,8 @@ double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, 
 }
 
 /// Rung 4, a proximal point iteration: u_k+1 solves f(u) + k S (u - u_k) = f_ext + f_contact.
-LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, Statuses statuses,
-                       bool force_first, LadderOptions& options) {
+LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                       equilibrium::Statuses statuses, bool force_first, LadderOptions& options) {
     constexpr int most_solves = 200, most_slow = 40, most_failures = 12, easy = 6;
     constexpr double softer = 1.0 / 16, little_softer = 0.5, stiffer = 16;
     constexpr double near = 0.1; // of a stride: worth trying without springs
@@ -155,8 +155,9 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
             equilibrium.stabilise({&how.share(), stiffness, anchor});
         else
             equilibrium.release();
-        equilibrium.set_statuses(statuses, StatusRule::natural, force_first && result.stabilised_solves == 0);
-        const auto solved = solve_once(equilibrium, solver, z, StatusRule::natural, options);
+        equilibrium.set_statuses(statuses, equilibrium::StatusRule::natural,
+                                 force_first && result.stabilised_solves == 0);
+        const auto solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::natural, options);
         result.iterations += solved.iterations;
         result.residual = solved.residual;
         result.failing_equation = solved.failing_equation;
@@ -187,7 +188,7 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
         }
         const double before = stride();
         slow += moved < 0.5 * before ? 1 : 0;
-        Statuses next = equilibrium.statuses();
+        equilibrium::Statuses next = equilibrium.statuses();
         undetermined = undetermined && next == statuses;
         statuses = std::move(next);
         anchor = std::move(u);
@@ -195,9 +196,9 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
         if (const double now = equilibrium.least_gap(); std::isfinite(now)) gap = now;
 
         equilibrium.release();
-        equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+        equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
         Vector F(z.size());
-        if (equilibrium.residual(z.data(), F.data()) == Equilibrium::Verdict::proceed && F.allFinite()) {
+        if (equilibrium.residual(z.data(), F.data()) == equilibrium::Equilibrium::Verdict::proceed && F.allFinite()) {
             result.residual = F.cwiseAbs().maxCoeff() / options.reference_force;
             if (result.residual <= options.tolerance && equilibrium.natural_statuses() == statuses) {
                 result.outcome = KinsolOutcome::converged;
@@ -228,27 +229,28 @@ LadderResult stabilise(Equilibrium& equilibrium, solve::KinsolSolver& solver, Ve
 
 } // namespace
 
-LadderResult solve_trial(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Statuses& statuses,
-                         const LadderOptions& options) {
+LadderResult solve_trial(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                         const equilibrium::Statuses& statuses, const LadderOptions& options) {
     LadderOptions now = options;
-    equilibrium.set_statuses(statuses, StatusRule::frozen, false);
+    equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
     equilibrium.linearise_first_about(options.predicted);
-    const auto solved = solve_once(equilibrium, solver, z, StatusRule::frozen, now);
+    const auto solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::frozen, now);
     return {solved.outcome, solved.iterations, solved.residual, now.reference_force, "trial", solved.failing_equation};
 }
 
-LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z, const Vector& unpredicted,
-                   const Statuses& start, bool force_first, const LadderOptions& options) {
+LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                   const Vector& unpredicted, const equilibrium::Statuses& start, bool force_first,
+                   const LadderOptions& options) {
     LadderOptions now = options;
     const bool predicted = z != unpredicted;
     LadderResult result;
     const auto newton = [&](const char* rung, const std::vector<Vec3>& from, bool force) {
-        equilibrium.set_statuses(start, StatusRule::natural, force);
+        equilibrium.set_statuses(start, equilibrium::StatusRule::natural, force);
         equilibrium.linearise_first_about(from);
-        auto solved = solve_once(equilibrium, solver, z, StatusRule::natural, now);
+        auto solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::natural, now);
         // what the linear residual alone says is no equilibrium
         if (solved.iterations == 0 && !from.empty())
-            solved = solve_once(equilibrium, solver, z, StatusRule::natural, now);
+            solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::natural, now);
         result = {
             solved.outcome,         result.iterations + solved.iterations, solved.residual, now.reference_force, rung,
             solved.failing_equation};
@@ -286,7 +288,7 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     const StabilisationOptions& how = options.stabilisation;
     if (result.converged() || !how.share || !(singular || options.last_chance)) return result;
     const Vector last = z;
-    const Statuses last_statuses = equilibrium.statuses();
+    const equilibrium::Statuses last_statuses = equilibrium.statuses();
     z = first;
     LadderResult held = stabilise(equilibrium, solver, z, start, force_first, now);
     held.reference_force = now.reference_force;
@@ -294,7 +296,7 @@ LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector
     if (!held.converged() && held.adrift < 0) { // what failed without springs says more
         result.iterations = held.iterations;
         z = last;
-        equilibrium.set_statuses(last_statuses, StatusRule::frozen, false);
+        equilibrium.set_statuses(last_statuses, equilibrium::StatusRule::frozen, false);
         return result;
     }
     if (held.adrift >= 0) held.outcome = KinsolOutcome::singular;

@@ -57,15 +57,16 @@ void StageRun::run() {
     }
 }
 
-StepLoad StageRun::mean_load(const StepAttempt& attempt, std::vector<Vec3>& u) const {
+equilibrium::StepLoad StageRun::mean_load(const StepAttempt& attempt, std::vector<Vec3>& u) const {
     const model::State& state = progress_.state;
     const double start = progress_.stage_start;
-    StepLoad load = load_at(context_.model, stage_, constraints_, progress_.displacement_start, attempt.time - start);
+    equilibrium::StepLoad load =
+        load_at(context_.model, stage_, constraints_, progress_.displacement_start, attempt.time - start);
     if (dynamics_ == nullptr) {
         if (context_.options.predictor) predict(context_.model, constraints_, load.prescribed, u);
         return load;
     }
-    const StepLoad before =
+    const equilibrium::StepLoad before =
         load_at(context_.model, stage_, constraints_, progress_.displacement_start, state.time - start);
     const double alpha = dynamics_->integrator.alpha_f;
     for (std::size_t i = 0; i < u.size(); ++i) {
@@ -87,7 +88,7 @@ StepAttempt StageRun::prepare() {
     attempt.on_target = fit.on_target;
 
     std::vector<Vec3> u = state.u;
-    StepLoad load = mean_load(attempt, u);
+    equilibrium::StepLoad load = mean_load(attempt, u);
     if (dynamics_ != nullptr) attempt.force = load.force;
     if (bounded_ && repeats_ == 0) collisions_.begin_step(state);
     const double reference = reference_force(context_, stage_, constraints_, state, load, attempt.dt);
@@ -116,8 +117,8 @@ StepAttempt StageRun::prepare() {
     if (dynamics_ == nullptr && options.stabilisation)
         ladder.stabilisation = stabilisation_options(context_, state, start);
     if (reference == 0) {
-        Equilibrium alone(context_.model, constraints_, dynamics_, context_.timings, options.threads,
-                          !stage_.follower_pressures.empty(), LinearSolver::direct);
+        equilibrium::Equilibrium alone(context_.model, constraints_, dynamics_, context_.timings, options.threads,
+                                       !stage_.follower_pressures.empty(), linear::LinearSolver::direct);
         alone.begin_attempt(state, std::move(load), attempt.dt);
         ladder.reference_force = imbalance(alone, attempt.z, attempt.statuses, attempt.forced);
     }

@@ -1,10 +1,10 @@
 #pragma once
 /// One stage of a run, step by step: prepare, trial, solve, judge; then commit or reject.
 
+#include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 #include "osculate/time/checkpoint.hpp"
 #include "osculate/time/collision_check.hpp"
-#include "osculate/time/equilibrium.hpp"
 #include "osculate/time/finite_check.hpp"
 #include "osculate/time/solve_ladder.hpp"
 #include "time/run_context.hpp"
@@ -19,10 +19,10 @@ struct StepAttempt {
     double time = 0, dt = 0; ///< at its end, s
     double proposed = 0;     ///< dt where no time to hit were near
     bool on_target = false;
-    std::vector<Vec3> force; ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
-    Vector z, unpredicted;   ///< start values, the last iterate afterwards; the same without prediction
-    Statuses statuses;       ///< to start from
-    bool forced = false;     ///< contact made by hand, see starting_statuses()
+    std::vector<Vec3> force;        ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
+    Vector z, unpredicted;          ///< start values, the last iterate afterwards; the same without prediction
+    equilibrium::Statuses statuses; ///< to start from
+    bool forced = false;            ///< contact made by hand, see starting_statuses()
     LadderOptions ladder;
 
     StepEvidence evidence;
@@ -46,7 +46,7 @@ public:
 
 private:
     [[nodiscard]] StepAttempt prepare();
-    [[nodiscard]] StepLoad mean_load(const StepAttempt& attempt, std::vector<Vec3>& u) const;
+    [[nodiscard]] equilibrium::StepLoad mean_load(const StepAttempt& attempt, std::vector<Vec3>& u) const;
     [[nodiscard]] bool wants_trial(const StepAttempt& attempt) const;
     /// With the statuses known at the start; its solution is where the equilibrium with contact starts from.
     void trial(StepAttempt& attempt);
@@ -67,9 +67,9 @@ private:
     const Stage& stage_;
     Progress& progress_;
     StepObserver& observer_;
-    model::Constraints constraints_;
-    const Dynamics* dynamics_; ///< null in statics
-    Equilibrium equilibrium_;
+    linear::Constraints constraints_;
+    const equilibrium::Dynamics* dynamics_; ///< null in statics
+    equilibrium::Equilibrium equilibrium_;
     solve::KinsolSolver solver_;
     CollisionCheck collisions_;
     std::optional<CentreMasses> centres_; ///< of dynamic stages

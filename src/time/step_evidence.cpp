@@ -5,10 +5,10 @@
 
 namespace osculate::time {
 
-using model::Constraints;
+using linear::Constraints;
 
-CentreMasses::CentreMasses(const model::Model& model, const Dynamics& dynamics, const Constraints& constraints,
-                           int threads)
+CentreMasses::CentreMasses(const model::Model& model, const equilibrium::Dynamics& dynamics,
+                           const linear::Constraints& constraints, int threads)
     : mass(model.bodies.size(), 0.0), free(model.bodies.size(), Eigen::Array<bool, 3, 1>::Constant(true)) {
     std::vector<Vec3> sums(model.X.size(), Vec3::Zero());
     model.mass(dynamics.lumped_mass).multiply_add(std::vector<Vec3>(sums.size(), Vec3::UnitX()), sums, threads);
@@ -49,7 +49,7 @@ double closing_energy(const Ledger& before, const Ledger& after) {
     return energy > 0 ? std::max(0.0, before.contact - after.contact) / energy : 0;
 }
 
-double velocity_error(const model::Model& model, const Dynamics& dynamics, const CentreMasses& masses,
+double velocity_error(const model::Model& model, const equilibrium::Dynamics& dynamics, const CentreMasses& masses,
                       const model::State& from, const model::State& to, double dt, double energy) {
     if (!(energy > 0)) return 0;
     std::vector<Vec3> change(model.bodies.size(), Vec3::Zero()); // of the force on each body, N
@@ -67,9 +67,10 @@ double velocity_error(const model::Model& model, const Dynamics& dynamics, const
     return dynamics.integrator.error * dt * std::sqrt(twice / (2 * energy));
 }
 
-double local_error(const model::Model& model, const Dynamics& dynamics, const Constraints& constraints,
-                   const model::State& from, const model::State& to, double dt, Index& worst) {
-    const model::BlockMatrix& M = model.mass(dynamics.lumped_mass);
+double local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
+                   const linear::Constraints& constraints, const model::State& from, const model::State& to, double dt,
+                   Index& worst) {
+    const linear::BlockMatrix& M = model.mass(dynamics.lumped_mass);
     double largest = 0;
     for (Index i = 0; i < model.nodes(); ++i) {
         // nothing ties down the acceleration of a node without mass; that of a held direction is given

@@ -1,7 +1,7 @@
 #pragma once
 /// Measures of a solved step that judge() looks at.
 
-#include "osculate/model/constraints.hpp"
+#include "osculate/linear/constraints.hpp"
 #include "osculate/time/ledger.hpp"
 #include "osculate/time/stage.hpp"
 #include "osculate/time/step_control.hpp"
@@ -14,8 +14,8 @@ struct CentreMasses {
     std::vector<double> mass;               ///< (bodies) kg
     std::vector<Eigen::Array<bool, 3, 1>> free;
 
-    CentreMasses(const model::Model& model, const Dynamics& dynamics, const model::Constraints& constraints,
-                 int threads);
+    CentreMasses(const model::Model& model, const equilibrium::Dynamics& dynamics,
+                 const linear::Constraints& constraints, int threads);
 };
 
 [[nodiscard]] bool touches(const model::State& state);
@@ -29,12 +29,13 @@ struct CentreMasses {
 [[nodiscard]] double closing_energy(const Ledger& before, const Ledger& after);
 /// StepEvidence::velocity_error, of an energy. From contact forces and not from accelerations: those of a rule that damps
 /// nothing alternate for ever after a shock.
-[[nodiscard]] double velocity_error(const model::Model& model, const Dynamics& dynamics, const CentreMasses& masses,
-                                    const model::State& from, const model::State& to, double dt, double energy);
+[[nodiscard]] double velocity_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
+                                    const CentreMasses& masses, const model::State& from, const model::State& to,
+                                    double dt, double energy);
 /// Largest of Integrator::local_error() over the nodes with mass, free directions, m.
 /// @param worst  whose it is
-[[nodiscard]] double local_error(const model::Model& model, const Dynamics& dynamics,
-                                 const model::Constraints& constraints, const model::State& from,
+[[nodiscard]] double local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
+                                 const linear::Constraints& constraints, const model::State& from,
                                  const model::State& to, double dt, Index& worst);
 /// StepEvidence::unseen.
 [[nodiscard]] GapEvidence deepest_unseen(const model::ContactEvaluations& contact);

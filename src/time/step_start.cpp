@@ -13,7 +13,7 @@
 namespace osculate::time {
 
 using contact::Status;
-using model::Constraints;
+using linear::Constraints;
 
 std::vector<double> times_to_hit(const Stage& stage, double t_start) {
     std::vector<double> corners;
@@ -26,10 +26,10 @@ std::vector<double> times_to_hit(const Stage& stage, double t_start) {
     return times;
 }
 
-StepLoad load_at(const model::Model& model, const Stage& stage, const Constraints& constraints,
-                 const std::vector<Vec3>& prescribed_start, double elapsed) {
+equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, const linear::Constraints& constraints,
+                              const std::vector<Vec3>& prescribed_start, double elapsed) {
     const double ramp = stage.ramp ? elapsed / stage.duration : 1;
-    StepLoad load;
+    equilibrium::StepLoad load;
     load.force.resize(model.X.size());
     for (std::size_t i = 0; i < load.force.size(); ++i)
         load.force[i] = stage.force_start[i] + ramp * (stage.force_end[i] - stage.force_start[i]);
@@ -59,7 +59,7 @@ StepLoad load_at(const model::Model& model, const Stage& stage, const Constraint
     return load;
 }
 
-void predict(const model::Model& model, const Constraints& constraints, const std::vector<Vec3>& prescribed,
+void predict(const model::Model& model, const linear::Constraints& constraints, const std::vector<Vec3>& prescribed,
              std::vector<Vec3>& u) {
     for (const model::Body& body : model.bodies) {
         Vec3 centre = Vec3::Zero();
@@ -116,8 +116,8 @@ model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const mod
 }
 } // namespace
 
-bool starting_statuses(RunContext& context, const BodyForces& bodies, const model::State& state,
-                       const std::vector<Vec3>& u, Statuses& statuses) {
+bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies, const model::State& state,
+                       const std::vector<Vec3>& u, equilibrium::Statuses& statuses) {
     statuses.clear();
     bool any = false;
     for (const auto& history : state.contact) {
@@ -165,13 +165,13 @@ StabilisationOptions stabilisation_options(RunContext& context, const model::Sta
 }
 
 namespace {
-std::vector<Vec3> initial_acceleration(RunContext& context, const Stage& stage, const Constraints& constraints,
+std::vector<Vec3> initial_acceleration(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
                                        const model::State& state, const std::vector<Vec3>& force) {
     const model::Model& model = context.model;
-    const Dynamics& dynamics = *stage.dynamics;
-    const model::BlockMatrix& M = model.mass(dynamics.lumped_mass);
+    const equilibrium::Dynamics& dynamics = *stage.dynamics;
+    const linear::BlockMatrix& M = model.mass(dynamics.lumped_mass);
     const auto n = static_cast<std::size_t>(model.nodes());
-    const std::vector<Vec3> own = body_forces(model, dynamics, state, context.options.threads);
+    const std::vector<Vec3> own = equilibrium::body_forces(model, dynamics, state, context.options.threads);
     std::vector<Vec3> f = force, x = model.X;
     for (std::size_t i = 0; i < n; ++i) {
         f[i] -= own[i];
@@ -185,7 +185,7 @@ std::vector<Vec3> initial_acceleration(RunContext& context, const Stage& stage, 
             evaluation.for_each_force(j, state.contact[p].lambda[j],
                                       [&](Index node, const Vec3& own_force) { f[node] += own_force; });
     }
-    model::PenaltyStiffness free_mass(constraints, M);
+    linear::PenaltyStiffness free_mass(constraints, M);
     free_mass.set_springs({});
     const auto solver = solve::make_cholesky();
     // nodes without mass have no acceleration of their own
@@ -211,8 +211,8 @@ std::vector<Vec3> initial_acceleration(RunContext& context, const Stage& stage, 
 }
 } // namespace
 
-void start_motion(RunContext& context, const Stage& stage, const Constraints& constraints, StepLoad load,
-                  Progress& progress) {
+void start_motion(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
+                  equilibrium::StepLoad load, Progress& progress) {
     const model::Model& model = context.model;
     model::State& state = progress.state;
     // a later one, after statics, starts at rest
@@ -224,13 +224,13 @@ void start_motion(RunContext& context, const Stage& stage, const Constraints& co
             if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
         state.v[node] = constraints.to_global(node, v);
     }
-    add_follower_forces(load.pressures, model, state.u, load.force);
+    equilibrium::add_follower_forces(load.pressures, model, state.u, load.force);
     state.a = initial_acceleration(context, stage, constraints, state, load.force);
     progress.ledger = opened(model, *stage.dynamics, state);
 }
 
-double reference_force(const RunContext& context, const Stage& stage, const Constraints& constraints,
-                       const model::State& state, const StepLoad& load, double dt) {
+double reference_force(const RunContext& context, const Stage& stage, const linear::Constraints& constraints,
+                       const model::State& state, const equilibrium::StepLoad& load, double dt) {
     const model::Model& model = context.model;
     const StepperOptions& options = context.options;
     const auto norm = [](const std::vector<Vec3>& f) {
@@ -244,16 +244,16 @@ double reference_force(const RunContext& context, const Stage& stage, const Cons
         external = norm(load.force);
     } else {
         std::vector<Vec3> force = load.force;
-        std::vector<FollowerLoad> pressures = load.pressures;
-        for (FollowerLoad& pressure : pressures) pressure.start = pressure.end;
-        add_follower_forces(pressures, model, state.u, force);
+        std::vector<equilibrium::FollowerLoad> pressures = load.pressures;
+        for (equilibrium::FollowerLoad& pressure : pressures) pressure.start = pressure.end;
+        equilibrium::add_follower_forces(pressures, model, state.u, force);
         external = norm(force);
     }
     double carried = std::max(external, norm(internal));
     if (stage.dynamics) {
         // a thousandth of the force that would stop every motion within the step
         constexpr double share = 1e-3;
-        const model::BlockMatrix& M = model.mass(stage.dynamics->lumped_mass);
+        const linear::BlockMatrix& M = model.mass(stage.dynamics->lumped_mass);
         for (const auto& [motion, factor] : {std::pair{&state.a, 1.0}, std::pair{&state.v, share / dt}}) {
             std::fill(internal.begin(), internal.end(), Vec3::Zero());
             M.multiply_add(*motion, internal, options.threads);
@@ -301,9 +301,10 @@ double RunContext::round_off_force() const {
     return std::numeric_limits<double>::epsilon() / options.tolerance * largest_stiffness;
 }
 
-double imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses, bool forced) {
+double imbalance(equilibrium::Equilibrium& equilibrium, const Vector& z, const equilibrium::Statuses& statuses,
+                 bool forced) {
     Vector F(z.size());
-    equilibrium.set_statuses(statuses, StatusRule::natural, forced);
+    equilibrium.set_statuses(statuses, equilibrium::StatusRule::natural, forced);
     if (equilibrium.residual(z.data(), F.data()) == solve::NonlinearProblem::Verdict::shorten) return 1;
     return F.norm() > 0 ? F.norm() : 1; // where nothing is out of balance any unit will do
 }

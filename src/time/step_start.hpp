@@ -1,7 +1,7 @@
 #pragma once
 /// What a step starts from: loads, first iterate, first statuses, accelerations, scale of the forces.
 
-#include "osculate/time/equilibrium.hpp"
+#include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/time/progress.hpp"
 #include "osculate/time/solve_ladder.hpp"
 #include "osculate/time/stage.hpp"
@@ -12,27 +12,30 @@ namespace osculate::time {
 /// Ends of the stage's equal steps and corners of its courses, ascending.
 [[nodiscard]] std::vector<double> times_to_hit(const Stage& stage, double t_start);
 /// Loads and motions at a time since the stage's start, s. @throws LoadNotFinite
-[[nodiscard]] StepLoad load_at(const model::Model& model, const Stage& stage, const model::Constraints& constraints,
-                               const std::vector<Vec3>& prescribed_start, double elapsed);
+[[nodiscard]] equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage,
+                                            const linear::Constraints& constraints,
+                                            const std::vector<Vec3>& prescribed_start, double elapsed);
 /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
-void predict(const model::Model& model, const model::Constraints& constraints, const std::vector<Vec3>& prescribed,
+void predict(const model::Model& model, const linear::Constraints& constraints, const std::vector<Vec3>& prescribed,
              std::vector<Vec3>& u);
 /// Statuses to start from at displacements u; true where a pair is brought into contact by hand because nothing of it is
 /// closed yet.
-[[nodiscard]] bool starting_statuses(RunContext& context, const BodyForces& bodies, const model::State& state,
-                                     const std::vector<Vec3>& u, Statuses& statuses);
+[[nodiscard]] bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies,
+                                     const model::State& state, const std::vector<Vec3>& u,
+                                     equilibrium::Statuses& statuses);
 /// What forces are measured by, N; 0 where nothing acts yet.
 [[nodiscard]] double reference_force(const RunContext& context, const Stage& stage,
-                                     const model::Constraints& constraints, const model::State& state,
-                                     const StepLoad& load, double dt);
+                                     const linear::Constraints& constraints, const model::State& state,
+                                     const equilibrium::StepLoad& load, double dt);
 [[nodiscard]] double largest_displacement(const model::State& state); ///< component, m
 /// Norm of the residual at z, contact laws included: the reference where it is initial overlap alone that acts, N.
 /// @param equilibrium  a throw-away: it is left evaluated
-[[nodiscard]] double imbalance(Equilibrium& equilibrium, const Vector& z, const Statuses& statuses, bool forced);
+[[nodiscard]] double imbalance(equilibrium::Equilibrium& equilibrium, const Vector& z,
+                               const equilibrium::Statuses& statuses, bool forced);
 /// Velocities, accelerations and ledger at the start of the first dynamic stage after statics, or at all:
 /// M a = f - K u - C v + contact forces of the state, a = 0 along held directions.
-void start_motion(RunContext& context, const Stage& stage, const model::Constraints& constraints, StepLoad load,
-                  Progress& progress);
+void start_motion(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
+                  equilibrium::StepLoad load, Progress& progress);
 /// Of the last rung of an attempt from a state, which must outlive them, that starts from displacements u.
 [[nodiscard]] StabilisationOptions stabilisation_options(RunContext& context, const model::State& state,
                                                          const std::vector<Vec3>& u);

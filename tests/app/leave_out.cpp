@@ -41,13 +41,13 @@ struct LittleRun final : time::StepObserver {
         plan = compile(scene, build_meshes(scene), 1, timings);
         stepper = std::make_unique<time::Stepper>(plan.model, plan.stages, plan.stepper, timings);
     }
-    void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
+    void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
     void accepted(const time::AcceptedStep& step) override {
         ++steps;
         EXPECT_EQ(step.ledger, nullptr);
         EXPECT_TRUE(step.state.v.empty());
         EXPECT_TRUE(step.state.a.empty());
-        const time::BodyForces& bodies = step.equilibrium.bodies();
+        const equilibrium::BodyForces& bodies = step.equilibrium.bodies();
         EXPECT_FALSE(bodies.dynamic());
         EXPECT_FALSE(bodies.stabilised());
         EXPECT_EQ(&bodies.tangent(), &plan.model.K) << "the stiffness itself, no copy";

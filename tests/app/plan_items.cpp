@@ -212,7 +212,7 @@ TEST(FlatMaster, IsSaidToNeedNoSmoothSurfaceOnlyWhereItStaysFlat) {
 TEST(FlatMaster, GivesTheSameForcesOnSlaveNodesWithFacetsButOthersOnItsOwn) {
     const auto run = [](const char* surface) {
         struct Last final : time::StepObserver {
-            void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
+            void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
             void accepted(const time::AcceptedStep& step) override {
                 force = step.state.contact[0].lambda;
                 unbalanced = step.equilibrium.unbalanced();

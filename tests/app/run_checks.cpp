@@ -106,7 +106,7 @@ using Look = std::function<void(const time::AcceptedStep&, Plan&)>;
 void run(const std::string& text, const Look& look) {
     struct Observer final : time::StepObserver {
         Observer(const Look& l, Plan& p) : look(l), plan(p) {}
-        void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
+        void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
         void accepted(const time::AcceptedStep& step) override { look(step, plan); }
         const Look& look;
         Plan& plan;
@@ -172,7 +172,7 @@ TEST(RunChecks, MeasurePenetrationInFacetSizes) {
 
         // the same equilibrium, but that contact is looked at where the cap has sunk
         Timings unused;
-        time::Equilibrium sunk(plan.model, step.equilibrium.constraints(), nullptr, unused, 1);
+        equilibrium::Equilibrium sunk(plan.model, step.equilibrium.constraints(), nullptr, unused, 1);
         sunk.begin_attempt(step.state, {step.equilibrium.external_force(), step.state.u}, step.dt);
         const Vector z = sunk.unknowns(step.state.u, step.state.contact);
         ASSERT_TRUE(sunk.holds(z, step.equilibrium.statuses(), balance));

@@ -9,7 +9,8 @@ namespace {
 
 class Forces final : public osculate::time::StepObserver {
 public:
-    void attempted(const osculate::time::Attempt&, const std::vector<osculate::time::IterationRecord>&) override {}
+    void attempted(const osculate::time::Attempt&,
+                   const std::vector<osculate::equilibrium::IterationRecord>&) override {}
     void accepted(const osculate::time::AcceptedStep& step) override {
         osculate::Vec3 force = osculate::Vec3::Zero();
         for (const osculate::Vec3& lambda : step.state.contact.front().lambda) force += lambda;

@@ -74,7 +74,7 @@ TEST_F(TwoKinds, ForcesAreTheDerivativeOfTheEnergy) {
 }
 
 TEST_F(TwoKinds, TangentIsTheDerivativeOfTheForces) {
-    BlockMatrix K = model.K;
+    linear::BlockMatrix K = model.K;
     model.finite_strain->add_tangent(model.X, u, K, 2);
     std::vector<Vec3> change(u.size(), Vec3::Zero());
     K.multiply_add(way, change, 1);

@@ -30,7 +30,7 @@ std::vector<Body> one(mesh::Mesh mesh) {
 }
 
 /// Masses of nodes and between nodes, kg.
-Matrix scalar(const BlockMatrix& M) {
+Matrix scalar(const linear::BlockMatrix& M) {
     Matrix m = Matrix::Zero(M.rows(), M.rows());
     for (Index i = 0; i < M.rows(); ++i)
         for (Index k = M.row_begin(i); k < M.row_end(i); ++k) m(i, M.column(k)) = M.block(k)(0, 0);

@@ -64,11 +64,11 @@ TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
     blocks.model.sets = {{"bed", 0, {0, 1}, {}}, {"side", 0, {1, 2}, {}}, {"free", 0, {3}, {}}};
     const Vec3 skew = Vec3(3, 4, 0) / 5;
     // node 1 belongs to both: x is the bed's, and asked for by the side once more; y is the side's
-    const model::Constraints constraints(blocks.model.nodes(), {{0, skew, 0, false, false, 0},
-                                                                {1, Vec3::UnitX(), 0, false, false, 0},
-                                                                {1, -Vec3::UnitX(), 0, false, false, 1},
-                                                                {1, Vec3::UnitY(), 0, false, false, 1},
-                                                                {2, Vec3::UnitZ(), 0, true, false, 1}});
+    const linear::Constraints constraints(blocks.model.nodes(), {{0, skew, 0, false, false, 0},
+                                                                 {1, Vec3::UnitX(), 0, false, false, 0},
+                                                                 {1, -Vec3::UnitX(), 0, false, false, 1},
+                                                                 {1, Vec3::UnitY(), 0, false, false, 1},
+                                                                 {2, Vec3::UnitZ(), 0, true, false, 1}});
     const std::vector<Vec3> unbalanced(blocks.model.X.size(), Vec3(5, 10, 20));
     const std::vector<Vec3> reactions = nodal_reactions(constraints, unbalanced);
     EXPECT_NEAR((reactions[0] - 11 * skew).norm(), 0, 1e-13);
@@ -88,7 +88,7 @@ TEST_F(HistoryFile, CountsEveryHeldDirectionForOneSet) {
 TEST(History, AngularMomentumIsAboutTheOriginOfTheScene) {
     TwoBlocks blocks;
     blocks.model.origin = {100, -50, 20};
-    const model::Constraints none(blocks.model.nodes(), {});
+    const linear::Constraints none(blocks.model.nodes(), {});
     time::Ledger ledger;
     ledger.linear = {3, 5, 7};
     ledger.angular = {1, 2, 4};

@@ -13,7 +13,7 @@ struct Diary final : time::StepObserver {
     std::vector<time::Attempt> attempts;
     std::vector<model::State> states;
     std::vector<time::Ledger> ledgers; ///< of dynamic steps
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>&) override {
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>&) override {
         attempts.push_back(attempt);
     }
     void accepted(const time::AcceptedStep& step) override {

@@ -23,7 +23,7 @@ struct PairForces {
 struct RunStep {
     double time = 0;
     int iterations = 0;
-    std::vector<time::IterationRecord> records;
+    std::vector<equilibrium::IterationRecord> records;
     std::vector<PairForces> pairs;
     std::vector<Vec3> reactions; ///< per constrained set
     Vec3 load = Vec3::Zero();    ///< sum of external forces
@@ -58,7 +58,7 @@ class Keeper final : public time::StepObserver {
 public:
     explicit Keeper(SceneRun& run) : run_(run) {}
 
-    void attempted(const time::Attempt&, const std::vector<time::IterationRecord>& records) override {
+    void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>& records) override {
         ++run_.attempts;
         records_ = records;
     }
@@ -108,7 +108,7 @@ public:
 
 private:
     SceneRun& run_;
-    std::vector<time::IterationRecord> records_;
+    std::vector<equilibrium::IterationRecord> records_;
 };
 
 } // namespace detail

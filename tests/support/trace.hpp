@@ -31,7 +31,8 @@ struct Enough {};
 class Tracer final : public time::StepObserver {
 public:
     Tracer(Trace& trace, int most_steps) : trace_(trace), most_steps_(most_steps) {}
-    void attempted(const time::Attempt& /*attempt*/, const std::vector<time::IterationRecord>& /*records*/) override {}
+    void attempted(const time::Attempt& /*attempt*/,
+                   const std::vector<equilibrium::IterationRecord>& /*records*/) override {}
     void accepted(const time::AcceptedStep& step) override {
         TraceStep kept{step.state.time, step.iterations, step.state.u, {}};
         const auto& pairs = trace_.plan.model.pairs;

@@ -88,7 +88,7 @@ protected:
         }
         return {};
     }
-    void attempted(const Attempt&, const std::vector<IterationRecord>&) override {}
+    void attempted(const Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
     void accepted(const AcceptedStep& step) override {
         states.push_back(step.state);
         contact = step.equilibrium.contact();

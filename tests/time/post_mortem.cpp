@@ -24,14 +24,14 @@ const std::vector<scene::Override> no_loose_body{{"supports.top", "{fix: [y, z]}
 /// @param statuses  of the iterates before it
 /// @param supports  changes to those of the scene
 PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Attempt& attempt,
-                    const std::function<std::vector<Statuses>(Statuses)>& statuses = {},
+                    const std::function<std::vector<equilibrium::Statuses>(equilibrium::Statuses)>& statuses = {},
                     const std::vector<scene::Override>& supports = no_loose_body) {
     const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml", supports);
     Timings timings;
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const Stage& stage = plan.stages.front();
-    const model::Constraints constraints(plan.model.nodes(), stage.constraints);
-    Equilibrium equilibrium(plan.model, constraints, nullptr, timings, 1);
+    const linear::Constraints constraints(plan.model.nodes(), stage.constraints);
+    equilibrium::Equilibrium equilibrium(plan.model, constraints, nullptr, timings, 1);
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
     for (const auto& pair : plan.model.pairs) state.contact.push_back(pair->initial_history());
@@ -39,9 +39,9 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
     const Vector z = equilibrium.unknowns(state.u, state.contact);
     equilibrium.set_reference_force(ladder.reference_force);
     if (statuses)
-        for (const Statuses& imposed : statuses(equilibrium.statuses())) {
+        for (const equilibrium::Statuses& imposed : statuses(equilibrium.statuses())) {
             Vector F(z.size());
-            equilibrium.set_statuses(imposed, StatusRule::frozen, false);
+            equilibrium.set_statuses(imposed, equilibrium::StatusRule::frozen, false);
             (void)equilibrium.residual(z.data(), F.data());
         }
     Decision decision;
@@ -91,8 +91,8 @@ TEST(PostMortem, NamesTheNodeThatChangedItsStatusMostOften) {
     Attempt attempt;
     constexpr std::size_t once = 1, often = 4, twice = 9;
     using contact::Status;
-    const PostMortem found = examined(result, ladder, attempt, [&](Statuses now) {
-        std::vector<Statuses> history{now};
+    const PostMortem found = examined(result, ladder, attempt, [&](equilibrium::Statuses now) {
+        std::vector<equilibrium::Statuses> history{now};
         const auto change = [&](std::size_t slave, Status to) {
             now[0][slave] = to;
             history.push_back(now);
@@ -125,9 +125,9 @@ TEST(PostMortem, CountsSlippingNodesAsSupportsAlongTheNormalAlone) {
     using contact::Status;
     for (const auto& [status, free] : {std::pair{Status::stick, 0}, {Status::slip, 1}, {Status::glide, 1}}) {
         Attempt attempt;
-        const auto all = [&](Statuses now) {
+        const auto all = [&](equilibrium::Statuses now) {
             std::ranges::fill(now[0], status);
-            return std::vector<Statuses>{now};
+            return std::vector<equilibrium::Statuses>{now};
         };
         const PostMortem found = examined(result, ladder, attempt, all, {});
         const auto cap = std::ranges::find(found.bodies, "cap", &BodyHold::body);

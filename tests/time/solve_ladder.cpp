@@ -77,10 +77,10 @@ protected:
         model.pairs[0] =
             std::make_unique<const model::ContactPair>("joint", model.X, pair().slaves(), std::move(surface),
                                                        std::move(nodes), std::move(facets), pair().options());
-        constraints = std::make_unique<model::Constraints>(model.nodes(), plan.stages[0].constraints);
+        constraints = std::make_unique<linear::Constraints>(model.nodes(), plan.stages[0].constraints);
         // an LU factorisation tells at once that nothing holds the cap
-        equilibrium =
-            std::make_unique<Equilibrium>(model, *constraints, nullptr, timings, 1, false, LinearSolver::direct);
+        equilibrium = std::make_unique<equilibrium::Equilibrium>(model, *constraints, nullptr, timings, 1, false,
+                                                                 linear::LinearSolver::direct);
         solver = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
         state.u.assign(model.X.size(), Vec3::Zero());
         state.contact.push_back(pair().initial_history());
@@ -99,7 +99,7 @@ protected:
     void begin() { equilibrium->begin_attempt(state, load, 1); }
     [[nodiscard]] const model::ContactPair& pair() const { return *plan.model.pairs[0]; }
     /// Where the master's vertices are with statuses as given, and the statuses that the solution calls for.
-    std::pair<std::vector<Vec3>, Statuses> solved_with(const Statuses& statuses) {
+    std::pair<std::vector<Vec3>, equilibrium::Statuses> solved_with(const equilibrium::Statuses& statuses) {
         Vector z = start;
         EXPECT_TRUE(solve_trial(*equilibrium, *solver, z, statuses, ladder).converged());
         std::vector<Vec3> x = equilibrium->displacements(z);
@@ -110,21 +110,21 @@ protected:
     Timings timings;
     app::Plan plan;
     Trap::Place trap;
-    std::unique_ptr<model::Constraints> constraints;
-    std::unique_ptr<Equilibrium> equilibrium;
+    std::unique_ptr<linear::Constraints> constraints;
+    std::unique_ptr<equilibrium::Equilibrium> equilibrium;
     std::unique_ptr<solve::KinsolSolver> solver;
     model::State state;
-    StepLoad load;
+    equilibrium::StepLoad load;
     Vector start;
     LadderOptions ladder;
-    Statuses all; ///< closed
+    equilibrium::Statuses all; ///< closed
 };
 
 /// With the nodes released that are pulled, the cap loses the base, and the tangent is singular: every second of them closes
 /// again, and Newton starts from where all of them were closed, not from where the base was lost.
 TEST_F(Ladder, TakesBackHalfOfTheReleasedNodesAndStartsFromTheLastSolution) {
-    const Statuses pressed = solved_with(all).second;
-    Statuses half = pressed;
+    const equilibrium::Statuses pressed = solved_with(all).second;
+    equilibrium::Statuses half = pressed;
     int released = 0;
     for (std::size_t j = 0; j < half[0].size(); ++j)
         if (half[0][j] == Status::open && released++ % 2 == 0) half[0][j] = Status::stick;
@@ -176,8 +176,10 @@ TEST_F(Ladder, TakesItsSpringsAwayFromABodyThatNothingHolds) {
     std::fill(load.force.begin() + plan.model.bodies[1].first_node, load.force.end(), up);
     begin();
     const std::vector<double> shares = model::volume_shares(plan.model);
-    ladder.stabilisation = {
-        .share = [&]() -> const std::vector<double>& { return shares; }, .finest = 0.05, .gap = [] { return 0.1; }, .farthest = 0.5};
+    ladder.stabilisation = {.share = [&]() -> const std::vector<double>& { return shares; },
+                            .finest = 0.05,
+                            .gap = [] { return 0.1; },
+                            .farthest = 0.5};
     Vector z = start;
     const LadderResult result = climb(*equilibrium, *solver, z, start, all, true, ladder);
     EXPECT_EQ(result.outcome, KinsolOutcome::singular);

@@ -38,7 +38,7 @@ stages:
 struct States final : StepObserver {
     std::vector<model::State> states;
     std::vector<Ledger> ledgers;
-    void attempted(const Attempt&, const std::vector<IterationRecord>&) override {}
+    void attempted(const Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
     void accepted(const AcceptedStep& step) override {
         states.push_back(step.state);
         if (step.ledger != nullptr) ledgers.push_back(*step.ledger);

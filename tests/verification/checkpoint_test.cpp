@@ -32,7 +32,7 @@ struct PartOfARun {
         std::size_t every = 0;
         std::vector<std::string> files;
         std::vector<std::size_t> attempts; ///< that lie behind
-        void attempted(const time::Attempt& a, const std::vector<time::IterationRecord>& i) override {
+        void attempted(const time::Attempt& a, const std::vector<equilibrium::IterationRecord>& i) override {
             diary.attempted(a, i);
         }
         void accepted(const time::AcceptedStep& step) override { diary.accepted(step); }
@@ -165,7 +165,7 @@ TEST(Checkpoint, OfAnotherSceneIsRefused) {
         c.memory.laws.emplace();
         c.memory.laws->couplings = {-1};
     });
-    refused([](time::Checkpoint& c) { c.memory.springs = {{model::Spring{1 << 30, {}, {}}}}; });
+    refused([](time::Checkpoint& c) { c.memory.springs = {{linear::Spring{1 << 30, {}, {}}}}; });
 }
 
 } // namespace

@@ -23,7 +23,7 @@ struct Shot final : time::StepObserver {
     std::vector<model::State> states;
     long paths = 0;
 
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>&) override {
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>&) override {
         attempts.push_back(attempt);
     }
     void accepted(const time::AcceptedStep& step) override { states.push_back(step.state); }

@@ -43,7 +43,7 @@ stages:
 /// Energies without their records of the steps in between, which would fill the memory.
 struct Energies final : time::StepObserver {
     std::vector<double> energy, algorithmic;
-    void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
+    void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
     void accepted(const time::AcceptedStep& step) override {
         if (step.ledger == nullptr) return;
         energy.push_back(step.ledger->kinetic + step.ledger->strain);

@@ -29,7 +29,7 @@ struct Fall final : time::StepObserver {
         time::Stepper stepper(plan.model, plan.stages, plan.stepper, timings);
         stepper.run(*this);
     }
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>&) override {
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>&) override {
         attempts.push_back(attempt);
     }
     void accepted(const time::AcceptedStep& step) override {
@@ -79,8 +79,8 @@ struct Depths {
 Depths depths(Fall& fall) {
     const model::Model& model = fall.plan.model;
     const time::Stage& stage = fall.plan.stages[0];
-    const model::Constraints constraints(model.nodes(), stage.constraints);
-    time::Equilibrium equilibrium(fall.plan.model, constraints, &*stage.dynamics, fall.timings, 1);
+    const linear::Constraints constraints(model.nodes(), stage.constraints);
+    equilibrium::Equilibrium equilibrium(fall.plan.model, constraints, &*stage.dynamics, fall.timings, 1);
     solve::KinsolSolver solver(equilibrium.size(), fall.timings);
     const std::vector<Index>& slaves = model.pairs[0]->slaves().node;
     const auto depth = [&](const std::vector<Vec3>& u, Index node) {

@@ -24,7 +24,7 @@ double energy(const support::RunStep& step) {
 
 /// Mass and momentum of one body, with the mass matrix of the run.
 double mass(const support::SceneRun& run, std::size_t body) {
-    const model::BlockMatrix& M = run.plan.model.consistent_mass;
+    const linear::BlockMatrix& M = run.plan.model.consistent_mass;
     const model::Body& b = run.plan.model.bodies[body];
     double sum = 0;
     for (Index i = b.first_node; i < b.first_node + b.nodes(); ++i)
@@ -33,7 +33,7 @@ double mass(const support::SceneRun& run, std::size_t body) {
 }
 
 Vec3 momentum(const support::SceneRun& run, std::size_t body, const support::RunStep& step) {
-    const model::BlockMatrix& M = run.plan.model.consistent_mass;
+    const linear::BlockMatrix& M = run.plan.model.consistent_mass;
     std::vector<Vec3> p(step.state.v.size(), Vec3::Zero());
     M.multiply_add(step.state.v, p, 1);
     const model::Body& b = run.plan.model.bodies[body];
@@ -248,7 +248,7 @@ TEST(ThrownBall, TurnsByFrictionWithoutGainingEnergy) {
     const double solver = 1e-6; // its tolerance, relative
     EXPECT_LT(friction, 0.3 * normal * (1 + solver)) << "Coulomb's law, summed over the impact";
     // the moment of that force about the centre, whose height lies between the free one and that of the deepest point
-    const model::BlockMatrix& M = run.plan.model.consistent_mass;
+    const linear::BlockMatrix& M = run.plan.model.consistent_mass;
     std::vector<Vec3> weighted(end.state.u.size(), Vec3::Zero()), x = run.plan.model.X;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += end.state.u[i];
     M.multiply_add(x, weighted, 1);

@@ -41,7 +41,7 @@ void expect_same(const std::string& scene, std::vector<scene::Override> override
     support::run_scene(direct, support::shipped(scene), overrides);
     overrides.back() = {"solver.linear_solver", "condensed"};
     support::run_scene(condensed, support::shipped(scene), overrides);
-    EXPECT_TRUE(time::condenses(condensed.plan.model, condensed.plan.stepper.linear_solver, false));
+    EXPECT_TRUE(equilibrium::condenses(condensed.plan.model, condensed.plan.stepper.linear_solver, false));
     overrides.back() = {"solver.linear_solver", "iterative"};
     support::run_scene(iterative, support::shipped(scene), overrides);
     overrides.back() = {"solver.linear_solver", "multigrid"};
@@ -92,7 +92,7 @@ TEST(LinearSolvers, GiveTheSameAtFiniteStrain) {
 }
 
 TEST(LinearSolvers, CondenseWhereThatCostsLess) {
-    using time::CondensationCost;
+    using equilibrium::CondensationCost;
     EXPECT_TRUE((CondensationCost{6, 1, 1e9}.pays()));
     EXPECT_FALSE((CondensationCost{6.1, 1, 1e9}.pays()));
     EXPECT_FALSE((CondensationCost{1, 1, 5e9}.pays()));

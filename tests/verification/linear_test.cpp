@@ -50,7 +50,7 @@ TEST(Bar, IsFactorisedOnceForAllSteps) {
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     time::Stepper stepper(plan.model, plan.stages, plan.stepper, timings);
     struct Silent final : time::StepObserver {
-        void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
+        void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
         void accepted(const time::AcceptedStep& step) override { EXPECT_EQ(step.iterations, 1); }
     } observer;
     stepper.run(observer);

@@ -2,8 +2,8 @@
 
 #include "osculate/app/compile.hpp"
 #include "osculate/app/load.hpp"
+#include "osculate/linear/penalty_stiffness.hpp"
 #include "osculate/model/nodal_unknowns.hpp"
-#include "osculate/model/penalty_stiffness.hpp"
 #include "osculate/solve/gmres.hpp"
 #include "support/floating_point_traps.hpp"
 #include "support/random.hpp"
@@ -16,7 +16,7 @@
 namespace osculate {
 namespace {
 
-using model::Constraints;
+using linear::Constraints;
 
 /// Two blocks one above the other, n and 4 elements a side; the lower stands on its bed, one side sliding on a wall; the upper is
 /// held by springs alone.
@@ -50,13 +50,13 @@ struct Blocks {
         const scene::Scene scene = scene::read_scene(support::scene_file("two_blocks.yaml", two_blocks(n)),
                                                      {{"solver.stabilisation", "true"}});
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);
-        std::vector<model::NodeConstraint> held = plan.stages.front().constraints;
+        std::vector<linear::NodeConstraint> held = plan.stages.front().constraints;
         std::erase_if(held,
-                      [&](const model::NodeConstraint& c) { return c.node >= plan.model.bodies.back().first_node; });
+                      [&](const linear::NodeConstraint& c) { return c.node >= plan.model.bodies.back().first_node; });
         constraints = std::make_unique<Constraints>(plan.model.nodes(), held);
-        stiffness = std::make_unique<model::PenaltyStiffness>(*constraints, plan.model.K);
+        stiffness = std::make_unique<linear::PenaltyStiffness>(*constraints, plan.model.K);
         const model::Body &lower = plan.model.bodies.front(), &upper = plan.model.bodies.back();
-        std::vector<model::Spring> list;
+        std::vector<linear::Spring> list;
         for (Index node = upper.first_node; node < upper.first_node + upper.nodes(); ++node) {
             if (plan.model.X[node].z() > 1e-9) continue;
             Index nearest = lower.first_node;
@@ -64,7 +64,7 @@ struct Blocks {
                 if ((plan.model.X[other] - plan.model.X[node]).norm() <
                     (plan.model.X[nearest] - plan.model.X[node]).norm())
                     nearest = other;
-            model::Spring& spring = list.emplace_back();
+            linear::Spring& spring = list.emplace_back();
             spring.slave = node;
             spring.masters = {nearest};
             spring.follow = {Mat3::Identity()};
@@ -96,7 +96,7 @@ struct Blocks {
 
     app::Plan plan;
     std::unique_ptr<Constraints> constraints;
-    std::unique_ptr<model::PenaltyStiffness> stiffness;
+    std::unique_ptr<linear::PenaltyStiffness> stiffness;
     std::unique_ptr<solve::Multigrid> multigrid;
 };
 

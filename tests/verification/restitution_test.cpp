@@ -89,7 +89,7 @@ TEST(TwoBars, TouchForTwiceTheWaveTimeInStepsThatTheDefaultsChoose) {
     EXPECT_NEAR(last - first, 2, 6 * element);
     const support::RunStep& end = run.steps.back();
     double left = 0, right = 0;
-    const model::BlockMatrix& M = run.plan.model.consistent_mass;
+    const linear::BlockMatrix& M = run.plan.model.consistent_mass;
     std::vector<Vec3> p(end.state.v.size(), Vec3::Zero());
     M.multiply_add(end.state.v, p, 1);
     for (Index i = 0; i < run.plan.model.nodes(); ++i)

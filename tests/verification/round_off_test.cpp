@@ -79,7 +79,7 @@ struct Outcome final : time::StepObserver {
         }
         at_round_off = stepper.counts().steps_at_round_off;
     }
-    void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override {}
+    void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
     void accepted(const time::AcceptedStep& step) override {
         ++steps;
         state = step.state;

@@ -59,7 +59,7 @@ struct Outcome final : time::StepObserver {
         }
         stabilised = stepper.counts().stabilised_steps;
     }
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>&) override {
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>&) override {
         attempts.push_back(attempt);
     }
     /// Equilibrium from internal forces, loads and contact forces alone, apart from what the solver made it of.

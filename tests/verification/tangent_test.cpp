@@ -61,10 +61,10 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     const scene::Scene scene = scene::read_scene(support::shipped("paper/half_tube.yaml"), overrides);
     Timings timings;
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
-    const model::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
+    const linear::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
     const auto& dynamics = plan.stages[1].dynamics;
-    time::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr, timings, 1,
-                                  !plan.stages[1].follower_pressures.empty());
+    equilibrium::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr, timings, 1,
+                                         !plan.stages[1].follower_pressures.empty());
 
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -81,12 +81,13 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         u[i] = 0.02 * shake() + (slides ? Vec3(0.03, 0.13, -0.01) : Vec3::Zero());
     }
     const double force = 1e5;
-    time::Statuses statuses(1);
+    equilibrium::Statuses statuses(1);
     for (Index j = 0; j < plan.model.pairs[0]->size(); ++j) {
         state.contact[0].lambda[j] = force * (Vec3(0, 0, 1) + 0.5 * shake());
         statuses[0].push_back(static_cast<Status>(j % 4));
     }
-    time::StepLoad load{std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero()), {}};
+    equilibrium::StepLoad load{
+        std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero()), {}};
     if (c.dynamic) {
         for (std::size_t i = 0; i < u.size(); ++i) {
             state.v.push_back(shake());
@@ -97,7 +98,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     for (const auto& pressure : plan.stages[1].follower_pressures)
         load.pressures.push_back({&pressure.faces, pressure.end / 2, pressure.end});
     equilibrium.begin_attempt(state, load, dt);
-    equilibrium.set_statuses(statuses, time::StatusRule::frozen, false);
+    equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
     Vector z = equilibrium.unknowns(u, state.contact);
 
     Vector F(z.size()), plus(z.size()), minus(z.size());

@@ -118,9 +118,9 @@ TEST(Transaction, RejectedAttemptsByAnySolverLeaveNoTrace) {
 struct Cuts final : time::StepObserver {
     std::vector<time::Checkpoint> before; ///< with the length that the step had in the end
     std::vector<model::State> after;
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override {
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>& iterations) override {
         if (attempt.verdict != time::Verdict::retry) return;
-        for (const time::IterationRecord& one : iterations) changed = changed || one.status_changes > 0;
+        for (const equilibrium::IterationRecord& one : iterations) changed = changed || one.status_changes > 0;
     }
     void accepted(const time::AcceptedStep& step) override {
         if (changed && last) {
@@ -142,7 +142,7 @@ struct OneStep final : time::StepObserver {
     struct Enough {};
     int attempts = 0;
     model::State state;
-    void attempted(const time::Attempt&, const std::vector<time::IterationRecord>&) override { ++attempts; }
+    void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override { ++attempts; }
     void accepted(const time::AcceptedStep& step) override {
         state = step.state;
         throw Enough{};

@@ -75,7 +75,7 @@ public:
         (void)x;
         return nullptr;
     }
-    /// Patches fitted anew since the surface was made, ascending; and this surface, as it was made, with these fitted again.
+    /// Patches fitted anew since the surface was made, ascending; and, of a surface as it was made, the one with these fitted.
     /// Null where one is no patch of this surface, or none fits.
     [[nodiscard]] virtual std::vector<RefittedPatch> refitted_patches() const { return {}; }
     [[nodiscard]] virtual std::shared_ptr<const MasterSurface>

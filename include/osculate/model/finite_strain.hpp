@@ -1,7 +1,7 @@
 #pragma once
 /// Bodies whose internal forces are no linear function of the displacements.
 
-#include "osculate/model/block_matrix.hpp"
+#include "osculate/linear/block_matrix.hpp"
 
 namespace osculate::fe {
 class ElementKernel;
@@ -25,18 +25,18 @@ struct WorstElement {
 class FiniteStrain {
 public:
     /// @param pattern  holds every pair of nodes of an element; matrices of add_tangent() must have the same
-    FiniteStrain(const std::vector<Body>& bodies, const BlockMatrix& pattern);
+    FiniteStrain(const std::vector<Body>& bodies, const linear::BlockMatrix& pattern);
 
     /// f += f_int(u). X, u, f (nodes), m, m, N.
     WorstElement add_internal_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u, std::vector<Vec3>& f,
                                     int threads) const;
     /// K += df_int/du. Elements that are not admissible are left out.
-    void add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, BlockMatrix& K, int threads) const;
+    void add_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u, linear::BlockMatrix& K, int threads) const;
     /// The forces of a step from u0 to u1, see fe::ElementKernel::step_force, and their derivative by u1.
     WorstElement add_step_force(const std::vector<Vec3>& X, const std::vector<Vec3>& u0, const std::vector<Vec3>& u1,
                                 const fe::StepMean& mean, std::vector<Vec3>& f, int threads) const;
     void add_step_tangent(const std::vector<Vec3>& X, const std::vector<Vec3>& u0, const std::vector<Vec3>& u1,
-                          const fe::StepMean& mean, BlockMatrix& K, int threads) const;
+                          const fe::StepMean& mean, linear::BlockMatrix& K, int threads) const;
     /// Largest diagonal entry of an undeformed element's stiffness, N/m.
     [[nodiscard]] double largest_stiffness() const { return largest_stiffness_; }
     /// Strain energy, J.
@@ -59,7 +59,7 @@ private:
     /// Values of the nodes of an element.
     static ElementValues gather(const Block& block, Index element, const std::vector<Vec3>& values);
     template <class Kernel> WorstElement add_forces(std::vector<Vec3>& f, int threads, Kernel&& kernel) const;
-    template <class Kernel> void add_tangents(BlockMatrix& K, int threads, Kernel&& kernel) const;
+    template <class Kernel> void add_tangents(linear::BlockMatrix& K, int threads, Kernel&& kernel) const;
 
     std::vector<Block> blocks_;
     double largest_stiffness_ = 0;

@@ -2,8 +2,8 @@
 /// Everything that is fixed for a run: bodies, their stiffness, contact pairs, sets. Built once by compile.
 
 #include "osculate/fe/element_block.hpp"
+#include "osculate/linear/block_matrix.hpp"
 #include "osculate/mesh/mesh.hpp"
-#include "osculate/model/block_matrix.hpp"
 #include "osculate/model/contact_pair.hpp"
 #include "osculate/model/finite_strain.hpp"
 
@@ -37,15 +37,16 @@ struct Model {
     std::vector<Vec3> X;        ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
     std::vector<Set> sets;
     std::vector<std::unique_ptr<const ContactPair>> pairs;
-    BlockMatrix K;                               ///< constant stiffness of the linear bodies, in the pattern of all
+    linear::BlockMatrix K;                       ///< constant stiffness of the linear bodies, in the pattern of all
     std::unique_ptr<FiniteStrain> finite_strain; ///< the other bodies; null where there are none
-    BlockMatrix consistent_mass, lumped_mass;    ///< of all bodies, kg, pattern of K; empty where no stage asks for it
+    linear::BlockMatrix consistent_mass,
+        lumped_mass;                      ///< of all bodies, kg, pattern of K; empty where no stage asks for it
     std::vector<Index> kept_contact_mass; ///< bodies whose contact nodes were to have no mass and keep it, ascending
 
     std::vector<Vec3> initial_velocity; ///< (nodes) m/s; empty where no stage is dynamic
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
-    [[nodiscard]] const BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
+    [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
 /// Number of the body of a global node, and the body; -1 and null for no node.
@@ -58,11 +59,11 @@ struct Model {
 /// Largest diagonal entry of the stiffness of all undeformed bodies, N/m.
 [[nodiscard]] double largest_stiffness(const Model& model);
 /// Stiffness of all undeformed bodies, in the pattern of K.
-[[nodiscard]] BlockMatrix undeformed_stiffness(const Model& model, int threads);
+[[nodiscard]] linear::BlockMatrix undeformed_stiffness(const Model& model, int threads);
 /// Stiffness of the bodies that are linear, in the pattern of all.
-[[nodiscard]] BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
+[[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
 struct AssembledMass {
-    BlockMatrix M;
+    linear::BlockMatrix M;
     std::vector<Index> kept; ///< bodies that keep the mass of nodes marked, because nothing else has their moments
 };
 /// Mass of all bodies, multiples of the unit matrix in the pattern of the stiffness; lumped: diagonal.

@@ -1,7 +1,7 @@
 #pragma once
 /// history.csv: resultants of every contact pair and constrained set, a row per accepted step.
 
-#include "osculate/model/constraints.hpp"
+#include "osculate/linear/constraints.hpp"
 #include "osculate/output/csv_table.hpp"
 #include "osculate/output/snapshot.hpp"
 #include "osculate/time/ledger.hpp"
@@ -12,7 +12,7 @@
 namespace osculate::output {
 
 /// What supports and driven motions exert on each node, N: the unbalanced force along its held directions.
-[[nodiscard]] std::vector<Vec3> nodal_reactions(const model::Constraints& constraints,
+[[nodiscard]] std::vector<Vec3> nodal_reactions(const linear::Constraints& constraints,
                                                 const std::vector<Vec3>& unbalanced);
 
 class History {
@@ -31,14 +31,14 @@ public:
 
     /// The row of such a history, a cell per column; an empty text where there is no value.
     /// @param energies_now  null in a static step
-    [[nodiscard]] static std::vector<Cell> cells(const Snapshot& snapshot, const model::Constraints& constraints,
+    [[nodiscard]] static std::vector<Cell> cells(const Snapshot& snapshot, const linear::Constraints& constraints,
                                                  double dt, int iterations, bool pairs, const std::vector<Index>& sets,
                                                  bool ledger, const time::Ledger* energies_now);
 
     /// A direction that several sets hold at one node counts for the set that Constraints names, so that the sets'
     /// reactions add up to the whole.
     /// @param ledger  null in a static step: its cells stay empty
-    void row(const Snapshot& snapshot, const model::Constraints& constraints, double dt, int iterations,
+    void row(const Snapshot& snapshot, const linear::Constraints& constraints, double dt, int iterations,
              const time::Ledger* ledger);
     [[nodiscard]] const CsvTable& table() const { return table_; }
 

@@ -27,7 +27,8 @@ struct Summary {
     struct Steps {
         long accepted = 0, rejected = 0;
         long stabilised = 0; ///< of those accepted: bodies leant on springs on the way, see time::StabilisationOptions
-        long at_round_off = 0; ///< of those accepted: the tolerance was below what can be told, see time::Equilibrium
+        long at_round_off =
+            0; ///< of those accepted: the tolerance was below what can be told, see equilibrium::Equilibrium
     };
 
     /// Worst over the accepted steps, see app::RunChecks.

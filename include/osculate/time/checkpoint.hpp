@@ -2,8 +2,8 @@
 /// All that a run needs to go on from between two steps as if it had never stopped: plain values.
 
 #include "osculate/contact/master_surface.hpp"
+#include "osculate/equilibrium/equilibrium_memory.hpp"
 #include "osculate/model/model.hpp"
-#include "osculate/time/equilibrium_memory.hpp"
 #include "osculate/time/progress.hpp"
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace osculate::time {
 
 struct Checkpoint : Progress {
-    EquilibriumMemory memory;
+    equilibrium::EquilibriumMemory memory;
     std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs) of the state's masters
 };
 

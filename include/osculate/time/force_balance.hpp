@@ -1,8 +1,8 @@
 #pragma once
 /// Whether the forces of an accepted step balance.
 
+#include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/model/model.hpp"
-#include "osculate/time/equilibrium.hpp"
 
 namespace osculate::time {
 
@@ -16,7 +16,7 @@ struct ForceBalance {
 /// @param equilibrium  at its last residual, the one of `state`, and not committed to another step
 /// @param state        what that step ended in. A pair with mirror images is judged by its bodies alone: what a symmetry
 ///                     plane carries does not show in the forces on nodes
-[[nodiscard]] ForceBalance force_balance(const model::Model& model, const Equilibrium& equilibrium,
+[[nodiscard]] ForceBalance force_balance(const model::Model& model, const equilibrium::Equilibrium& equilibrium,
                                          const model::State& state);
 
 } // namespace osculate::time

@@ -1,8 +1,8 @@
 #pragma once
 /// Where the energy of a dynamic run is and where it has gone.
 
+#include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/model/model.hpp"
-#include "osculate/time/equilibrium.hpp"
 #include "osculate/time/stage.hpp"
 
 namespace osculate::time {
@@ -24,13 +24,14 @@ struct Ledger {
 };
 
 /// The ledger of a state nothing has happened to yet.
-[[nodiscard]] Ledger opened(const model::Model& model, const Dynamics& dynamics, const model::State& state);
+[[nodiscard]] Ledger opened(const model::Model& model, const equilibrium::Dynamics& dynamics,
+                            const model::State& state);
 
 /// The ledger after a step.
 /// @param equilibrium  at its last residual, the one of `to`
 /// @param force        (nodes) external forces of the step's equations, N
-[[nodiscard]] Ledger advanced(const Ledger& ledger, const model::Model& model, const Dynamics& dynamics,
-                              const Equilibrium& equilibrium, const model::State& from, const model::State& to,
-                              const std::vector<Vec3>& force);
+[[nodiscard]] Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
+                              const equilibrium::Equilibrium& equilibrium, const model::State& from,
+                              const model::State& to, const std::vector<Vec3>& force);
 
 } // namespace osculate::time

@@ -4,6 +4,7 @@
 #include "osculate/core/error.hpp"
 #include "osculate/time/attempt.hpp"
 #include "osculate/time/solve_ladder.hpp"
+#include "osculate/time/stage.hpp"
 #include "osculate/time/step_control.hpp"
 
 #include <optional>
@@ -97,13 +98,13 @@ struct PostMortem {
     std::optional<ContactPlace> contact; ///< of that node, or of one whose status went to and fro
     std::optional<ElementPlace> element;
     std::optional<MissingLoad> missing_load{};
-    double residual = 0;                     ///< of the last solve, relative
-    double reference_force = 0;              ///< what it is relative to, N
-    Vec3 out_of_balance = Vec3::Zero();      ///< force that nothing balances at the node, N
-    std::string rung;                        ///< of the ladder, that came last
-    std::vector<IterationRecord> iterations; ///< of the last attempt
-    std::vector<StatusChanges> changes;      ///< those that changed most often first
-    Index changing = 0;                      ///< nodes in all; `changes` has the first few
+    double residual = 0;                                  ///< of the last solve, relative
+    double reference_force = 0;                           ///< what it is relative to, N
+    Vec3 out_of_balance = Vec3::Zero();                   ///< force that nothing balances at the node, N
+    std::string rung;                                     ///< of the ladder, that came last
+    std::vector<equilibrium::IterationRecord> iterations; ///< of the last attempt
+    std::vector<StatusChanges> changes;                   ///< those that changed most often first
+    Index changing = 0;                                   ///< nodes in all; `changes` has the first few
     std::vector<BodyHold> bodies;
     std::vector<Advice> advice;
     std::string no_remedy; ///< why none is known; empty: `advice` holds one
@@ -129,7 +130,7 @@ struct FailedAttempt {
 };
 
 /// Examines it. Evaluates `equilibrium` once more, at z with the statuses it has, where z is finite.
-[[nodiscard]] PostMortem examine(const FailedAttempt& failed, Equilibrium& equilibrium);
+[[nodiscard]] PostMortem examine(const FailedAttempt& failed, equilibrium::Equilibrium& equilibrium);
 /// A load or a motion without a value: the step cannot even be tried.
 class LoadNotFinite : public RunFailure {
 public:
@@ -148,8 +149,8 @@ private:
 [[nodiscard]] PostMortem examine(const LoadNotFinite& failure, const model::Model& model, const Stage& stage,
                                  double t_start, double last_time);
 /// A failed solve in one sentence; fills in the attempt's body, node and value.
-[[nodiscard]] std::string explain(const model::Model& model, const LadderResult& result, const Equilibrium& equilibrium,
-                                  Attempt& attempt);
+[[nodiscard]] std::string explain(const model::Model& model, const LadderResult& result,
+                                  const equilibrium::Equilibrium& equilibrium, Attempt& attempt);
 /// Fills in body and local number of a node.
 void name_node(const model::Model& model, Index node, Attempt& attempt);
 

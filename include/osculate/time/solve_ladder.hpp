@@ -1,7 +1,7 @@
 #pragma once
 /// The deterministic ladder of nonlinear solves for one attempt: each rung is tried only when the one before it failed.
 
-#include "osculate/time/equilibrium.hpp"
+#include "osculate/equilibrium/equilibrium.hpp"
 
 #include <functional>
 
@@ -51,7 +51,7 @@ struct LadderResult {
 
 /// Solves with the statuses given, whatever the complementarity functions say: the trial of a step.
 /// @param z  start values, last iterate afterwards
-[[nodiscard]] LadderResult solve_trial(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+[[nodiscard]] LadderResult solve_trial(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                                        const std::vector<std::vector<contact::Status>>& statuses,
                                        const LadderOptions& options);
 
@@ -68,8 +68,8 @@ struct LadderResult {
 /// @param unpredicted  start values without prediction
 /// @param start        statuses to start from
 /// @param force_first  they hold for the first iterate of rung 1, whatever the complementarity functions say
-[[nodiscard]] LadderResult climb(Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
-                                 const Vector& unpredicted, const Statuses& start, bool force_first,
+[[nodiscard]] LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
+                                 const Vector& unpredicted, const equilibrium::Statuses& start, bool force_first,
                                  const LadderOptions& options);
 
 } // namespace osculate::time

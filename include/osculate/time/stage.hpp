@@ -1,9 +1,9 @@
 #pragma once
 /// One stage as the stepper sees it.
 
+#include "osculate/equilibrium/dynamics.hpp"
+#include "osculate/linear/constraints.hpp"
 #include "osculate/mesh/surface_faces.hpp"
-#include "osculate/model/constraints.hpp"
-#include "osculate/time/integrator.hpp"
 #include "osculate/time/step_control.hpp"
 
 #include <functional>
@@ -12,13 +12,6 @@
 #include <vector>
 
 namespace osculate::time {
-
-/// What makes a stage dynamic.
-struct Dynamics {
-    Integrator integrator;
-    bool lumped_mass = false;
-    double mass_damping = 0, stiffness_damping = 0; ///< C = mass_damping M + stiffness_damping K, 1/s and s
-};
 
 /// A load's or a motion's value over the time of a stage.
 struct Course {
@@ -44,12 +37,12 @@ struct Stage {
     std::string name;
     double duration = 1; ///< s
     int steps = 1;
-    std::optional<Dynamics> dynamics;               ///< absent: static
-    StepLimits limits;                              ///< g_p in facet sizes; dt_max is the stage's step
-    bool follow_paths = false;                      ///< of slave nodes, see CollisionCheck
-    bool ramp = true;                               ///< linear from the last value; false: full value at once
-    std::vector<model::NodeConstraint> constraints; ///< every direction held during this stage
-    std::vector<Vec3> force_start, force_end;       ///< (nodes) external forces at its two ends, N
+    std::optional<equilibrium::Dynamics> dynamics;   ///< absent: static
+    StepLimits limits;                               ///< g_p in facet sizes; dt_max is the stage's step
+    bool follow_paths = false;                       ///< of slave nodes, see CollisionCheck
+    bool ramp = true;                                ///< linear from the last value; false: full value at once
+    std::vector<linear::NodeConstraint> constraints; ///< every direction held during this stage
+    std::vector<Vec3> force_start, force_end;        ///< (nodes) external forces at its two ends, N
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< on top of these
     std::vector<FollowerPressure> follower_pressures;

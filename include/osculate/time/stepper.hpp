@@ -1,10 +1,10 @@
 #pragma once
 /// Takes the stages of a run step by step. A step is a transaction: it is accepted whole or leaves no trace.
 
+#include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/time/attempt.hpp"
 #include "osculate/time/audit.hpp"
 #include "osculate/time/checkpoint.hpp"
-#include "osculate/time/equilibrium.hpp"
 #include "osculate/time/ledger.hpp"
 #include "osculate/time/progress.hpp"
 #include "osculate/time/solve_ladder.hpp"
@@ -26,14 +26,14 @@ struct StepperOptions {
     bool predictor = true;
     bool stabilisation = true; ///< see StabilisationOptions
     int threads = 1;
-    LinearSolver linear_solver = LinearSolver::automatic;
+    linear::LinearSolver linear_solver = linear::LinearSolver::automatic;
     bool audit = false; ///< of every solved step, see Audit
 };
 
 /// An accepted step, valid during StepObserver::accepted only.
 struct AcceptedStep {
     const model::State& state;
-    const Equilibrium& equilibrium; ///< evaluated at `state`
+    const equilibrium::Equilibrium& equilibrium; ///< evaluated at `state`
     double dt = 0;
     int iterations = 0;
     const Stage& stage;
@@ -44,14 +44,14 @@ struct AcceptedStep {
 /// The last iterate of the attempt at which a run gave up, valid during StepObserver::gave_up only.
 struct FailedIterate {
     const FailedAttempt& attempt;
-    const model::State& state;      ///< time: what the attempt aimed at
-    const Equilibrium& equilibrium; ///< evaluated at `state` where that is finite
+    const model::State& state;                   ///< time: what the attempt aimed at
+    const equilibrium::Equilibrium& equilibrium; ///< evaluated at `state` where that is finite
 };
 
 class StepObserver {
 public:
     virtual ~StepObserver() = default;
-    virtual void attempted(const Attempt& attempt, const std::vector<IterationRecord>& iterations) = 0;
+    virtual void attempted(const Attempt& attempt, const std::vector<equilibrium::IterationRecord>& iterations) = 0;
     virtual void accepted(const AcceptedStep& step) = 0;
     /// After every accepted step, when all that belongs to it is done: what it throws ends the run there.
     /// @param checkpoint  takes one; not to be called later

@@ -90,7 +90,7 @@ public:
     }
 
     std::vector<FreeMotion> find(const time::Stage& stage) {
-        for (const model::NodeConstraint& c : stage.constraints)
+        for (const linear::NodeConstraint& c : stage.constraints)
             holds_[body_of(c.node)].supports.emplace_back(plan_.model.X[static_cast<std::size_t>(c.node)], c.direction);
         for (const model::ContactEvaluation& evaluation : contact_) add(evaluation);
         std::vector<FreeMotion> found;

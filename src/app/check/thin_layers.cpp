@@ -42,7 +42,7 @@ public:
         size_ = box.diagonal().norm();
         for (const time::Stage& stage : plan.stages) add_loads(stage);
         if (!plan.stages.empty())
-            for (const model::NodeConstraint& c : plan.stages.front().constraints)
+            for (const linear::NodeConstraint& c : plan.stages.front().constraints)
                 if (own(c.node)) {
                     held_[c.node - body_.first_node].push_back(c.direction);
                     add(c.direction);

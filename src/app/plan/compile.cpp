@@ -29,13 +29,13 @@ namespace osculate::app {
 
 namespace {
 
-time::LinearSolver linear_solver(scene::LinearSolver solver) {
+linear::LinearSolver linear_solver(scene::LinearSolver solver) {
     switch (solver) {
-    case scene::LinearSolver::automatic: return time::LinearSolver::automatic;
-    case scene::LinearSolver::condensed: return time::LinearSolver::condensed;
-    case scene::LinearSolver::iterative: return time::LinearSolver::iterative;
-    case scene::LinearSolver::multigrid: return time::LinearSolver::multigrid;
-    case scene::LinearSolver::direct: return time::LinearSolver::direct;
+    case scene::LinearSolver::automatic: return linear::LinearSolver::automatic;
+    case scene::LinearSolver::condensed: return linear::LinearSolver::condensed;
+    case scene::LinearSolver::iterative: return linear::LinearSolver::iterative;
+    case scene::LinearSolver::multigrid: return linear::LinearSolver::multigrid;
+    case scene::LinearSolver::direct: return linear::LinearSolver::direct;
     }
     throw std::logic_error("linear solver without a name");
 }
@@ -229,8 +229,9 @@ private:
             stage.steps = spec.steps;
             stage.ramp = spec.ramp;
             if (const auto* analysis = std::get_if<scene::DynamicAnalysis>(&spec.analysis)) {
-                stage.dynamics = time::Dynamics{integrator(*analysis), analysis->mass == scene::MassMatrix::lumped,
-                                                analysis->mass_damping, analysis->stiffness_damping};
+                stage.dynamics =
+                    equilibrium::Dynamics{integrator(*analysis), analysis->mass == scene::MassMatrix::lumped,
+                                          analysis->mass_damping, analysis->stiffness_damping};
             }
             const bool dynamic = stage.dynamics.has_value();
             constexpr double in_dynamics = 0.05, in_statics = 0.5; // of the facet size
@@ -278,7 +279,7 @@ private:
             now.settle(spec.duration);
             settled = varying;
             try {
-                (void)model::Constraints(plan_.model.nodes(), stage.constraints);
+                (void)linear::Constraints(plan_.model.nodes(), stage.constraints);
             } catch (const std::invalid_argument& error) {
                 faults_.push_back(fault("supports", "compatible directions at every node", error.what()));
             }
@@ -320,14 +321,15 @@ private:
                                           pattern("body_force." + body + "." + std::string(1, "xyz"[k]), course));
     }
 
-    static time::Integrator integrator(const scene::DynamicAnalysis& analysis) {
-        return std::visit(Overloaded{
-                              [](const scene::GeneralisedAlpha& s) { return time::generalised_alpha(s.rho_inf); },
-                              [](const scene::Newmark& s) { return time::newmark(s.beta, s.gamma); },
-                              [](const scene::Hht& s) { return time::hht(s.alpha); },
-                              [](const scene::BackwardEuler&) { return time::backward_euler(); },
-                          },
-                          analysis.integrator);
+    static equilibrium::Integrator integrator(const scene::DynamicAnalysis& analysis) {
+        return std::visit(
+            Overloaded{
+                [](const scene::GeneralisedAlpha& s) { return equilibrium::generalised_alpha(s.rho_inf); },
+                [](const scene::Newmark& s) { return equilibrium::newmark(s.beta, s.gamma); },
+                [](const scene::Hht& s) { return equilibrium::hht(s.alpha); },
+                [](const scene::BackwardEuler&) { return equilibrium::backward_euler(); },
+            },
+            analysis.integrator);
     }
 
     /// Nodes without mass of their own: slave nodes, where the scene asks for it.
@@ -350,7 +352,7 @@ private:
         const std::vector<char> massless = massless_nodes();
         for (const time::Stage& stage : plan_.stages) {
             if (!stage.dynamics) continue;
-            model::BlockMatrix& mass = stage.dynamics->lumped_mass ? m.lumped_mass : m.consistent_mass;
+            linear::BlockMatrix& mass = stage.dynamics->lumped_mass ? m.lumped_mass : m.consistent_mass;
             if (mass.empty()) {
                 model::AssembledMass assembled =
                     model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass, massless);
@@ -379,7 +381,7 @@ private:
     }
 
     /// Whose mass a stage weighs: its own, in statics that of the dynamic stage it leads to, or else comes from.
-    [[nodiscard]] const time::Dynamics* weighed(std::size_t s) const {
+    [[nodiscard]] const equilibrium::Dynamics* weighed(std::size_t s) const {
         for (std::size_t k = s; k < plan_.stages.size(); ++k)
             if (plan_.stages[k].dynamics) return &*plan_.stages[k].dynamics;
         for (std::size_t k = s; k-- > 0;)
@@ -394,7 +396,7 @@ private:
         const model::Model& m = plan_.model;
         for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
             std::vector<Vec3> weight(m.X.size(), Vec3::Zero());
-            if (const time::Dynamics* dynamics = weighed(s))
+            if (const equilibrium::Dynamics* dynamics = weighed(s))
                 m.mass(dynamics->lumped_mass)
                     .multiply_add(std::vector<Vec3>(m.X.size(), scene_.gravity), weight, threads_);
             else
@@ -406,7 +408,7 @@ private:
     }
 
     void add_constraints(const Driving& driving, CourseList& courses,
-                         std::vector<model::NodeConstraint>& constraints) const {
+                         std::vector<linear::NodeConstraint>& constraints) const {
         for (std::size_t s = 0; s < plan_.model.sets.size(); ++s) {
             const model::Set& group = plan_.model.sets[s];
             const scene::Support* support = scene::find(scene_.supports, group.name);

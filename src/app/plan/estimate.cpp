@@ -1,7 +1,7 @@
 #include "osculate/app/estimate.hpp"
 
 #include "app/plan/plan_items.hpp"
-#include "osculate/time/linear_solver.hpp"
+#include "osculate/equilibrium/tangent_choice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +81,7 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
     if (multigrid) return sum + by_multigrid * unknowns;
     if (!condensed) return sum + factor_bytes(unknowns);
     for (const model::Body& body : plan.model.bodies) sum += factor_bytes(3.0 * body.nodes());
-    return sum + time::condensation_cost(plan.model).bytes;
+    return sum + equilibrium::condensation_cost(plan.model).bytes;
 }
 
 } // namespace
@@ -89,10 +89,10 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
 std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
     const bool follows =
         std::ranges::any_of(plan.stages, [](const time::Stage& s) { return !s.follower_pressures.empty(); });
-    const bool multigrid = time::goes_by_multigrid(plan.model, plan.stepper.linear_solver);
-    const bool condensed = time::condenses(plan.model, plan.stepper.linear_solver, follows);
+    const bool multigrid = equilibrium::goes_by_multigrid(plan.model, plan.stepper.linear_solver);
+    const bool condensed = equilibrium::condenses(plan.model, plan.stepper.linear_solver, follows);
     const bool changing = plan.model.finite_strain != nullptr || !plan.model.pairs.empty();
-    const auto cost = time::condensation_cost(plan.model);
+    const auto cost = equilibrium::condensation_cost(plan.model);
     const double all = steps(plan, false) + steps(plan, true), solves = iterations(plan);
     const double nodes = plan.model.nodes(), blocks = plan.model.K.row_end(plan.model.K.rows() - 1);
     const Slaves s = slaves(scene, plan);
@@ -125,8 +125,8 @@ Estimate estimate(const scene::Scene& scene, const Plan& plan) {
     Estimate result;
     result.steps = steps(plan, false) + steps(plan, true);
     for (const CostTerm& term : cost_terms(scene, plan)) result.seconds += term.count * term.seconds;
-    result.bytes = bytes(plan, time::goes_by_multigrid(plan.model, plan.stepper.linear_solver),
-                         time::condenses(plan.model, plan.stepper.linear_solver, follows));
+    result.bytes = bytes(plan, equilibrium::goes_by_multigrid(plan.model, plan.stepper.linear_solver),
+                         equilibrium::condenses(plan.model, plan.stepper.linear_solver, follows));
     return result;
 }
 

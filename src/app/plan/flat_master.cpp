@@ -24,11 +24,11 @@ bool in_one_plane(const std::vector<Vec3>& x) {
 }
 
 /// Whether all of the nodes are held alike in every direction.
-bool move_as_one(const model::Constraints& constraints, const std::vector<Index>& nodes) {
+bool move_as_one(const linear::Constraints& constraints, const std::vector<Index>& nodes) {
     for (const Index node : nodes)
         for (int k = 0; k < 3; ++k) {
-            const model::NodeConstraint *first = constraints.constraint(nodes.front(), k),
-                                        *own = constraints.constraint(node, k);
+            const linear::NodeConstraint *first = constraints.constraint(nodes.front(), k),
+                                         *own = constraints.constraint(node, k);
             if (own == nullptr || first == nullptr) return false;
             if (own->driven != first->driven || own->target != first->target || own->course != first->course)
                 return false;
@@ -42,7 +42,7 @@ bool move_as_one(const model::Constraints& constraints, const std::vector<Index>
 bool stays_flat(const Plan& plan, const model::ContactPair& pair) {
     if (!in_one_plane(pair.vertices(plan.model.X))) return false;
     return std::ranges::all_of(plan.stages, [&](const time::Stage& stage) {
-        return move_as_one(model::Constraints(plan.model.nodes(), stage.constraints), pair.master_nodes());
+        return move_as_one(linear::Constraints(plan.model.nodes(), stage.constraints), pair.master_nodes());
     });
 }
 

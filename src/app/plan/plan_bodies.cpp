@@ -113,7 +113,7 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
                         : "every load and motion ramps or jumps to its value",
              {0, values, "value(s) a step"});
     const bool driven = std::ranges::any_of(plan.stages, [](const time::Stage& stage) {
-        return !stage.dynamics && std::ranges::any_of(stage.constraints, &model::NodeConstraint::driven);
+        return !stage.dynamics && std::ranges::any_of(stage.constraints, &linear::NodeConstraint::driven);
     });
     list.say("predictor", driven && plan.stepper.predictor,
              !driven                  ? "no static stage moves a set"

@@ -1,6 +1,6 @@
 #include "app/plan/plan_items.hpp"
 
-#include "osculate/time/linear_solver.hpp"
+#include "osculate/equilibrium/tangent_choice.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ void PlanList::set_cost(const std::string& part, PlanCost cost) {
         if (item.part == part && item.present) item.cost = std::move(cost);
 }
 
-double bytes_of(const model::BlockMatrix& matrix) {
+double bytes_of(const linear::BlockMatrix& matrix) {
     if (matrix.empty()) return 0;
     const double blocks = matrix.row_end(matrix.rows() - 1);
     return blocks * (sizeof(Mat3) + sizeof(Index)) + sizeof(Index) * static_cast<double>(matrix.rows() + 1);
@@ -39,11 +39,11 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
                                      [](const time::Stage& s) { return !s.follower_pressures.empty(); });
     const bool unsymmetric = contact || follows || (finite && dynamic_stages(plan) > 0);
-    const time::LinearSolver asked = plan.stepper.linear_solver;
-    const auto cost = time::condensation_cost(plan.model);
-    const bool condensed = time::condenses(plan.model, asked, follows);
-    const bool multigrid = time::goes_by_multigrid(plan.model, asked);
-    const bool direct = unsymmetric && asked == time::LinearSolver::direct;
+    const linear::LinearSolver asked = plan.stepper.linear_solver;
+    const auto cost = equilibrium::condensation_cost(plan.model);
+    const bool condensed = equilibrium::condenses(plan.model, asked, follows);
+    const bool multigrid = equilibrium::goes_by_multigrid(plan.model, asked);
+    const bool direct = unsymmetric && asked == linear::LinearSolver::direct;
     say("multigrid", multigrid,
         multigrid ? fmt::format("cycles over {} nodes in place of factors", plan.model.nodes())
                   : "fewer nodes than cycles pay for, or another solver is asked for");
@@ -53,7 +53,7 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         : finite || follows ? "the tangent of the bodies is not constant"
         : condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
                                   cost.condensed, cost.factorising)
-        : asked == time::LinearSolver::automatic
+        : asked == linear::LinearSolver::automatic
             ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
                           "{:.2g} operations",
                           cost.condensed, 1e-9 * cost.bytes, cost.factorising)

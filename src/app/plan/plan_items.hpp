@@ -32,7 +32,7 @@ void add_contact_items(const scene::Scene& scene, const Plan& plan, PlanList& li
 void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& list);
 
 /// Bytes of a matrix over the nodes of all bodies.
-[[nodiscard]] double bytes_of(const model::BlockMatrix& matrix);
+[[nodiscard]] double bytes_of(const linear::BlockMatrix& matrix);
 /// How many stages are dynamic.
 [[nodiscard]] std::size_t dynamic_stages(const Plan& plan);
 

@@ -9,7 +9,7 @@ std::vector<std::string> unsupported_bodies(const Plan& plan) {
     for (const model::Body& body : plan.model.bodies) {
         const auto owns = [&](Index node) { return node >= body.first_node && node < body.first_node + body.nodes(); };
         model::RigidHold hold(body, plan.model.X);
-        for (const model::NodeConstraint& c : plan.stages.front().constraints)
+        for (const linear::NodeConstraint& c : plan.stages.front().constraints)
             if (owns(c.node)) hold.hold(plan.model.X[c.node], c.direction);
         const bool held = hold.free() == 0;
         bool touched = false;

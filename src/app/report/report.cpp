@@ -9,7 +9,7 @@ namespace osculate::app {
 Index degrees_of_freedom(const Plan& plan) {
     Index most = 0;
     for (const time::Stage& stage : plan.stages)
-        most = std::max(most, model::Constraints(plan.model.nodes(), stage.constraints).equations());
+        most = std::max(most, linear::Constraints(plan.model.nodes(), stage.constraints).equations());
     return most;
 }
 

@@ -405,7 +405,7 @@ private:
 
     /// Whether there are contact nodes without mass.
     [[nodiscard]] bool massless() const {
-        const model::BlockMatrix& M = failed_.model.mass(failed_.stage.dynamics->lumped_mass);
+        const linear::BlockMatrix& M = failed_.model.mass(failed_.stage.dynamics->lumped_mass);
         if (M.empty()) return false;
         const auto none = [&](Index node) { return M.block(M.slot(node, node))(0, 0) == 0; };
         return std::ranges::any_of(failed_.model.pairs,

@@ -55,7 +55,7 @@ class Both final : public time::StepObserver {
 public:
     Both(time::StepObserver& first, time::StepObserver& second) : first_(first), second_(second) {}
 
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override {
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>& iterations) override {
         first_.attempted(attempt, iterations);
         second_.attempted(attempt, iterations);
     }

@@ -184,7 +184,7 @@ void RunRecorder::write_initial_frame() {
     });
 }
 
-void RunRecorder::attempted(const time::Attempt& a, const std::vector<time::IterationRecord>& iterations) {
+void RunRecorder::attempted(const time::Attempt& a, const std::vector<equilibrium::IterationRecord>& iterations) {
     ++(a.verdict == time::Verdict::accept ? summary_.steps.accepted : summary_.steps.rejected);
     summary_.iterations += a.iterations;
     on_disk(timings_, [&] {
@@ -192,7 +192,7 @@ void RunRecorder::attempted(const time::Attempt& a, const std::vector<time::Iter
         steps_->row({long{a.attempt}, a.time, a.dt, name(a.verdict), name(a.reason), a.body, node, a.value, a.lambda,
                      long{a.iterations}});
         if (!iterations_) return;
-        for (const time::IterationRecord& i : iterations)
+        for (const equilibrium::IterationRecord& i : iterations)
             iterations_->row({long{a.attempt}, long{i.iteration}, i.residual, long{i.status_changes}, long{i.open},
                               long{i.stick}, long{i.slip}, long{i.facet_changes}});
     });
@@ -200,7 +200,7 @@ void RunRecorder::attempted(const time::Attempt& a, const std::vector<time::Iter
 
 void RunRecorder::accepted(const time::AcceptedStep& step) {
     checks_.accepted(step);
-    const model::Constraints& constraints = step.equilibrium.constraints();
+    const linear::Constraints& constraints = step.equilibrium.constraints();
     on_disk(timings_, [&] {
         const int every = scene_.output.frame_every;
         const bool last = step.state.time >= stepper_.end_time() * (1 - 1e-12);

@@ -46,7 +46,7 @@ public:
     /// Every file that a run of this scene may write, relative to its folder, `*` standing for a number.
     [[nodiscard]] static std::vector<std::string> files(const scene::Scene& scene, const Plan& plan);
 
-    void attempted(const time::Attempt& attempt, const std::vector<time::IterationRecord>& iterations) override;
+    void attempted(const time::Attempt& attempt, const std::vector<equilibrium::IterationRecord>& iterations) override;
     void accepted(const time::AcceptedStep& step) override;
 
     /// Writes a checkpoint where one is due. @throws Interrupted after one, where a signal asks for that

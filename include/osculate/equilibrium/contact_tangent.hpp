@@ -1,0 +1,30 @@
+#pragma once
+/// Derivatives of one slave node's contact law and of the forces on its masters.
+
+#include "osculate/linear/bearing_contact.hpp"
+#include "osculate/model/contact_evaluation.hpp"
+
+namespace osculate::equilibrium {
+
+/// As SystemMatrix takes them, over y = (slave, its n master nodes), the first m of which carry force.
+struct ContactTangent final : linear::ContactDerivatives {
+    bool reaches = false;  ///< false: only D means anything
+    Mat3 D = Mat3::Zero(); ///< of the law by the contact force
+    contact::MatrixX3 E;   ///< (3m x 3) of the forces on the left of the equilibrium by the contact force
+    Matrix A, G;           ///< (3 x 3+3n) of the law and (3m x 3+3n) of the forces by y; G where asked for as matrix
+    Matrix dd;             ///< (3 x 3+3n) of the drift, scratch
+    contact::ContactVariation variation;
+    const model::ContactEvaluation* evaluation = nullptr;
+    Index slave = -1;          ///< of its pair
+    Vec3 force = Vec3::Zero(); ///< lambda where the tangent was taken, N
+
+    Vec3 along(Vector& dy, const Vec3& lambda, Vector& on) const override {
+        const Vec3 value = A * dy + D * lambda;
+        evaluation->master_force_along(slave, force, variation, dy, on);
+        for (Index i = 0; i < on.size() / 3; ++i)
+            on.segment<3>(3 * i) = (E.middleRows<3>(3 * i) * lambda - on.segment<3>(3 * i)).eval();
+        return value;
+    }
+};
+
+} // namespace osculate::equilibrium

@@ -1,0 +1,94 @@
+#pragma once
+/// Contact of all pairs as a term of the residual: forces on slaves and masters, and the contact laws' rows.
+
+#include "osculate/core/timing.hpp"
+#include "osculate/equilibrium/contact_tangent.hpp"
+#include "osculate/equilibrium/term.hpp"
+#include "osculate/model/contact_evaluation.hpp"
+
+#include <vector>
+
+namespace osculate::equilibrium {
+
+using Statuses = std::vector<std::vector<contact::Status>>; ///< (pairs) (slaves)
+
+/// How contact statuses follow the iterate.
+enum class StatusRule {
+    natural, ///< named anew by the complementarity functions at every iterate: semismooth Newton
+    frozen   ///< as given; the problem is smooth
+};
+
+///     forces        lambda on the slave, on its masters as ContactPoint says
+///     contact law   see contact::Coulomb
+class ContactTerm final : public Term {
+public:
+    /// @param unknowns  must outlive this object, as must the others
+    ContactTerm(const model::Model& model, const linear::Constraints& constraints, const linear::Unknowns& unknowns,
+                Timings& timings, int threads);
+
+    /// Statuses for the next solve. With `natural` they hold for the next iterate only, where `force_first` asks for it.
+    void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
+    [[nodiscard]] const Statuses& statuses() const { return statuses_; }
+    /// How many the last evaluate() has changed.
+    [[nodiscard]] int status_changes() const { return status_changes_; }
+    /// What the complementarity functions say at the last evaluate().
+    [[nodiscard]] Statuses natural_statuses() const;
+    /// Inertia of the nodes in the bodies' stiffness, see ContactEvaluation::set_inertia.
+    void set_inertia(const BodyForces& bodies);
+    [[nodiscard]] const model::ContactEvaluations& evaluations() const { return evaluations_; }
+    [[nodiscard]] model::ContactEvaluations& evaluations() { return evaluations_; }
+    /// Smallest gap, m; infinite where nothing faces anything.
+    [[nodiscard]] double least_gap() const;
+    /// Contact forces of a state, into z.
+    void pack(const std::vector<model::ContactHistory>& contact, double* z) const;
+    /// At the last linearise(): slave nodes that bear on a master, by coupling, and derivatives of the law by the force of
+    /// the others, (couplings).
+    [[nodiscard]] const std::vector<linear::BearingContact>& bearing() const { return bearing_; }
+    [[nodiscard]] const std::vector<Mat3>& open_laws() const { return open_laws_; }
+
+    [[nodiscard]] std::string_view name() const override { return "contact"; }
+    bool begin(const model::State& state, const Iterate& at, const StepLoad& load, double dt) override;
+    [[nodiscard]] bool evaluate(const Iterate& at) override;
+    void add_forces(std::vector<Vec3>& f) const override;
+    [[nodiscard]] Index write_rows(double* F) const override;
+    void add_magnitudes(const Iterate& at, std::vector<Vec3>& sums) const override;
+    [[nodiscard]] bool rows_within(const Iterate& at, const double* F, double share) const override;
+    void linearise(const Iterate& at) override;
+    void add_product(const Direction& d, std::vector<Vec3>& f, double* y) override;
+    [[nodiscard]] bool add_pattern(std::vector<linear::Coupling>& couplings) const override;
+    void add_derivatives(linear::SystemMatrix& matrix) override;
+    void add_soft(std::vector<linear::SoftContact>& soft) const override;
+    void complete(const double* z, model::State& state) const override;
+
+private:
+    [[nodiscard]] Vec3 force(const double* z, Index coupling) const;
+    /// What the contact law's row of slave j of pair p is the sum of, N, local axes.
+    [[nodiscard]] Vec3 law_magnitudes(const Iterate& at, std::size_t p, Index j) const;
+    [[nodiscard]] contact::ContactResidual law(std::size_t p, Index j) const;
+    /// Whether slave j of pair p has a contact partner and bears on it.
+    [[nodiscard]] bool reaches(std::size_t p, Index j) const;
+    void prepare_variations(std::size_t p);
+    void linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const;
+    [[nodiscard]] linear::SoftContact soften(std::size_t p, Index j) const;
+    /// Projector on the directions in which symmetry planes hold a node: no contact force acts along these.
+    [[nodiscard]] Mat3 symmetry_directions(Index node) const;
+
+    const linear::Constraints& constraints_;
+    const linear::Unknowns& unknowns_;
+    Timings& timings_;
+    int threads_;
+    model::ContactEvaluations evaluations_; ///< of the attempt
+    std::vector<Index> first_;              ///< (pairs + 1) couplings
+    std::vector<std::vector<Vec3>> lambda_; ///< (pairs) (slaves) N, global
+    Statuses statuses_;
+    StatusRule rule_ = StatusRule::natural;
+    bool force_next_ = false;
+    int status_changes_ = 0;
+    std::vector<ContactTangent> tangents_; ///< by coupling for products, a batch for a matrix
+    std::vector<linear::BearingContact> bearing_;
+    std::vector<Mat3> open_laws_;
+    std::vector<Vec3> product_law_; ///< scratch of add_product()
+    std::vector<Vector> product_on_;
+};
+
+} // namespace osculate::equilibrium

@@ -1,0 +1,39 @@
+#pragma once
+/// Whether a nonlinear iteration with contact still gains anything.
+
+#include "osculate/equilibrium/contact_term.hpp"
+
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace osculate::equilibrium {
+
+class CycleWatch {
+public:
+    /// Opens an attempt.
+    void begin();
+    /// Opens a solve.
+    void restart();
+    /// Notes an iterate: its statuses and the norm of its residual.
+    void note(const Statuses& statuses, double residual);
+    /// Whether the iteration goes round, or has long gained nothing.
+    [[nodiscard]] bool goes_round() const { return round_; }
+    /// Iterates that have gained nothing.
+    [[nodiscard]] int idle() const { return idle_; }
+    /// The last different sets of statuses since begin(), the latest last: a few, for a post-mortem.
+    [[nodiscard]] const std::vector<Statuses>& recent() const { return recent_; }
+
+private:
+    [[nodiscard]] bool comes_back(const Statuses& statuses, double residual);
+
+    std::vector<Statuses> recent_;
+    std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> times seen, least residual
+    std::size_t last_configuration_ = 0;
+    double best_ = std::numeric_limits<double>::max(); ///< least residual of the solve
+    int idle_ = 0;
+    bool round_ = false;
+};
+
+} // namespace osculate::equilibrium

@@ -1,0 +1,135 @@
+#pragma once
+/// Equilibrium with contact at the end of one step, as the nonlinear problem KINSOL sees.
+
+#include "osculate/equilibrium/body_term.hpp"
+#include "osculate/equilibrium/contact_term.hpp"
+#include "osculate/equilibrium/cycle_watch.hpp"
+#include "osculate/equilibrium/equilibrium_tangent.hpp"
+#include "osculate/linear/constraints.hpp"
+#include "osculate/linear/unknowns.hpp"
+#include "osculate/model/model.hpp"
+#include "osculate/solve/kinsol_solver.hpp"
+
+#include <array>
+#include <vector>
+
+namespace osculate::equilibrium {
+
+/// One line of iterations.csv.
+struct IterationRecord {
+    int iteration = 0;
+    double residual = 0; ///< L2 norm over the reference force
+    int status_changes = 0, open = 0, stick = 0, slip = 0, facet_changes = 0;
+};
+
+/// F(z) with z as Unknowns says: equilibrium of every free component and the contact law of every slave node. The sum of its
+/// terms; contact points are located anew at every z.
+///     equilibrium   f(u) - f_ext - f_contact = 0,   f of BodyForces, contact forces as at the end of the step
+class Equilibrium final : public solve::NonlinearProblem {
+public:
+    /// @param dynamics  null in statics; must outlive this object
+    Equilibrium(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics,
+                Timings& timings, int threads, bool follower_pressure = false,
+                linear::LinearSolver linear = linear::LinearSolver::automatic);
+
+    /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
+    /// their weighted mean over the step.
+    void begin_attempt(const model::State& state, StepLoad load, double dt);
+    /// Ends an attempt: patterns that grew in it stay, or go back to what they were. Nothing else outlives an attempt.
+    void commit() { tangent_.commit(); }
+    void rollback() { tangent_.rollback(); }
+    /// What the last commit() left for later steps, and the same as if it had left that. Between attempts only.
+    [[nodiscard]] EquilibriumMemory memory() const { return tangent_.memory(); }
+    void recall(const EquilibriumMemory& memory) { tangent_.recall(memory); }
+    /// Statuses for the next solve, see ContactTerm.
+    void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
+    /// The next residual is linear in the displacements about u, (nodes) m, where elements bear a driven motion that has
+    /// not spread into the body yet. Of no concern, and not kept, without finite strain.
+    void linearise_first_about(const std::vector<Vec3>& u) { bodies_.linearise_next_about(u); }
+    /// Springs in place from the next residual on, see BodyForces; release() takes them away.
+    void stabilise(Stabilisation springs);
+    void release();
+    void set_reference_force(double force) { reference_force_ = force; }
+
+    [[nodiscard]] Index size() const override { return unknowns_.size(); }
+    [[nodiscard]] Verdict residual(const double* z, double* F) override;
+    [[nodiscard]] const solve::SparseMatrix& jacobian() override { return tangent_.jacobian(); }
+    [[nodiscard]] solve::Preconditioner* preconditioner() override {
+        return tangent_.preconditions() ? &tangent_ : nullptr;
+    }
+    [[nodiscard]] bool factorisable() const override { return factorisable_; }
+    [[nodiscard]] solve::Tangent* tangent() override { return tangent_.by_products() ? &tangent_ : nullptr; }
+
+    /// z from displacements and contact forces, and the state (time apart) from z.
+    [[nodiscard]] Vector unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const;
+    [[nodiscard]] model::State state(const Vector& z) const;
+    /// Displacements of z, (nodes) m.
+    [[nodiscard]] std::vector<Vec3> displacements(const Vector& z) const;
+
+    /// Midway between the last two points at which the residual was evaluated: out of a cycle of two.
+    [[nodiscard]] Vector midpoint() const { return 0.5 * (last_z_ + before_z_); }
+    /// Statuses at the last residual, and what the complementarity functions say there.
+    [[nodiscard]] const Statuses& statuses() const { return contact_.statuses(); }
+    [[nodiscard]] Statuses natural_statuses() const { return contact_.natural_statuses(); }
+    /// Whether the last residual came to rest at the round-off of its own rows: no iterate can say more, see at_round_off().
+    [[nodiscard]] bool rests() const { return rests_; }
+    /// The z of the last residual.
+    [[nodiscard]] const Vector& last_iterate() const { return last_z_; }
+    /// Whether z is an equilibrium with these statuses, to the tolerance (of the reference force) or to the round-off of its
+    /// rows. Statuses are these afterwards, frozen.
+    [[nodiscard]] bool holds(const Vector& z, Statuses statuses, double tolerance);
+    /// Lines of iterations.csv since begin_attempt.
+    [[nodiscard]] const std::vector<IterationRecord>& records() const { return records_; }
+    /// The last different sets of statuses since begin_attempt, the latest last: a few, for a post-mortem.
+    [[nodiscard]] const std::vector<Statuses>& recent_statuses() const { return cycles_.recent(); }
+    /// f_int - f_ext - f_contact at the last residual: what the supports carry, and round-off elsewhere. (nodes) N
+    [[nodiscard]] const std::vector<Vec3>& unbalanced() const { return unbalanced_; }
+    [[nodiscard]] const std::vector<Vec3>& internal_force() const { return bodies_.internal_force(); }
+    /// Dead loads of the attempt, in dynamics their mean over the step. (nodes) N
+    [[nodiscard]] const std::vector<Vec3>& external_force() const { return loads_.force(); }
+    /// What residuals are measured against, N.
+    [[nodiscard]] double reference_force() const { return reference_force_; }
+    /// Node whose row holds the largest residual.
+    [[nodiscard]] Index worst_node() const { return worst_node_; }
+    /// Smallest gap at the last residual, m; infinite where nothing faces anything.
+    [[nodiscard]] double least_gap() const { return contact_.least_gap(); }
+    /// Element with the least volume left, at the last residual; where it has none there was no residual.
+    [[nodiscard]] const model::WorstElement& worst_element() const { return bodies_.worst_element(); }
+    [[nodiscard]] const BodyForces& bodies() const { return bodies_.bodies(); }
+    /// What contact found at the last residual; opened anew by begin_attempt().
+    [[nodiscard]] const model::ContactEvaluations& contact() const { return contact_.evaluations(); }
+    [[nodiscard]] model::ContactEvaluations& contact() { return contact_.evaluations(); }
+    [[nodiscard]] long patterns_built() const { return tangent_.patterns_built(); }
+    [[nodiscard]] const linear::Constraints& constraints() const { return constraints_; }
+
+private:
+    void unpack(const double* z);
+    void fill(double* F);
+    void record(const double* F);
+    /// u to positions x and what their rounding takes off.
+    void place();
+    /// Whether no component of F, the last residual, is more than round-off of the terms its row is the sum of.
+    [[nodiscard]] bool at_round_off(const double* F) const;
+
+    const model::Model& model_;
+    const linear::Constraints& constraints_;
+    linear::Unknowns unknowns_;
+    Timings& timings_;
+    BodyTerm bodies_;
+    LoadTerm loads_;
+    ContactTerm contact_;
+    std::array<Term*, 3> terms_;
+    Iterate at_; ///< of the last residual
+    EquilibriumTangent tangent_;
+    bool factorisable_;
+    std::vector<Vec3> prescribed_; ///< StepLoad::prescribed of the attempt
+    double reference_force_ = 1;
+    std::vector<Vec3> unbalanced_;
+    CycleWatch cycles_;
+    std::vector<IterationRecord> records_;
+    bool rests_ = false;       ///< see rests()
+    Vector last_z_, before_z_; ///< of the last two residuals
+    Index worst_node_ = -1;
+};
+
+} // namespace osculate::equilibrium

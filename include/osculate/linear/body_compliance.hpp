@@ -1,0 +1,41 @@
+#pragma once
+/// One linear body's stiffness, factorised once, and its inverse on the nodes that contact may reach.
+
+#include "osculate/linear/block_matrix.hpp"
+#include "osculate/linear/constraints.hpp"
+#include "osculate/solve/direct_solver.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace osculate::linear {
+
+/// Over the free components of the body's nodes, in their local frames. Springs of the same stiffness along the free
+/// components of a few nodes hold a body that nothing else does; whoever asks for them has to take them away again.
+class BodyCompliance {
+public:
+    /// @param kept    nodes of the body, global, ascending
+    /// @param sprung  of these, the ones with springs
+    BodyCompliance(const Constraints& constraints, Index first_node, Index nodes, const std::vector<Index>& kept,
+                   std::vector<Index> sprung);
+    /// @param K       free components of all bodies, by equation number
+    /// @param spring  N/m
+    [[nodiscard]] solve::FactorStatus factorise(const solve::SparseMatrix& K, double spring);
+    /// The body's part of x = K^-1 b, both over all equations.
+    void solve(const double* b, double* x) const { solver_->solve(b + first_, x + first_); }
+    /// W, the inverse over equations(): kept x kept, symmetric, m/N.
+    [[nodiscard]] const Matrix& W() const { return W_; }
+    /// Equations of the kept nodes' free components, ascending.
+    [[nodiscard]] const std::vector<Index>& equations() const { return equations_; }
+    [[nodiscard]] const std::vector<Index>& sprung() const { return sprung_; }
+
+private:
+    const Constraints& constraints_;
+    Index first_ = 0, last_ = 0; ///< the body's equations
+    std::vector<Index> equations_, sprung_;
+    std::unique_ptr<solve::CondensingSolver> solver_;
+    solve::SparseMatrix K_;
+    Matrix W_;
+};
+
+} // namespace osculate::linear

@@ -1,0 +1,55 @@
+#pragma once
+/// The step's tangent with contact made a little soft, so that one Cholesky factorisation inverts it.
+
+#include "osculate/linear/penalty_stiffness.hpp"
+#include "osculate/linear/soft_contact.hpp"
+#include "osculate/linear/unknowns.hpp"
+#include "osculate/solve/direct_solver.hpp"
+#include "osculate/solve/multigrid.hpp"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace osculate::linear {
+
+/// Inverse of the tangent but for four changes, each small or smooth:
+///  - contact forces act on the corners of the closest facet with its shape functions, not on all nodes of the patch;
+///  - their change as the surface bends and turns is left out;
+///  - the law gives way by a soft spring, (D + B/gamma) lambda + B w = r with gamma = 10 c, with multigrid c;
+///  - in the condensed stiffness K + W^T S B W, S = (D + B/gamma)^-1, the part of S B that couples friction with pressure,
+///    the only unsymmetric one, is left out. It is kept where contact forces follow from displacements.
+class ContactPreconditioner {
+public:
+    /// @param K           stiffness of the bodies in a step; it must outlive this object
+    /// @param multigrid   in place of the factorisation; null: factorise
+    /// @param undeformed  stiffness of the undeformed bodies, in the pattern of K: grids of multigrid are made for it
+    ContactPreconditioner(const Constraints& constraints, const BlockMatrix& K,
+                          std::unique_ptr<solve::Multigrid> multigrid, std::function<BlockMatrix()> undeformed);
+    /// Takes over new values of K.
+    void stiffness_changed() { stiffness_.stiffness_changed(); }
+    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    void use(const BlockMatrix& K) { stiffness_.use(K); }
+    void keep_pattern() { stiffness_.keep_pattern(); }
+    void restore_pattern() { stiffness_.restore_pattern(); }
+    [[nodiscard]] std::optional<std::vector<Spring>> kept_pattern() const { return stiffness_.kept_pattern(); }
+    void restore_pattern(const std::vector<Spring>& springs) { stiffness_.restore_pattern(springs); }
+    /// Factorises for the contacts given, every coupling of the pairs among them.
+    [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
+    /// z = P^-1 r; `rows` says where the rows of the residual are.
+    void apply(const Unknowns& rows, const double* r, double* z) const;
+    [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
+
+private:
+    const Constraints& constraints_;
+    std::function<BlockMatrix()> undeformed_;
+    PenaltyStiffness stiffness_;
+    std::unique_ptr<solve::DirectSolver> solver_; ///< one of these two
+    std::unique_ptr<solve::Multigrid> multigrid_;
+    double softness_; ///< c / gamma
+    std::vector<SoftContact> contacts_;
+    std::vector<Mat3> S_;
+    mutable Vector load_;
+};
+
+} // namespace osculate::linear

@@ -1,0 +1,70 @@
+#pragma once
+/// Stiffness of the bodies with springs between slave nodes and points of their masters: symmetric, for preconditioning.
+
+#include "osculate/linear/block_matrix.hpp"
+#include "osculate/linear/constraints.hpp"
+#include "osculate/solve/sparse_matrix.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace osculate::linear {
+
+/// Spring of stiffness S (3 x 3, N/m, symmetric) between a slave node and a point that follows master nodes,
+///     energy 1/2 w^T S w,   w = u_slave - sum_i N_i u_i
+struct Spring {
+    Index slave = -1;
+    std::vector<Index> masters; ///< global nodes; one may occur more than once
+    std::vector<Mat3> follow;   ///< N_i, shape function times image
+    Mat3 stiffness = Mat3::Zero();
+};
+
+class PenaltyStiffness {
+public:
+    PenaltyStiffness(const Constraints& constraints, const BlockMatrix& K);
+    /// Takes over new values of K; they count from the next set_springs() on.
+    void stiffness_changed();
+    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    void use(const BlockMatrix& K) {
+        K_ = &K;
+        stiffness_changed();
+    }
+    /// Rewrites the matrix for other springs; the pattern grows where it has to.
+    void set_springs(const std::vector<Spring>& springs);
+    /// Keeps the pattern as it is, or goes back to the one last kept: the order of elimination, and with it the last digit
+    /// of a solution, follows from the pattern.
+    void keep_pattern() { kept_ = pattern_springs_; }
+    void restore_pattern();
+    /// Springs, places only, that the kept pattern was made for; none before the first. And the pattern for such springs, kept.
+    [[nodiscard]] std::optional<std::vector<Spring>> kept_pattern() const {
+        if (block_row_start_.empty()) return std::nullopt;
+        return kept_;
+    }
+    void restore_pattern(const std::vector<Spring>& springs) {
+        build_pattern(springs);
+        fill_base();
+        keep_pattern();
+    }
+    /// Over the free components, by equation number.
+    [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
+    /// (nonzeros of matrix()) values of another matrix of the pattern of K, without springs.
+    [[nodiscard]] std::vector<double> values_of(const BlockMatrix& K) const;
+
+private:
+    void build_pattern(const std::vector<Spring>& springs);
+    void fill_base() { base_ = values_of(*K_); }
+    [[nodiscard]] bool covers(const std::vector<Spring>& springs) const;
+    /// Position of block (row, column) among the blocks of its row, -1 where there is none.
+    [[nodiscard]] Index slot(Index row, Index column) const;
+    void add(Index row, Index column, const Mat3& global, std::vector<double>& into) const;
+
+    const Constraints& constraints_;
+    const BlockMatrix* K_;
+    std::vector<Index> block_row_start_, block_column_, block_offset_; ///< offset of a block's columns within a row
+    std::vector<double> base_;
+    std::vector<Spring> pattern_springs_, kept_; ///< the pattern was built for; where they connect counts
+    std::uint64_t patterns_ = 0;
+    solve::SparseMatrix matrix_;
+};
+
+} // namespace osculate::linear

@@ -1,0 +1,236 @@
+#include "osculate/equilibrium/body_forces.hpp"
+
+#include "osculate/core/nodal_field.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
+
+#include <algorithm>
+
+namespace osculate::equilibrium {
+
+namespace {
+using Field = NodalField;
+
+bool damped(const Dynamics& dynamics) {
+    return dynamics.mass_damping > 0 || dynamics.stiffness_damping > 0;
+}
+
+/// f += C v
+void add_damping(const model::Model& model, const Dynamics& dynamics, const Field& v, Field& f, int threads) {
+    const double by_M = dynamics.mass_damping, by_K = dynamics.stiffness_damping;
+    if (by_M > 0) model.mass(dynamics.lumped_mass).multiply_add(weighted(by_M, v, 0, v), f, threads);
+    if (by_K > 0) model.K.multiply_add_relative(weighted(by_K, v, 0, v), f, threads);
+}
+} // namespace
+
+void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model, const Field& u,
+                         Field& f) {
+    if (pressures.empty()) return;
+    Field x(u.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = model.X[i] + u[i];
+    for (const FollowerLoad& load : pressures)
+        for (const mesh::SurfaceFace& face : *load.faces) fe::add_pressure_forces(face, x, load.start, f);
+}
+
+BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads)
+    : model_(model), dynamics_(dynamics), follower_pressure_(follower_pressure), threads_(threads) {
+    if (dynamics_ != nullptr || varies()) tangent_ = model_.K;
+    if (varies()) constant_ = model_.K;
+}
+
+void BodyForces::add_pressures(double factor, bool end, const Field& u, Field& f) const {
+    std::vector<FollowerLoad> scaled = pressures_;
+    for (FollowerLoad& load : scaled) load.start = factor * (end ? load.end : load.start);
+    add_follower_forces(scaled, model_, u, f);
+}
+
+bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt) {
+    pressures_ = std::move(pressures);
+    if (dynamics_ == nullptr) return false;
+    const Integrator& w = dynamics_->integrator;
+    u_start_ = state.u;
+    v_start_ = state.v;
+    a_start_ = state.a;
+    const bool changed = dt != dt_;
+    if (changed) {
+        dt_ = dt;
+        kinematics_ = kinematics(w, dt);
+        mean_ = {1 - w.alpha_f, dynamics_->stiffness_damping / dt};
+        const double inertia = (1 - w.alpha_m) * kinematics_.by_u_acceleration, rest = 1 - w.alpha_f,
+                     rate = rest * kinematics_.by_u_velocity;
+        (varies() ? constant_ : tangent_)
+            .set_combination(rest + rate * dynamics_->stiffness_damping, model_.K,
+                             inertia + rate * dynamics_->mass_damping, mass());
+    }
+    const std::size_t n = u_start_.size();
+    Field by_M(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 a = kinematics_.acceleration(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
+        by_M[i] = (1 - w.alpha_m) * a + w.alpha_m * a_start_[i];
+    }
+    force_start_.assign(n, Vec3::Zero());
+    mass().multiply_add(by_M, force_start_, threads_);
+    model_.K.multiply_add_relative(u_start_, force_start_, threads_);
+    if (damped(*dynamics_)) {
+        Field mean_v(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vec3 v = kinematics_.velocity(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
+            mean_v[i] = (1 - w.alpha_f) * v + w.alpha_f * v_start_[i];
+        }
+        add_damping(model_, *dynamics_, mean_v, force_start_, threads_);
+    }
+    if (follower_pressure_) add_pressures(-w.alpha_f, false, u_start_, force_start_);
+    return changed;
+}
+
+void BodyForces::add_springs(linear::BlockMatrix& tangent) const {
+    for (Index i = 0; i < tangent.rows(); ++i)
+        tangent.block(tangent.slot(i, i)).diagonal().array() +=
+            springs_.stiffness * (*springs_.share)[static_cast<std::size_t>(i)];
+}
+
+void BodyForces::stabilise(Stabilisation springs) {
+    springs_ = std::move(springs);
+    if (varies()) return; // linearise() adds them
+    tangent_ = model_.K;
+    add_springs(tangent_);
+}
+
+void BodyForces::release() {
+    springs_ = {};
+    if (dynamics_ == nullptr && !varies()) tangent_ = {};
+}
+
+model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
+    model::WorstElement worst;
+    if (dynamics_ == nullptr) {
+        f.assign(u.size(), Vec3::Zero());
+        model_.K.multiply_add_relative(u, f, threads_);
+        if (nonlinear()) worst = model_.finite_strain->add_internal_force(model_.X, u, f, threads_);
+        if (follower_pressure_) add_pressures(-1, true, u, f);
+        if (stabilised())
+            for (std::size_t i = 0; i < f.size(); ++i)
+                f[i] += springs_.stiffness * (*springs_.share)[i] * (u[i] - springs_.anchor[i]);
+        return worst;
+    }
+    f = force_start_;
+    if (follower_pressure_) add_pressures(dynamics_->integrator.alpha_f - 1, true, u, f);
+    (varies() ? constant_ : tangent_).multiply_add(weighted(1, u, -1, u_start_), f, threads_);
+    if (nonlinear()) worst = model_.finite_strain->add_step_force(model_.X, u_start_, u, mean_, f, threads_);
+    return worst;
+}
+
+void BodyForces::add_terms(const Field& u, Field& terms) const {
+    const linear::BlockMatrix& A = tangent();
+    for (Index i = 0; i < A.rows(); ++i) {
+        Vec3& sum = terms[static_cast<std::size_t>(i)];
+        for (Index k = A.row_begin(i); k < A.row_end(i); ++k)
+            sum += A.block(k).cwiseAbs() * u[static_cast<std::size_t>(A.column(k))].cwiseAbs();
+        if (dynamics_ != nullptr) sum += force_start_[static_cast<std::size_t>(i)].cwiseAbs();
+    }
+    // at finite strain stresses come of F = 1 + du/dX: the digits of the 1 are those of offsets between nodes
+    for (const model::Body& body : model_.bodies) {
+        if (std::ranges::all_of(body.kernels, [](const auto& kernel) { return kernel->linear(); })) continue;
+        for (Index i = body.first_node; i < body.first_node + body.nodes(); ++i)
+            for (Index k = A.row_begin(i); k < A.row_end(i); ++k) {
+                const auto j = static_cast<std::size_t>(A.column(k)), own = static_cast<std::size_t>(i);
+                terms[own] += A.block(k).cwiseAbs() * (model_.X[j] - model_.X[own]).cwiseAbs();
+            }
+    }
+}
+
+bool BodyForces::linearise(const Field& u) {
+    if (!varies()) return false;
+    tangent_ = constant_;
+    if (stabilised()) add_springs(tangent_);
+    if (nonlinear() && dynamics_ == nullptr)
+        model_.finite_strain->add_tangent(model_.X, u, tangent_, threads_);
+    else if (nonlinear())
+        model_.finite_strain->add_step_tangent(model_.X, u_start_, u, mean_, tangent_, threads_);
+    if (!follower_pressure_) return true;
+    const double factor = dynamics_ != nullptr ? dynamics_->integrator.alpha_f - 1 : -1;
+    Field x(u.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = model_.X[i] + u[i];
+    for (const FollowerLoad& load : pressures_)
+        for (const mesh::SurfaceFace& face : *load.faces)
+            tangent_.add({face.begin(), face.end()}, fe::pressure_tangent(face, x, factor * load.end));
+    return true;
+}
+
+void BodyForces::complete(model::State& state) const {
+    if (dynamics_ == nullptr) return;
+    for (std::size_t i = 0; i < state.u.size(); ++i) {
+        state.v.push_back(kinematics_.velocity(state.u[i], u_start_[i], v_start_[i], a_start_[i]));
+        state.a.push_back(kinematics_.acceleration(state.u[i], u_start_[i], v_start_[i], a_start_[i]));
+    }
+}
+
+double BodyForces::inertia(Index node) const {
+    if (dynamics_ == nullptr) return 0;
+    double sum = 0;
+    for (Index k = mass().row_begin(node); k < mass().row_end(node); ++k) sum += mass().block(k)(0, 0);
+    return (1 - dynamics_->integrator.alpha_m) * kinematics_.by_u_acceleration * sum;
+}
+
+BodyWork BodyForces::work(const model::State& state) const {
+    const Integrator& w = dynamics_->integrator;
+    const Field Du = weighted(1, state.u, -1, u_start_);
+    BodyWork work;
+    Field f(Du.size(), Vec3::Zero());
+    mass().multiply_add(weighted(1 - w.alpha_m, state.a, w.alpha_m, a_start_), f, threads_);
+    work.inertia = dot(Du, f);
+
+    f.assign(f.size(), Vec3::Zero());
+    model_.K.multiply_add_relative(weighted(1 - w.alpha_f, state.u, w.alpha_f, u_start_), f, threads_);
+    const auto add_step = [&](const fe::StepMean& mean) {
+        (void)model_.finite_strain->add_step_force(model_.X, u_start_, state.u, mean, f, threads_);
+    };
+    if (nonlinear()) add_step({mean_.end_weight, 0});
+    work.internal = dot(Du, f);
+
+    if (follower_pressure_) {
+        f.assign(f.size(), Vec3::Zero());
+        add_pressures(1 - w.alpha_f, true, state.u, f);
+        add_pressures(w.alpha_f, false, u_start_, f);
+        work.follower = dot(Du, f);
+    }
+
+    if (!damped(*dynamics_)) return work;
+    f.assign(f.size(), Vec3::Zero());
+    add_damping(model_, *dynamics_, weighted(1 - w.alpha_f, state.v, w.alpha_f, v_start_), f, threads_);
+    work.damping = dot(Du, f);
+    if (nonlinear() && mean_.viscosity > 0) { // what the viscous stress adds
+        f.assign(f.size(), Vec3::Zero());
+        add_step(mean_);
+        work.damping += dot(Du, f);
+        f.assign(f.size(), Vec3::Zero());
+        add_step({mean_.end_weight, 0});
+        work.damping -= dot(Du, f);
+    }
+    return work;
+}
+
+Field BodyForces::outer_forces(const model::State& state) const {
+    if (dynamics_ == nullptr && !follower_pressure_) return {};
+    Field f(state.u.size(), Vec3::Zero());
+    if (dynamics_ == nullptr) {
+        add_pressures(1, true, state.u, f);
+        return f;
+    }
+    const Integrator& w = dynamics_->integrator;
+    if (follower_pressure_) {
+        add_pressures(1 - w.alpha_f, true, state.u, f);
+        add_pressures(w.alpha_f, false, u_start_, f);
+    }
+    mass().multiply_add(weighted(w.alpha_m - 1, state.a, -w.alpha_m, a_start_), f, threads_);
+    if (const double by_M = dynamics_->mass_damping; by_M > 0)
+        mass().multiply_add(weighted(by_M * (w.alpha_f - 1), state.v, -by_M * w.alpha_f, v_start_), f, threads_);
+    return f;
+}
+
+Field body_forces(const model::Model& model, const Dynamics& dynamics, const model::State& state, int threads) {
+    Field f = model::internal_force(model, state.u, threads);
+    add_damping(model, dynamics, state.v, f, threads);
+    return f;
+}
+
+} // namespace osculate::equilibrium

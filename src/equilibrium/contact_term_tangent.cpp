@@ -1,0 +1,171 @@
+/// ContactTerm's derivatives: as products, in a matrix, for a preconditioner.
+
+#include "osculate/core/parallel.hpp"
+#include "osculate/equilibrium/contact_term.hpp"
+
+#include <algorithm>
+
+namespace osculate::equilibrium {
+
+void ContactTerm::prepare_variations(std::size_t p) {
+    std::vector<char> reached;
+    for (Index j = 0; j < evaluations_[p].pair().size(); ++j) reached.push_back(reaches(p, j));
+    evaluations_[p].prepare_variations(reached, threads_);
+}
+
+void ContactTerm::linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const {
+    tangent.variation.form = form;
+    const model::ContactEvaluation& evaluation = evaluations_[p];
+    const Vec3& lambda = lambda_[p][j];
+    const contact::ContactResidual law = this->law(p, j);
+    const Mat3 mirrored = symmetry_directions(evaluation.pair().slaves().node[j]), kept = Mat3::Identity() - mirrored;
+    tangent.D = kept * law.by_lambda + mirrored;
+    tangent.reaches = reaches(p, j);
+    tangent.evaluation = &evaluation;
+    tangent.slave = j;
+    tangent.force = lambda;
+    if (!tangent.reaches) return;
+    evaluation.vary(j, tangent.variation);
+    tangent.A.noalias() = law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn;
+    if (evaluation.pair().options().friction > 0) {
+        evaluation.drift_variation(j, tangent.variation, tangent.dd);
+        tangent.A.noalias() += law.by_drift * tangent.dd;
+    }
+    tangent.A = kept * tangent.A;
+    tangent.E = -evaluation.master_force_by_lambda(j); // the forces stand on the right of the equilibrium
+    evaluation.fold(j, tangent.A, tangent.E);
+    if (tangent.variation.form != contact::VariationForm::matrices) return;
+    evaluation.master_force_by_y(j, lambda, tangent.variation, tangent.G);
+    tangent.G = -tangent.G;
+    evaluation.fold(j, tangent.G);
+}
+
+linear::SoftContact ContactTerm::soften(std::size_t p, Index j) const {
+    const model::ContactEvaluation& evaluation = evaluations_[p];
+    linear::SoftContact soft;
+    const contact::ContactResidual law = this->law(p, j);
+    const Index slave = evaluation.pair().slaves().node[j];
+    const Mat3 mirrored = symmetry_directions(slave), kept = Mat3::Identity() - mirrored;
+    soft.coupling = first_[p] + j;
+    soft.where.slave = slave;
+    soft.D = kept * law.by_lambda + mirrored;
+    soft.c = evaluation.stiffness(j);
+    if (!evaluation.point(j).found || !contact::is_closed(statuses_[p][j])) return soft;
+    soft.normal = evaluation.point(j).normal;
+    soft.B = kept * (law.by_gap * soft.normal.transpose() + law.by_drift);
+    evaluation.follow_master(j, soft.where.masters, soft.where.follow);
+    return soft;
+}
+
+void ContactTerm::add_soft(std::vector<linear::SoftContact>& soft) const {
+    for (std::size_t p = 0; p < evaluations_.size(); ++p)
+        for (Index j = 0; j < evaluations_[p].pair().size(); ++j) soft.push_back(soften(p, j));
+}
+
+void ContactTerm::linearise(const Iterate&) {
+    const ScopedTimer timer(timings_, Part::contact);
+    tangents_.resize(static_cast<std::size_t>(first_.back()));
+    open_laws_.assign(tangents_.size(), Mat3::Zero());
+    bearing_.clear();
+    for (std::size_t p = 0; p < evaluations_.size(); ++p) {
+        const model::ContactEvaluation& evaluation = evaluations_[p];
+        const Index size = evaluation.pair().size();
+        prepare_variations(p);
+        ContactTangent* own = tangents_.data() + first_[p];
+        parallel_for(threads_, size, [&](Index begin, Index end) {
+            for (Index j = begin; j < end; ++j) linearise(p, j, contact::VariationForm::products, own[j]);
+        });
+        for (Index j = 0; j < size; ++j)
+            if (own[j].reaches)
+                bearing_.push_back({&own[j], evaluation.point_nodes(j), soften(p, j)});
+            else
+                open_laws_[static_cast<std::size_t>(first_[p] + j)] = own[j].D;
+    }
+}
+
+void ContactTerm::add_product(const Direction& d, std::vector<Vec3>& f, double* y) {
+    const auto moved = [&](Index node) -> const Vec3& { return d.u[node]; };
+    const auto add = [&](Index node, const Vec3& force) { f[node] += force; };
+    product_on_.resize(bearing_.size());
+    product_law_.resize(bearing_.size());
+    parallel_for(threads_, static_cast<Index>(bearing_.size()), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j)
+            product_law_[j] = bearing_[j].multiply(moved, force(d.z, bearing_[j].law.coupling), product_on_[j]);
+    });
+    std::size_t next = 0;
+    for (Index coupling = 0; coupling < first_.back(); ++coupling) {
+        const Index slave = unknowns_.slave(coupling);
+        const Vec3 lambda = force(d.z, coupling);
+        Vec3 law;
+        if (next < bearing_.size() && bearing_[next].law.coupling == coupling) {
+            bearing_[next].scatter(product_on_[next], lambda, add);
+            law = product_law_[next++];
+        } else {
+            law = open_laws_[coupling] * lambda;
+            f[slave] -= lambda;
+        }
+        law = constraints_.to_local(slave, law);
+        for (int k = 0; k < 3; ++k) y[unknowns_.contact_row(coupling, k)] = law(k);
+    }
+}
+
+bool ContactTerm::add_pattern(std::vector<linear::Coupling>& couplings) const {
+    bool covered = true;
+    const auto covers = [](const linear::Coupling& coupling, const std::vector<Index>& masters) {
+        return std::ranges::all_of(masters,
+                                   [&](Index node) { return std::ranges::binary_search(coupling.masters, node); });
+    };
+    for (std::size_t p = 0; p < evaluations_.size() && covered; ++p)
+        for (Index j = 0; j < evaluations_[p].pair().size() && covered; ++j)
+            covered = !reaches(p, j) ||
+                      covers(couplings[static_cast<std::size_t>(first_[p] + j)], evaluations_[p].point_nodes(j));
+    if (covered) return true;
+    for (std::size_t p = 0; p < evaluations_.size(); ++p)
+        for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
+            auto& masters = couplings[static_cast<std::size_t>(first_[p] + j)].masters;
+            if (!reaches(p, j)) continue;
+            // room for the point to move about its facet
+            masters = evaluations_[p].patch_nodes(evaluations_[p].facets()[j]);
+            const auto& own = evaluations_[p].point_nodes(j);
+            masters.insert(masters.end(), own.begin(), own.end());
+            std::sort(masters.begin(), masters.end());
+            masters.erase(std::unique(masters.begin(), masters.end()), masters.end()); // mirror images repeat nodes
+        }
+    return false;
+}
+
+void ContactTerm::add_derivatives(linear::SystemMatrix& matrix) {
+    constexpr Index batch = 64; // tangents held at a time: each takes some 100 kB on a smooth master
+    if (tangents_.size() < batch) tangents_.resize(batch);
+    for (std::size_t p = 0; p < evaluations_.size(); ++p) {
+        const model::ContactEvaluation& evaluation = evaluations_[p];
+        const Index size = evaluation.pair().size();
+        {
+            const ScopedTimer timer(timings_, Part::contact);
+            prepare_variations(p);
+        }
+        for (Index first = 0; first < size; first += batch) {
+            const Index count = std::min(batch, size - first);
+            {
+                const ScopedTimer timer(timings_, Part::contact);
+                parallel_for(threads_, count, [&](Index begin, Index end) {
+                    for (Index k = begin; k < end; ++k)
+                        linearise(p, first + k, contact::VariationForm::matrices, tangents_[k]);
+                });
+            }
+            const ScopedTimer timer(timings_, Part::assembly);
+            parallel_lanes(threads_, [&](Lane lane) { // each the rows of its own nodes, in the order of the slaves
+                for (Index k = 0; k < count; ++k) {
+                    const ContactTangent& t = tangents_[k];
+                    const Index j = first + k, coupling = first_[p] + j;
+                    if (t.reaches)
+                        matrix.add_contact(coupling, evaluation.point_nodes(j), t.A, t.D, t.E, t.G, lane);
+                    else
+                        matrix.add_contact(coupling, t.D, lane);
+                }
+            });
+        }
+    }
+}
+
+} // namespace osculate::equilibrium

@@ -1,0 +1,180 @@
+#include "osculate/equilibrium/equilibrium.hpp"
+
+#include "osculate/core/rounded_sum.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace osculate::equilibrium {
+
+using contact::Status;
+using linear::Constraints;
+
+namespace {
+std::vector<Index> slaves_of(const model::Model& model) {
+    std::vector<Index> slaves;
+    for (const auto& pair : model.pairs)
+        slaves.insert(slaves.end(), pair->slaves().node.begin(), pair->slaves().node.end());
+    return slaves;
+}
+} // namespace
+
+Equilibrium::Equilibrium(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics,
+                         Timings& timings, int threads, bool follower_pressure, linear::LinearSolver linear)
+    : model_(model), constraints_(constraints), unknowns_(constraints, slaves_of(model)), timings_(timings),
+      bodies_(model, dynamics, follower_pressure, timings, threads),
+      contact_(model, constraints, unknowns_, timings, threads), terms_{&bodies_, &loads_, &contact_},
+      tangent_(model, constraints, unknowns_, terms_, bodies_, contact_, at_,
+               {linear, dynamics != nullptr, follower_pressure}, timings, threads),
+      factorisable_(may_factorise(model, linear)) {
+    at_.u.assign(model.X.size(), Vec3::Zero());
+    at_.x = at_.tail = unbalanced_ = at_.u;
+}
+
+void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double dt) {
+    at_.u = state.u;
+    at_.z = nullptr;
+    place();
+    bool changed = false;
+    for (Term* term : terms_) {
+        changed = term->begin(state, at_, load, dt) || changed;
+        if (term != &bodies_) continue;
+        tangent_.begin(bodies().dynamic() ? dt : 0, changed);
+        if (changed) contact_.set_inertia(bodies());
+    }
+    prescribed_ = std::move(load.prescribed);
+    records_.clear();
+    cycles_.begin();
+}
+
+void Equilibrium::set_statuses(Statuses statuses, StatusRule rule, bool force_first) {
+    contact_.set_statuses(std::move(statuses), rule, force_first);
+    cycles_.restart();
+}
+
+void Equilibrium::stabilise(Stabilisation springs) {
+    const ScopedTimer timer(timings_, Part::assembly);
+    bodies_.bodies().stabilise(std::move(springs));
+    tangent_.stiffness_replaced();
+}
+
+void Equilibrium::release() {
+    if (!bodies().stabilised()) return;
+    const ScopedTimer timer(timings_, Part::assembly);
+    bodies_.bodies().release();
+    tangent_.stiffness_replaced();
+}
+
+void Equilibrium::place() {
+    for (std::size_t i = 0; i < at_.x.size(); ++i) at_.tail[i] = rounded_off(model_.X[i], at_.u[i], at_.x[i]);
+}
+
+void Equilibrium::unpack(const double* z) {
+    constraints_.scatter(z, prescribed_, at_.u);
+    at_.z = z;
+    place();
+}
+
+Vector Equilibrium::unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const {
+    Vector z(size());
+    constraints_.gather(u, z.data());
+    contact_.pack(contact, z.data());
+    return z;
+}
+
+std::vector<Vec3> Equilibrium::displacements(const Vector& z) const {
+    std::vector<Vec3> u(at_.u.size(), Vec3::Zero());
+    constraints_.scatter(z.data(), prescribed_, u);
+    return u;
+}
+
+model::State Equilibrium::state(const Vector& z) const {
+    model::State state;
+    state.u = displacements(z);
+    for (const Term* term : terms_) term->complete(z.data(), state);
+    return state;
+}
+
+solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* F) {
+    rests_ = false;
+    before_z_.swap(last_z_);
+    last_z_ = Eigen::Map<const Vector>(z, size());
+    unpack(z);
+    for (Term* term : terms_)
+        if (!term->evaluate(at_)) return Verdict::shorten;
+    fill(F);
+    record(F);
+    constexpr int at_rest = 3; // iterates that have gained nothing: Newton would have
+    const bool round = cycles_.goes_round();
+    rests_ = (round || cycles_.idle() >= at_rest) && at_round_off(F);
+    return round || rests_ ? Verdict::stop : Verdict::proceed;
+}
+
+void Equilibrium::fill(double* F) {
+    const ScopedTimer timer(timings_, Part::assembly);
+    unbalanced_.assign(unbalanced_.size(), Vec3::Constant(-0.0)); // what the first sum begins with, sign and all
+    Index without_value = -1;                                     // node
+    for (const Term* term : terms_) {
+        term->add_forces(unbalanced_);
+        if (const Index node = term->write_rows(F); node >= 0) without_value = node;
+    }
+    double worst = -1;
+    for (Index node = 0; node < model_.nodes(); ++node) {
+        const Vec3 local = constraints_.to_local(node, unbalanced_[node]);
+        for (int k = 0; k < 3; ++k)
+            if (const Index row = unknowns_.equilibrium_row(node, k); row != linear::Constraints::held) {
+                F[row] = local(k);
+                if (std::abs(local(k)) > worst) {
+                    worst = std::abs(local(k));
+                    worst_node_ = node;
+                }
+            }
+    }
+    if (without_value >= 0) worst_node_ = without_value;
+}
+
+void Equilibrium::record(const double* F) {
+    IterationRecord line;
+    line.iteration = static_cast<int>(records_.size());
+    line.residual = Eigen::Map<const Vector>(F, size()).norm() / reference_force_;
+    line.status_changes = contact_.status_changes();
+    for (std::size_t p = 0; p < statuses().size(); ++p) {
+        for (const Status status : statuses()[p]) {
+            line.open += status == Status::open;
+            line.stick += status == Status::stick;
+            line.slip += status == Status::slip || status == Status::glide;
+        }
+        line.facet_changes += contact()[p].facet_changes();
+    }
+    records_.push_back(line);
+    cycles_.note(statuses(), line.residual);
+}
+
+bool Equilibrium::at_round_off(const double* F) const {
+    /// How much round-off a sum may gather, of the sum of the absolute values of its terms: a few last digits.
+    constexpr double last_digits = 10 * std::numeric_limits<double>::epsilon();
+    std::vector<Vec3> sums(at_.u.size(), Vec3::Zero());
+    for (const Term* term : terms_) {
+        if (!term->rows_within(at_, F, last_digits)) return false;
+        term->add_magnitudes(at_, sums);
+    }
+    for (Index node = 0; node < model_.nodes(); ++node) {
+        const Vec3 local = constraints_.frame(node).cwiseAbs().transpose() * sums[node];
+        for (int k = 0; k < 3; ++k)
+            if (const Index row = unknowns_.equilibrium_row(node, k);
+                row != linear::Constraints::held && !(std::abs(F[row]) <= last_digits * local(k)))
+                return false;
+    }
+    return true;
+}
+
+bool Equilibrium::holds(const Vector& z, Statuses statuses, double tolerance) {
+    set_statuses(std::move(statuses), StatusRule::frozen, false);
+    Vector F(size());
+    if (residual(z.data(), F.data()) != Verdict::proceed) return false;
+    if (F.cwiseAbs().maxCoeff() <= tolerance * reference_force_) return true;
+    rests_ = at_round_off(F.data());
+    return rests_;
+}
+
+} // namespace osculate::equilibrium

@@ -1,0 +1,206 @@
+#include "osculate/equilibrium/equilibrium_tangent.hpp"
+
+#include "osculate/model/nodal_unknowns.hpp"
+#include "osculate/model/rigid_motion.hpp"
+
+#include <algorithm>
+
+namespace osculate::equilibrium {
+
+using linear::Constraints;
+
+namespace {
+/// Whether supports leave a body a rigid motion.
+bool loose(const model::Body& body, const std::vector<Vec3>& X, const Constraints& constraints) {
+    model::RigidHold hold(body, X);
+    for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (constraints.constraint(node, k) != nullptr) hold.hold(X[node], constraints.frame(node).col(k));
+    return hold.free() > 0;
+}
+
+/// Nodes of all pairs, global, ascending.
+std::vector<Index> contact_nodes(const model::Model& model) {
+    std::vector<Index> nodes;
+    for (const auto& pair : model.pairs) {
+        nodes.insert(nodes.end(), pair->slaves().node.begin(), pair->slaves().node.end());
+        nodes.insert(nodes.end(), pair->master_nodes().begin(), pair->master_nodes().end());
+    }
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+}
+} // namespace
+
+EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::Constraints& constraints,
+                                       const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
+                                       ContactTerm& contact, const Iterate& at, const TangentChoice& choice,
+                                       Timings& timings, int threads)
+    : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact), at_(at),
+      timings_(timings), threads_(threads), may_buckle_(model.finite_strain != nullptr),
+      products_(goes_by_products(model, choice.linear)) {
+    const linear::BlockMatrix& K = bodies_.bodies().tangent();
+    for (Index j = 0; j < unknowns.couplings(); ++j) couplings_.push_back({unknowns.slave(j), {}});
+    kept_couplings_ = couplings_;
+    const bool symmetric = bodies_.bodies().symmetric(), multigrid = goes_by_multigrid(model, choice.linear);
+    if (multigrid || ((!model.pairs.empty() || !symmetric) && choice.linear != linear::LinearSolver::direct))
+        preconditioner_ = std::make_unique<linear::ContactPreconditioner>(
+            constraints_, K, multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
+            [&model, threads] { return model::undeformed_stiffness(model, threads); });
+    if (!condenses(model, choice.linear, choice.follower_pressure)) return;
+    std::vector<linear::CondensedBody> condensed;
+    for (const model::Body& body : model.bodies)
+        condensed.push_back({body.first_node, body.nodes(), !choice.dynamic && loose(body, model.X, constraints_)});
+    std::vector<Index> slaves;
+    for (const linear::Coupling& c : couplings_) slaves.push_back(c.slave);
+    condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, contact_nodes(model),
+                                                            std::move(slaves), threads_);
+}
+
+void EquilibriumTangent::begin(double dt, bool changed) {
+    const ScopedTimer timer(timings_, Part::assembly);
+    if (condensed_) condensed_->begin(dt, changed);
+    if (!changed) return;
+    if (matrix_) matrix_->stiffness_changed();
+    if (preconditioner_) preconditioner_->stiffness_changed();
+}
+
+void EquilibriumTangent::stiffness_replaced() {
+    const linear::BlockMatrix& K = bodies_.bodies().tangent();
+    if (matrix_) matrix_->use(K);
+    if (preconditioner_) preconditioner_->use(K);
+}
+
+void EquilibriumTangent::use_pattern(std::vector<linear::Coupling> couplings) {
+    couplings_ = std::move(couplings);
+    matrix_ = nullptr;
+    ++patterns_built_;
+}
+
+void EquilibriumTangent::commit() {
+    if (kept_patterns_ != patterns_built_) kept_couplings_ = couplings_;
+    kept_patterns_ = patterns_built_;
+    if (preconditioner_) preconditioner_->keep_pattern();
+    if (condensed_) condensed_->keep();
+}
+
+void EquilibriumTangent::rollback() {
+    const ScopedTimer timer(timings_, Part::assembly);
+    if (kept_patterns_ != patterns_built_) {
+        use_pattern(kept_couplings_);
+        kept_patterns_ = patterns_built_;
+    }
+    if (preconditioner_) preconditioner_->restore_pattern();
+    if (condensed_) condensed_->restore();
+}
+
+EquilibriumMemory EquilibriumTangent::memory() const {
+    EquilibriumMemory memory;
+    if (kept_patterns_ > 0) memory.couplings = kept_couplings_;
+    if (preconditioner_) memory.springs = preconditioner_->kept_pattern();
+    if (condensed_ && condensed_->kept() != nullptr) memory.laws = *condensed_->kept();
+    return memory;
+}
+
+void EquilibriumTangent::recall(const EquilibriumMemory& memory) {
+    if (!memory.couplings.empty()) {
+        kept_couplings_ = memory.couplings;
+        use_pattern(kept_couplings_);
+        kept_patterns_ = patterns_built_;
+    }
+    if (preconditioner_ && memory.springs) preconditioner_->restore_pattern(*memory.springs);
+    if (condensed_ && memory.laws) condensed_->restore(*memory.laws);
+}
+
+solve::FactorStatus EquilibriumTangent::factorise() {
+    if (stale_preconditioner_) preconditioner_->stiffness_changed();
+    stale_preconditioner_ = false;
+    std::vector<linear::SoftContact> soft;
+    for (const Term* term : terms_) term->add_soft(soft);
+    return preconditioner_->factorise(std::move(soft));
+}
+
+void EquilibriumTangent::precondition(const double* r, double* z) {
+    preconditioner_->apply(unknowns_, r, z);
+}
+
+void EquilibriumTangent::update_stiffness() {
+    if (bodies_.update_stiffness(at_)) stale_preconditioner_ = stale_matrix_ = true;
+}
+
+void EquilibriumTangent::linearise() {
+    update_stiffness();
+    for (Term* term : terms_) term->linearise(at_);
+}
+
+void EquilibriumTangent::multiply(const double* x, double* y) {
+    std::vector<Vec3>&u = product_u_, &f = product_f_;
+    u.assign(at_.u.size(), Vec3::Zero());
+    f.assign(at_.u.size(), Vec3::Zero());
+    for (Index node = 0; node < constraints_.nodes(); ++node) {
+        Vec3 local = Vec3::Zero();
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(node, k); e != linear::Constraints::held) local(k) = x[e];
+        u[node] = constraints_.to_global(node, local);
+    }
+    for (Term* term : terms_) term->add_product({u, x}, f, y);
+    for (Index node = 0; node < constraints_.nodes(); ++node) {
+        const Vec3 local = constraints_.to_local(node, f[node]);
+        for (int k = 0; k < 3; ++k)
+            if (const Index row = unknowns_.equilibrium_row(node, k); row != linear::Constraints::held)
+                y[row] = local(k);
+    }
+}
+
+bool EquilibriumTangent::solve(const double* b, double* x, double allowed) {
+    // condensation takes for granted that a body's solution balances: where displacements are large and forces small, round-off
+    // is in the way, and only the tangent itself tells
+    constexpr int most_corrections = 2;
+    condensed_->set(contact_.bearing());
+    const Index size = unknowns_.size();
+    Eigen::Map<Vector> solution(x, size);
+    Vector left = Eigen::Map<const Vector>(b, size), more(size), product(size);
+    solution.setZero();
+    for (int k = 0; k <= most_corrections; ++k) {
+        if (!condensed_->solve(unknowns_, contact_.open_laws(), left.data(), more.data(), allowed, timings_))
+            return false;
+        if (!more.allFinite()) return false;
+        solution += more;
+        const ScopedTimer timer(timings_, Part::solve);
+        multiply(x, product.data());
+        left = Eigen::Map<const Vector>(b, size) - product;
+        if (left.norm() <= 2 * allowed) return true; // its own measure, and round-off
+    }
+    return false;
+}
+
+void EquilibriumTangent::cover_patterns() {
+    std::vector<linear::Coupling> couplings = couplings_;
+    bool covered = true;
+    for (const Term* term : terms_) covered = term->add_pattern(couplings) && covered;
+    if (!covered) use_pattern(std::move(couplings));
+}
+
+const solve::SparseMatrix& EquilibriumTangent::jacobian() {
+    update_stiffness();
+    {
+        const ScopedTimer timer(timings_, Part::assembly);
+        const bool contact = unknowns_.couplings() > 0;
+        if (contact) cover_patterns();
+        if (!matrix_) {
+            matrix_ = std::make_unique<linear::SystemMatrix>(constraints_, bodies_.bodies().tangent(), couplings_);
+            if (may_buckle_) matrix_->expect_buckling();
+            if (!bodies_.bodies().symmetric()) matrix_->expect_unsymmetric();
+        } else if (stale_matrix_) {
+            matrix_->stiffness_changed();
+        }
+        stale_matrix_ = false;
+        if (!contact) return matrix_->matrix(); // constant without finite strain: factorised once
+        matrix_->reset();
+    }
+    for (Term* term : terms_) term->add_derivatives(*matrix_);
+    matrix_->finish();
+    return matrix_->matrix();
+}
+
+} // namespace osculate::equilibrium

@@ -1,0 +1,100 @@
+/// An attempt that is rolled back leaves nothing behind in an Equilibrium, however far it went.
+
+#include "osculate/equilibrium/equilibrium.hpp"
+
+#include "equilibrium/press.hpp"
+
+#include <gtest/gtest.h>
+
+namespace osculate::equilibrium {
+namespace {
+
+using contact::Status;
+using testing::Press;
+
+class Rollback : public ::testing::TestWithParam<linear::LinearSolver> {};
+
+/// More nodes closed, and those of before again with other statuses: laws and patterns that the next step could go on with.
+constexpr std::size_t open = 3;
+std::vector<Statuses> other_statuses(const Press& press) {
+    return {press.all(Status::slip), press.all(Status::slip, open)};
+}
+
+TEST_P(Rollback, LeavesNoTraceOfAnAttemptWithOtherStatuses) {
+    for (const double there : {0.01, 0.3}) { // on the same facets and on others
+        Press straight(GetParam()), rejected(GetParam());
+        for (Press* press : {&straight, &rejected}) press->accept(press->attempt(0, {press->all(Status::stick, open)}));
+        (void)rejected.attempt(there, other_statuses(rejected));
+        rejected.equilibrium->rollback();
+        for (const double rear : {0.01, 0.02}) { // and whatever is made of it is kept
+            const Vector one = straight.attempt(rear, {straight.all(Status::slip, open)}),
+                         other = rejected.attempt(rear, {rejected.all(Status::slip, open)});
+            ASSERT_EQ(one, other) << "other digits than without the rejected attempt to " << there;
+            straight.accept(one);
+            rejected.accept(other);
+        }
+    }
+}
+
+TEST_P(Rollback, ComesBackToWhatAMemoryRecalls) {
+    Press straight(GetParam()), resumed(GetParam());
+    straight.accept(straight.attempt(0, {straight.all(Status::stick, open)}));
+    resumed.state = straight.state;
+    resumed.equilibrium->recall(straight.equilibrium->memory());
+    (void)resumed.attempt(0.01, other_statuses(resumed));
+    resumed.equilibrium->rollback();
+    ASSERT_EQ(straight.attempt(0.01, {straight.all(Status::slip, open)}),
+              resumed.attempt(0.01, {resumed.all(Status::slip, open)}));
+}
+
+TEST(Equilibrium, LeavesNoForceOnOpenNodes) {
+    Press press(linear::LinearSolver::direct);
+    press.accept(press.attempt(0, {press.all(Status::stick, open)}));
+    model::State shaken = press.state; // as the last digits of a solver do
+    const Vec3 round_off = Vec3::Constant(1e-12);
+    for (Vec3& lambda : shaken.contact[0].lambda) lambda += round_off;
+    const Vector z = press.equilibrium->unknowns(shaken.u, shaken.contact);
+    const model::State state = press.equilibrium->state(z);
+    for (std::size_t j = 0; j < state.contact[0].lambda.size(); ++j)
+        EXPECT_EQ(state.contact[0].lambda[j], j < open ? Vec3(Vec3::Zero()) : shaken.contact[0].lambda[j]) << j;
+}
+
+/// c of the complementarity functions has inertia beside stiffness, which grows with the inverse square of the step.
+TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
+    const std::string density = "1000 kg/m^3";
+    const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml",
+                                                 {{"bodies.base.material.linear_elastic.density", density},
+                                                  {"bodies.cap.material.linear_elastic.density", density},
+                                                  {"stages.pull.analysis", "dynamic"}});
+    Timings timings;
+    app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
+    const Stage& pull = plan.stages[1];
+    const linear::Constraints constraints(plan.model.nodes(), pull.constraints);
+    Equilibrium equilibrium(plan.model, constraints, &*pull.dynamics, timings, 1);
+    model::State state;
+    state.u.assign(plan.model.X.size(), Vec3::Zero());
+    state.v = state.a = state.u;
+    const model::ContactPair& pair = *plan.model.pairs[0];
+    state.contact.push_back(pair.initial_history());
+    std::vector<double> by_step;
+    for (const double dt : {1e-3, 5e-4}) {
+        equilibrium.begin_attempt(state, {state.u, state.u, {}}, dt);
+        const double c = equilibrium.contact()[0].stiffness(0);
+        by_step.push_back(c - pair.slaves().stiffness[0]);
+        EXPECT_DOUBLE_EQ(c, pair.slaves().stiffness[0] + equilibrium.bodies().inertia(pair.slaves().node[0]));
+    }
+    EXPECT_GT(by_step[0], 0);
+    EXPECT_NEAR(by_step[1], 4 * by_step[0], 1e-9 * by_step[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, Rollback,
+                         ::testing::Values(linear::LinearSolver::condensed, linear::LinearSolver::iterative,
+                                           linear::LinearSolver::direct),
+                         [](const auto& solver) {
+                             return solver.param == linear::LinearSolver::condensed   ? "condensed"
+                                    : solver.param == linear::LinearSolver::iterative ? "iterative"
+                                                                                      : "direct";
+                         });
+
+} // namespace
+} // namespace osculate::equilibrium

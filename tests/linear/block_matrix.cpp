@@ -1,0 +1,98 @@
+#include "block_systems.hpp"
+
+#include <gtest/gtest.h>
+
+namespace osculate::linear {
+namespace {
+
+using namespace testing;
+using osculate::testing::Random;
+
+TEST(BlockMatrix, AddsElementsAtTheirNodes) {
+    Random random(61);
+    Matrix dense = Matrix::Zero(3 * 9, 3 * 9);
+    const auto elements = some_elements();
+    BlockMatrix K(9, elements);
+    for (const auto& element : elements) {
+        const auto n = static_cast<Index>(element.size());
+        const Matrix Ke = random_matrix(3 * n, random);
+        K.add(element, Ke);
+        for (Index i = 0; i < n; ++i)
+            for (Index j = 0; j < n; ++j)
+                dense.block<3, 3>(3 * element[i], 3 * element[j]) += Ke.block<3, 3>(3 * i, 3 * j);
+    }
+    EXPECT_EQ(dense_of(K), dense);
+}
+
+TEST(BlockMatrix, HasTheNodesThatShareAnElementInItsPattern) {
+    const BlockMatrix K(9, some_elements());
+    const std::vector<std::vector<Index>> expected{{0, 1, 2, 3},
+                                                   {0, 1, 2, 3},
+                                                   {0, 1, 2, 3, 4, 5},
+                                                   {0, 1, 2, 3, 4, 5},
+                                                   {2, 3, 4, 5},
+                                                   {2, 3, 4, 5},
+                                                   {6, 7},
+                                                   {6, 7},
+                                                   {}};
+    ASSERT_EQ(K.rows(), 9);
+    for (Index row = 0; row < 9; ++row) {
+        std::vector<Index> columns;
+        for (Index k = K.row_begin(row); k < K.row_end(row); ++k) columns.push_back(K.column(k));
+        EXPECT_EQ(columns, expected[row]) << "row " << row;
+    }
+}
+
+TEST(BlockMatrix, MultipliesLikeItsDenseTwinOnAnyNumberOfThreads) {
+    const Index nodes = 200;
+    std::vector<std::vector<Index>> elements;
+    for (Index e = 0; e + 7 < nodes; e += 2) elements.push_back({e, e + 3, e + 1, e + 7});
+    Random random(62);
+    BlockMatrix K(nodes, elements);
+    for (const auto& element : elements) K.add(element, random_matrix(12, random));
+    std::vector<Vec3> x(nodes), start(nodes);
+    Vector flat(3 * nodes), expected(3 * nodes);
+    for (Index i = 0; i < nodes; ++i) {
+        flat.segment<3>(3 * i) = x[i] = random.vector();
+        expected.segment<3>(3 * i) = start[i] = random.vector();
+    }
+    expected += dense_of(K) * flat; // y += A x
+    std::vector<Vec3> first;
+    for (const int threads : {1, 2, 5}) {
+        std::vector<Vec3> y = start;
+        K.multiply_add(x, y, threads);
+        const double round_off = 1e-14; // of sums of about thirty products
+        for (Index i = 0; i < nodes; ++i) EXPECT_LT((y[i] - expected.segment<3>(3 * i)).norm(), 100 * round_off);
+        if (first.empty()) first = y;
+        EXPECT_EQ(y, first) << "not the same bits with " << threads << " threads";
+    }
+}
+
+TEST(BlockMatrix, TakesNoNoticeOfATranslationInRelativeProducts) {
+    const Index nodes = 4;
+    const std::vector<std::vector<Index>> elements{{0, 1, 2}, {1, 2, 3}};
+    Random random(63);
+    BlockMatrix K(nodes, elements);
+    for (const auto& element : elements) {
+        Matrix Ke = random_matrix(9, random);
+        Ke.rightCols<3>() = -Ke.leftCols<3>() - Ke.middleCols<3>(3); // blocks of a row add up to nothing
+        K.add(element, Ke);
+    }
+    std::vector<Vec3> x(nodes), far(nodes), y(nodes, Vec3::Zero()), product = y, y_far = y;
+    for (Index i = 0; i < nodes; ++i) {
+        for (int k = 0; k < 3; ++k) x[i](k) = std::round(1e3 * random.vector()(k)) / 1024; // shifts are exact
+        far[i] = x[i] + Vec3(1 << 20, -(1 << 20), 1 << 20);
+    }
+    K.multiply_add(x, product, 1);
+    K.multiply_add_relative(x, y, 1);
+    K.multiply_add_relative(far, y_far, 2);
+    EXPECT_EQ(y, y_far);
+    for (Index i = 0; i < nodes; ++i) EXPECT_LT((y[i] - product[i]).norm(), 1e-13);
+}
+
+TEST(BlockMatrix, IsEmptyAtFirst) {
+    EXPECT_EQ(BlockMatrix{}.rows(), 0);
+}
+
+} // namespace
+} // namespace osculate::linear

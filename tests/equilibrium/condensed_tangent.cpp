@@ -1,8 +1,10 @@
 #include "osculate/linear/condensed_tangent.hpp"
 
 #include "equilibrium/press.hpp"
+#include "osculate/model/rigid_motion.hpp"
 
 #include <gtest/gtest.h>
+#include <set>
 #include <utility>
 
 namespace osculate::equilibrium {
@@ -36,13 +38,32 @@ TEST(CondensedTangent, SolvesForABodyThatContactAloneHolds) {
 struct Apart {
     explicit Apart(const linear::BlockMatrix& stiffness)
         : K(stiffness), D(slaves.size(), Mat3::Identity()), rows(*press.constraints, slaves),
-          tangent(press.plan.model, *press.constraints, K, slaves, false, 1) {
+          tangent(*press.constraints, K, press.plan.model.X, bodies(), contact_nodes(), slaves, 1) {
         tangent.set(none);
     }
     [[nodiscard]] bool solves() {
         const Vector b = Vector::Ones(rows.size());
         Vector x(b.size());
         return tangent.solve(rows, D, b.data(), x.data(), 1, press.timings);
+    }
+
+    [[nodiscard]] std::vector<linear::CondensedBody> bodies() const {
+        std::vector<linear::CondensedBody> list;
+        for (const model::Body& body : press.plan.model.bodies) {
+            model::RigidHold hold(body, press.plan.model.X);
+            for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
+                for (int k = 0; k < 3; ++k)
+                    if (press.constraints->constraint(node, k) != nullptr)
+                        hold.hold(press.plan.model.X[node], press.constraints->frame(node).col(k));
+            list.push_back({body.first_node, body.nodes(), hold.free() > 0});
+        }
+        return list;
+    }
+    [[nodiscard]] std::vector<Index> contact_nodes() const {
+        std::set<Index> nodes(slaves.begin(), slaves.end());
+        const std::vector<Index>& masters = press.plan.model.pairs[0]->master_nodes();
+        nodes.insert(masters.begin(), masters.end());
+        return {nodes.begin(), nodes.end()};
     }
 
     Press press{linear::LinearSolver::condensed};

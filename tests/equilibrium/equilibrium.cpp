@@ -68,7 +68,7 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
                                                   {"stages.pull.analysis", "dynamic"}});
     Timings timings;
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
-    const Stage& pull = plan.stages[1];
+    const time::Stage& pull = plan.stages[1];
     const linear::Constraints constraints(plan.model.nodes(), pull.constraints);
     Equilibrium equilibrium(plan.model, constraints, &*pull.dynamics, timings, 1);
     model::State state;

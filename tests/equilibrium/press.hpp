@@ -18,7 +18,7 @@ public:
     explicit Press(linear::LinearSolver solver) {
         const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml", {});
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);
-        const Stage& pull = plan.stages[1];
+        const time::Stage& pull = plan.stages[1];
         constraints = std::make_unique<linear::Constraints>(plan.model.nodes(), pull.constraints);
         equilibrium = std::make_unique<Equilibrium>(plan.model, *constraints, nullptr, timings, 1, false, solver);
         kinsol = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
@@ -41,8 +41,8 @@ public:
         equilibrium->begin_attempt(state, load, 1);
         Vector z = equilibrium->unknowns(state.u, state.contact);
         for (const Statuses& statuses : one_after_another) {
-            const LadderOptions options{.tolerance = 1e-9, .reference_force = 1e5};
-            converged = solve_trial(*equilibrium, *kinsol, z, statuses, options).converged();
+            const time::LadderOptions options{.tolerance = 1e-9, .reference_force = 1e5};
+            converged = time::solve_trial(*equilibrium, *kinsol, z, statuses, options).converged();
         }
         return z;
     }

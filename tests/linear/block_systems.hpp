@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-namespace osculate::testing {
+namespace osculate::linear::testing {
 
 inline Matrix random_matrix(Index n, osculate::testing::Random& random) {
     Matrix A(n, n);
@@ -39,4 +39,4 @@ inline Matrix dense_of(const solve::SparseMatrix& S) {
     return A;
 }
 
-} // namespace osculate::testing
+} // namespace osculate::linear::testing

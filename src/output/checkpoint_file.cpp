@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <type_traits>
 
 namespace osculate::output {
 
@@ -106,17 +107,6 @@ template <class T> struct Ragged {
 };
 
 // ---- parts ------------------------------------------------------------------------------------------------------------------
-
-Json to_json(const model::ContactHistory& history) {
-    return {{"lambda", packed_matrices(history.lambda)},
-            {"status", packed(history.status)},
-            {"facet", packed(history.facet)}};
-}
-
-model::ContactHistory contact_history(const Json& json) {
-    return {unpacked_matrices<Vec3>(json, "lambda"), unpacked<contact::Status>(json, "status"),
-            unpacked<Index>(json, "facet"), nullptr};
-}
 
 /// Nodes, each with other nodes: couplings and springs.
 template <class T> Json links(const std::vector<T>& list) {
@@ -234,57 +224,105 @@ time::Ledger ledger(const Json& json) {
     return ledger;
 }
 
+// ---- every value once, with its name --------------------------------------------------------------------------------------
+
+/// visit(name, value) of all that a pair carries on, whether it writes or reads.
+template <class History, class Visit>
+void each_value(History& history,
+                const Visit& visit) requires std::is_same_v<std::remove_const_t<History>, model::ContactHistory> {
+    visit("lambda", history.lambda);
+    visit("status", history.status);
+    visit("facet", history.facet); // the master is made from the patches
+}
+
+template <class Run, class Visit>
+void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remove_const_t<Run>, time::Checkpoint> {
+    visit("stage", run.stage);
+    visit("stage_start", run.stage_start);
+    visit("displacement_start", run.displacement_start);
+    visit("reached", run.reached);
+    visit("dt", run.dt);
+    visit("time", run.state.time);
+    visit("u", run.state.u);
+    visit("v", run.state.v);
+    visit("a", run.state.a);
+    visit("contact", run.state.contact);
+    visit("ledger", run.ledger);
+    visit("moved", run.moved);
+    visit("attempts", run.counts.attempts);
+    visit("stabilised_steps", run.counts.stabilised_steps);
+    visit("steps_at_round_off", run.counts.steps_at_round_off);
+    visit("factorisations", run.counts.factorisations);
+    visit("gmres_iterations", run.counts.gmres_iterations);
+    visit("refreshed_patches", run.counts.refreshed_patches);
+    visit("paths_followed", run.counts.paths_followed);
+    visit("memory", run.memory);
+    visit("patches", run.patches);
+}
+
+struct Writer {
+    Json& json;
+
+    void operator()(const char* name, const std::vector<Vec3>& value) const { json[name] = packed_matrices(value); }
+    void operator()(const char* name, const std::vector<contact::Status>& value) const { json[name] = packed(value); }
+    void operator()(const char* name, const std::vector<Index>& value) const { json[name] = packed(value); }
+    void operator()(const char* name, const std::vector<model::ContactHistory>& pairs) const {
+        json[name] = Json::array();
+        for (const model::ContactHistory& history : pairs) {
+            Json one;
+            each_value(history, Writer{one});
+            json[name].push_back(std::move(one));
+        }
+    }
+    void operator()(const char* name, const std::vector<std::vector<contact::RefittedPatch>>& pairs) const {
+        json[name] = Json::array();
+        for (const auto& patches : pairs) json[name].push_back(to_json(patches));
+    }
+    void operator()(const char* name, const time::Ledger& value) const { json[name] = to_json(value); }
+    void operator()(const char* name, const equilibrium::EquilibriumMemory& value) const {
+        json[name] = to_json(value);
+    }
+    template <class T>
+    requires std::is_arithmetic_v<T>
+    void operator()(const char* name, const T& value) const { json[name] = value; }
+};
+
+struct Reader {
+    const Json& json;
+
+    void operator()(const char* name, std::vector<Vec3>& value) const { value = unpacked_matrices<Vec3>(json, name); }
+    void operator()(const char* name, std::vector<contact::Status>& value) const {
+        value = unpacked<contact::Status>(json, name);
+    }
+    void operator()(const char* name, std::vector<Index>& value) const { value = unpacked<Index>(json, name); }
+    void operator()(const char* name, std::vector<model::ContactHistory>& pairs) const {
+        for (const Json& one : member(json, name)) each_value(pairs.emplace_back(), Reader{one});
+    }
+    void operator()(const char* name, std::vector<std::vector<contact::RefittedPatch>>& pairs) const {
+        for (const Json& one : member(json, name)) pairs.push_back(refitted_patches(one));
+    }
+    void operator()(const char* name, time::Ledger& value) const { value = ledger(member(json, name)); }
+    void operator()(const char* name, equilibrium::EquilibriumMemory& value) const {
+        value = equilibrium_memory(member(json, name));
+    }
+    void operator()(const char* name, bool& value) const {
+        if (!member(json, name).is_boolean()) incomplete(name);
+        value = json[name].get<bool>();
+    }
+    template <class T>
+    requires std::is_arithmetic_v<T>
+    void operator()(const char* name, T& value) const { value = number<T>(json, name); }
+};
+
 Json to_json(const time::Checkpoint& run) {
-    Json contact = Json::array(), patches = Json::array();
-    for (const auto& history : run.state.contact) contact.push_back(to_json(history));
-    for (const auto& pair : run.patches) patches.push_back(to_json(pair));
-    return {{"stage", run.stage},
-            {"stage_start", run.stage_start},
-            {"displacement_start", packed_matrices(run.displacement_start)},
-            {"reached", run.reached},
-            {"dt", run.dt},
-            {"time", run.state.time},
-            {"u", packed_matrices(run.state.u)},
-            {"v", packed_matrices(run.state.v)},
-            {"a", packed_matrices(run.state.a)},
-            {"contact", contact},
-            {"ledger", to_json(run.ledger)},
-            {"moved", run.moved},
-            {"attempts", run.counts.attempts},
-            {"stabilised_steps", run.counts.stabilised_steps},
-            {"steps_at_round_off", run.counts.steps_at_round_off},
-            {"factorisations", run.counts.factorisations},
-            {"gmres_iterations", run.counts.gmres_iterations},
-            {"refreshed_patches", run.counts.refreshed_patches},
-            {"paths_followed", run.counts.paths_followed},
-            {"memory", to_json(run.memory)},
-            {"patches", patches}};
+    Json json;
+    each_value(run, Writer{json});
+    return json;
 }
 
 time::Checkpoint checkpoint(const Json& json) {
     time::Checkpoint run;
-    run.stage = number<std::size_t>(json, "stage");
-    run.stage_start = number<double>(json, "stage_start");
-    run.displacement_start = unpacked_matrices<Vec3>(json, "displacement_start");
-    run.reached = number<std::size_t>(json, "reached");
-    run.dt = number<double>(json, "dt");
-    run.state.time = number<double>(json, "time");
-    run.state.u = unpacked_matrices<Vec3>(json, "u");
-    run.state.v = unpacked_matrices<Vec3>(json, "v");
-    run.state.a = unpacked_matrices<Vec3>(json, "a");
-    for (const Json& history : member(json, "contact")) run.state.contact.push_back(contact_history(history));
-    run.ledger = ledger(member(json, "ledger"));
-    if (!member(json, "moved").is_boolean()) incomplete("moved");
-    run.moved = json["moved"].get<bool>();
-    run.counts.attempts = number<int>(json, "attempts");
-    run.counts.stabilised_steps = number<int>(json, "stabilised_steps");
-    run.counts.steps_at_round_off = number<int>(json, "steps_at_round_off");
-    run.counts.factorisations = number<long>(json, "factorisations");
-    run.counts.gmres_iterations = number<long>(json, "gmres_iterations");
-    run.counts.refreshed_patches = number<long>(json, "refreshed_patches");
-    run.counts.paths_followed = number<long>(json, "paths_followed");
-    run.memory = equilibrium_memory(member(json, "memory"));
-    for (const Json& pair : member(json, "patches")) run.patches.push_back(refitted_patches(pair));
+    each_value(run, Reader{json});
     return run;
 }
 

@@ -119,12 +119,11 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, EveryIntegrator,
-                         testing::Values(Member{"GeneralisedAlpha", equilibrium::generalised_alpha(0.6), 2},
-                                         Member{"Newmark", equilibrium::newmark(0.25, 0.5), 2},
-                                         Member{"Hht", equilibrium::hht(-0.2), 2},
-                                         Member{"BackwardEuler", equilibrium::backward_euler(), 1},
-                                         Member{"GeneralisedAlphaZero", equilibrium::generalised_alpha(0), 2},
-                                         Member{"DissipativeNewmark", equilibrium::newmark(0.36, 0.7), 1}),
+                         testing::Values(Member{"GeneralisedAlpha", generalised_alpha(0.6), 2},
+                                         Member{"Newmark", newmark(0.25, 0.5), 2}, Member{"Hht", hht(-0.2), 2},
+                                         Member{"BackwardEuler", backward_euler(), 1},
+                                         Member{"GeneralisedAlphaZero", generalised_alpha(0), 2},
+                                         Member{"DissipativeNewmark", newmark(0.36, 0.7), 1}),
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(EveryIntegrator, HasItsOrderInFreeVibration) {
@@ -168,7 +167,7 @@ TEST_P(EveryIntegrator, PredictorKeepsTheAcceleration) {
 TEST(BackwardEuler, TakesDifferencesOfPositionAndOfVelocity) {
     const double dt = 0.37;
     const Vec3 u(0.3, -1.2, 2.1), u_n(0.2, -1, 1.7), v_n(0.5, 0.1, -0.9), a_n(-1.1, 0.4, 0.6);
-    const Kinematics k = kinematics(equilibrium::backward_euler(), dt);
+    const Kinematics k = kinematics(backward_euler(), dt);
     const Vec3 v = k.velocity(u, u_n, v_n, a_n);
     EXPECT_LT((v - (u - u_n) / dt).norm(), round_off);
     EXPECT_LT((k.acceleration(u, u_n, v_n, a_n) - (v - v_n) / dt).norm(), round_off);
@@ -195,11 +194,11 @@ constexpr double triple_root = 2e-3;
 
 TEST(GeneralisedAlpha, SpectralRadiusAtInfinityIsRhoInf) {
     for (const double rho : {0., 0.25, 0.5, 0.8, 1.})
-        EXPECT_NEAR(spectral_radius(equilibrium::generalised_alpha(rho), stiff), rho, triple_root);
+        EXPECT_NEAR(spectral_radius(generalised_alpha(rho), stiff), rho, triple_root);
 }
 
 TEST(GeneralisedAlpha, DissipatesHighFrequenciesBeforeLowOnes) {
-    const Integrator integrator = equilibrium::generalised_alpha(0.5);
+    const Integrator integrator = generalised_alpha(0.5);
     EXPECT_GT(spectral_radius(integrator, 0.1), 1 - 1e-5); // 1 - O((w dt)^4)
     EXPECT_LT(spectral_radius(integrator, 10), 0.8);
     for (const double w_dt : {0.01, 0.1, 1., 10., 100.}) EXPECT_LE(spectral_radius(integrator, w_dt), 1);
@@ -207,11 +206,11 @@ TEST(GeneralisedAlpha, DissipatesHighFrequenciesBeforeLowOnes) {
 
 TEST(Hht, SpectralRadiusAtInfinityIsItsOwn) {
     for (const double alpha : {-1. / 3, -0.2, -0.05})
-        EXPECT_NEAR(spectral_radius(equilibrium::hht(alpha), stiff), (1 + alpha) / (1 - alpha), triple_root);
+        EXPECT_NEAR(spectral_radius(hht(alpha), stiff), (1 + alpha) / (1 - alpha), triple_root);
 }
 
 TEST(BackwardEuler, SpectralRadiusAtInfinityIsZero) {
-    EXPECT_NEAR(spectral_radius(equilibrium::backward_euler(), stiff), 0, triple_root);
+    EXPECT_NEAR(spectral_radius(backward_euler(), stiff), 0, triple_root);
 }
 
 TEST(Newmark, KeepsTheEnergyOfALinearOscillator) {
@@ -221,7 +220,7 @@ TEST(Newmark, KeepsTheEnergyOfALinearOscillator) {
     const auto energy = [&](const Motion& m) {
         return 0.5 * m.v * m.v + 0.5 * oscillator.w * oscillator.w * m.u * m.u;
     };
-    for (const Integrator& integrator : {equilibrium::newmark(0.25, 0.5), equilibrium::hht(0)}) {
+    for (const Integrator& integrator : {newmark(0.25, 0.5), hht(0)}) {
         Motion mass = oscillator.start();
         const double start = energy(mass);
         double worst = 0;
@@ -236,8 +235,7 @@ TEST(Newmark, KeepsTheEnergyOfALinearOscillator) {
 TEST(Newmark, LocalErrorIsEstimatedToTheNextOrder) {
     const Oscillator oscillator{.xi = 0.1};
     const double dt = 0.005;
-    for (const Integrator& integrator :
-         {equilibrium::newmark(0.25, 0.5), equilibrium::newmark(0.3, 0.5), equilibrium::newmark(0.08, 0.5)}) {
+    for (const Integrator& integrator : {newmark(0.25, 0.5), newmark(0.3, 0.5), newmark(0.08, 0.5)}) {
         const Motion n = oscillator.start(), next = step(integrator, oscillator, dt, n, {}, {});
         const double error = std::abs(next.u - oscillator.exact(dt).u);
         constexpr double next_order = 0.05; // the estimate's own relative error is of the order of w dt = 0.01
@@ -249,8 +247,8 @@ TEST(Newmark, LocalErrorIsEstimatedToTheNextOrder) {
 TEST(GeneralisedAlpha, LocalErrorIsEstimatedToTheNextOrderToo) {
     const Oscillator oscillator{.xi = 0.1};
     const double dt = 0.002;
-    for (const Integrator& integrator : {equilibrium::generalised_alpha(0), equilibrium::generalised_alpha(0.5),
-                                         equilibrium::generalised_alpha(0.8), equilibrium::hht(-0.3)}) {
+    for (const Integrator& integrator :
+         {generalised_alpha(0), generalised_alpha(0.5), generalised_alpha(0.8), hht(-0.3)}) {
         Motion n = oscillator.start();
         Oscillator at = oscillator; // the same, from where a_n belongs to
         const double early = (integrator.alpha_m - integrator.alpha_f) * dt;
@@ -268,32 +266,27 @@ TEST(GeneralisedAlpha, LocalErrorIsEstimatedToTheNextOrderToo) {
 TEST(BackwardEuler, LocalErrorIsThatOfTheVelocityTimesTheStep) {
     const Oscillator oscillator{.xi = 0.1};
     const double dt = 0.001;
-    const Motion n = oscillator.start(), next = step(equilibrium::backward_euler(), oscillator, dt, n, {}, {});
+    const Motion n = oscillator.start(), next = step(backward_euler(), oscillator, dt, n, {}, {});
     const double error = dt * std::abs(next.v - oscillator.exact(dt).v);
     constexpr double next_order = 0.05;
-    EXPECT_NEAR(equilibrium::backward_euler().local_error(along_x(next.a), along_x(n.a), dt) / error, 1, next_order);
+    EXPECT_NEAR(backward_euler().local_error(along_x(next.a), along_x(n.a), dt) / error, 1, next_order);
 }
 
 TEST(Integrator, RefusesParametersOutOfBounds) {
     const support::FloatingPointTraps suspended(false); // a comparison with NaN is an invalid operation
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const double rho : {-1e-9, 1 + 1e-9, nan})
-        EXPECT_THROW((void)equilibrium::generalised_alpha(rho), std::invalid_argument);
-    for (const double alpha : {-1. / 3 - 1e-9, 1e-9, nan})
-        EXPECT_THROW((void)equilibrium::hht(alpha), std::invalid_argument);
-    for (const double beta : {0., -0.1, nan})
-        EXPECT_THROW((void)equilibrium::newmark(beta, 0.5), std::invalid_argument);
-    for (const double gamma : {0.5 - 1e-9, nan})
-        EXPECT_THROW((void)equilibrium::newmark(0.25, gamma), std::invalid_argument);
-    EXPECT_NO_THROW((void)equilibrium::generalised_alpha(0));
-    EXPECT_NO_THROW((void)equilibrium::generalised_alpha(1));
-    EXPECT_NO_THROW((void)equilibrium::hht(-1. / 3));
-    EXPECT_NO_THROW((void)equilibrium::hht(0));
+    for (const double rho : {-1e-9, 1 + 1e-9, nan}) EXPECT_THROW((void)generalised_alpha(rho), std::invalid_argument);
+    for (const double alpha : {-1. / 3 - 1e-9, 1e-9, nan}) EXPECT_THROW((void)hht(alpha), std::invalid_argument);
+    for (const double beta : {0., -0.1, nan}) EXPECT_THROW((void)newmark(beta, 0.5), std::invalid_argument);
+    for (const double gamma : {0.5 - 1e-9, nan}) EXPECT_THROW((void)newmark(0.25, gamma), std::invalid_argument);
+    EXPECT_NO_THROW((void)generalised_alpha(0));
+    EXPECT_NO_THROW((void)generalised_alpha(1));
+    EXPECT_NO_THROW((void)hht(-1. / 3));
+    EXPECT_NO_THROW((void)hht(0));
 }
 
 TEST(Integrator, NamesMeetWhereTheMethodsDo) {
-    const Integrator a = equilibrium::hht(0), b = equilibrium::newmark(0.25, 0.5),
-                     c = equilibrium::generalised_alpha(1);
+    const Integrator a = hht(0), b = newmark(0.25, 0.5), c = generalised_alpha(1);
     EXPECT_EQ(a.beta, b.beta);
     EXPECT_EQ(a.gamma, b.gamma);
     EXPECT_EQ(a.alpha_f, b.alpha_f);
@@ -301,7 +294,7 @@ TEST(Integrator, NamesMeetWhereTheMethodsDo) {
     EXPECT_EQ(c.gamma, b.gamma);
     EXPECT_EQ(c.alpha_f, 0.5);
     EXPECT_EQ(c.alpha_m, 0.5);
-    const Integrator d = equilibrium::generalised_alpha(0.5);
+    const Integrator d = generalised_alpha(0.5);
     EXPECT_DOUBLE_EQ(d.alpha_m, 0);
     EXPECT_DOUBLE_EQ(d.alpha_f, 1. / 3);
     EXPECT_DOUBLE_EQ(d.gamma, 5. / 6);

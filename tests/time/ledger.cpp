@@ -33,7 +33,7 @@ contact:
 gravity: [0 m/s^2, 0 m/s^2, -10 m/s^2]
 stages:
   slide:
-    analysis: {dynamic: {integrator: {equilibrium::generalised_alpha: {rho_inf: 0.5}}, mass_damping: 2 Hz, stiffness_damping: 1 ms}}
+    analysis: {dynamic: {integrator: {generalised_alpha: {rho_inf: 0.5}}, mass_damping: 2 Hz, stiffness_damping: 1 ms}}
     duration: 0.1 s
     steps: 20
     control: {step_size: fixed}

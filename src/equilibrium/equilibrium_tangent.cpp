@@ -37,7 +37,7 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
                                        ContactTerm& contact, const Iterate& at, const TangentChoice& choice,
                                        Timings& timings, int threads)
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact), at_(at),
-      timings_(timings), threads_(threads), may_buckle_(model.finite_strain != nullptr),
+      timings_(timings), may_buckle_(model.finite_strain != nullptr),
       products_(goes_by_products(model, choice.linear)) {
     const linear::BlockMatrix& K = bodies_.bodies().tangent();
     for (Index j = 0; j < unknowns.couplings(); ++j) couplings_.push_back({unknowns.slave(j), {}});
@@ -54,7 +54,7 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
     std::vector<Index> slaves;
     for (const linear::Coupling& c : couplings_) slaves.push_back(c.slave);
     condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, contact_nodes(model),
-                                                            std::move(slaves), threads_);
+                                                            std::move(slaves), threads);
 }
 
 void EquilibriumTangent::begin(double dt, bool changed) {

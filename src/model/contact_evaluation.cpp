@@ -16,7 +16,7 @@ constexpr double held_stick_stiffness = 100;
 ContactEvaluation::ContactEvaluation(const ContactPair& pair)
     : pair_(&pair), discretisation_(pair.discretisation().clone()), search_(pair.search()), master_(pair.master()),
       inertia_(pair.slaves().node.size(), 0.0), held_(inertia_.size(), 0), points_(inertia_.size()),
-      point_nodes_(inertia_.size()) {
+      states_(inertia_.size()), point_nodes_(inertia_.size()) {
     tracking_.hysteresis = pair.options().hysteresis;
     tracking_.changes_before_latch = pair.options().changes_before_latch;
     tracking_.facet.assign(inertia_.size(), -1);
@@ -29,7 +29,8 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
       master_(other.master_), inertia_(other.inertia_), held_(other.held_), lambda_start_(other.lambda_start_),
       start_(other.start_), now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_),
       vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), tracking_(other.tracking_),
-      points_(other.points_), point_nodes_(other.point_nodes_), facet_changes_(other.facet_changes_) {
+      points_(other.points_), states_(other.states_), point_nodes_(other.point_nodes_),
+      facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -119,6 +120,10 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
         if (!points_[j].found) continue;
         for (const Index v : points_[j].nodes) point_nodes_[j].push_back(pair_->node(v));
     }
+    const contact::PairPositions at = positions();
+    parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j) states_[j] = measure(j, at);
+    });
 }
 
 double ContactEvaluation::least_gap() const {
@@ -175,12 +180,12 @@ Vec3 ContactEvaluation::drift(Index j, const std::vector<Vec3>& from, const std:
     });
 }
 
-contact::ContactState ContactEvaluation::state(Index j, const Vec3& lambda) const {
+contact::ContactState ContactEvaluation::measure(Index j, const contact::PairPositions& at) const {
     const contact::ContactPoint& point = points_[j];
     const bool rubs = pair_->options().friction > 0;
-    contact::ContactState state{lambda, point.gap, point.normal, rubs ? drift(j) : Vec3(Vec3::Zero())};
+    contact::ContactState state{Vec3::Zero(), point.gap, point.normal, rubs ? drift(j) : Vec3(Vec3::Zero())};
     if (!point.found || tails_.slaves.empty()) return state;
-    state.gap += discretisation_->gap_rounded_off(j, positions(), point);
+    state.gap += discretisation_->gap_rounded_off(j, at, point);
     if (rubs && !tails_start_.slaves.empty()) state.drift += drift(j, tails_start_, tails_);
     return state;
 }

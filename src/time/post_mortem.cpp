@@ -195,7 +195,6 @@ PostMortem examine(const FailedAttempt& failed, equilibrium::Equilibrium& equili
     found.last_time = failed.last.time;
     found.dt = attempt.dt;
     found.smallest_dt = limits.dt_min;
-    constexpr double same_step = 1e-6; // as in judge()
     const bool hopeless = failed.result.adrift >= 0;
     found.limit = hopeless ? "no smaller step would help"
                   : attempt.dt <= limits.dt_min * (1 + same_step)

@@ -127,7 +127,6 @@ StepAttempt StageRun::prepare() {
 
 bool StageRun::wants_trial(const StepAttempt& attempt) const {
     // the default of statics costs nothing where steps are easy
-    constexpr double same_step = 1e-6;
     const StepLimits& limits = stage_.limits;
     const bool easy = limits.usual_bound && repeats_ == 0 && attempt.proposed >= limits.dt_max * (1 - same_step);
     return bounded_ && !attempt.forced && !easy;

@@ -103,7 +103,7 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
 /// dt after an accepted step: larger after an easy one only, and not beyond what the time error admits.
 double next_step(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats) {
     double factor = 1;
-    if (repeats == 0 && !evidence.forced && evidence.iterations <= limits.easy_iterations) factor = limits.growth;
+    if (repeats == 0 && evidence.iterations <= limits.easy_iterations) factor = limits.growth;
     if (evidence.local_error > 0) {
         const double admitted = limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error);
         factor = std::min(factor, std::max(admitted, 1.0));
@@ -118,7 +118,6 @@ double next_step(const StepEvidence& evidence, const StepLimits& limits, double 
 } // namespace
 
 bool cannot_be_cut(const StepLimits& limits, double dt, int repeats) {
-    constexpr double same_step = 1e-6; // relative; above what fit_to() stretches a step by
     return dt <= limits.dt_min * (1 + same_step) || repeats >= limits.most_repeats;
 }
 
@@ -189,8 +188,8 @@ std::vector<double> corners_between(std::vector<double> corners, double t_start,
 }
 
 FittedStep fit_to(double t, double dt, std::span<const double> targets) {
-    constexpr double same_time = 1e-12; // relative; sums of some thousand steps differ by less
-    constexpr double same_step = 1e-9;  // relative; what a step is stretched rather than leave a sliver
+    constexpr double same_time = 1e-12;   // relative; sums of some thousand steps differ by less
+    constexpr double most_stretch = 1e-9; // relative; what a step is stretched rather than leave a sliver
     const auto after = [](double later, double earlier) {
         return later - earlier > same_time * std::max(std::abs(later), std::abs(earlier));
     };
@@ -198,7 +197,7 @@ FittedStep fit_to(double t, double dt, std::span<const double> targets) {
     if (next == targets.end()) return {dt, t + dt, false};
     const auto beyond = std::find_if(next, targets.end(), [&](double target) { return after(target, *next); });
     const double target = *(beyond - 1), left = target - t;
-    if (std::abs(left - dt) <= dt * same_step) return {dt, target, true}; // equal steps stay equal, bit by bit
+    if (std::abs(left - dt) <= dt * most_stretch) return {dt, target, true}; // equal steps stay equal, bit by bit
     if (left < dt) return {left, target, true};
     if (left < 2 * dt) dt = 0.5 * left;
     return {dt, t + dt, false};

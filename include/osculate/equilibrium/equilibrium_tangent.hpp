@@ -69,7 +69,6 @@ private:
     ContactTerm& contact_;
     const Iterate& at_;
     Timings& timings_;
-    int threads_;
     bool may_buckle_, products_;                               ///< products_: the tangent goes by what it does
     std::vector<linear::Coupling> couplings_, kept_couplings_; ///< pattern of the matrix; at the last commit
     long patterns_built_ = 0, kept_patterns_ = 0;

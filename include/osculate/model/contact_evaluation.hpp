@@ -50,7 +50,11 @@ public:
     [[nodiscard]] Vec3 drift(Index j) const { return drift(j, start_, now_); }
     /// What the law needs to know, from differences of displacements and of reference positions: how far the bodies are from
     /// the origin changes nothing. Without friction no drift.
-    [[nodiscard]] contact::ContactState state(Index j, const Vec3& lambda) const;
+    [[nodiscard]] contact::ContactState state(Index j, const Vec3& lambda) const {
+        contact::ContactState state = states_[j];
+        state.lambda = lambda;
+        return state;
+    }
     /// c of the complementarity function of slave j, N/m: stiffness and, in dynamics, what inertia adds to it.
     [[nodiscard]] double stiffness(Index j) const { return pair_->slaves().stiffness[j] + inertia_[j]; }
     /// Inertia of the slave nodes, N/m: mass over the square of the time step, more or less.
@@ -102,6 +106,8 @@ private:
     [[nodiscard]] const Vec3& at(const Places& places, Index vertex) const;
     [[nodiscard]] contact::PairPositions positions() const;
     void place(const std::vector<Vec3>& x, const std::vector<Vec3>& tails);
+    /// state() of slave j but for the force.
+    [[nodiscard]] contact::ContactState measure(Index j, const contact::PairPositions& at) const;
     [[nodiscard]] const Mat3& image(Index j, Index i) const { return pair_->image(points_[j].nodes[i]); }
     [[nodiscard]] Vec3 drift(Index j, const Places& from, const Places& to) const;
     /// From the slave's motion and moved(vertex), those of the master's nodes.
@@ -119,6 +125,7 @@ private:
     std::vector<Vec3> vertices_, vertex_tails_; ///< of the master surface, now
     contact::FacetTracking tracking_;
     std::vector<contact::ContactPoint> points_;
+    std::vector<contact::ContactState> states_; ///< without forces
     std::vector<std::vector<Index>> point_nodes_;
     int facet_changes_ = 0;
 };

@@ -32,6 +32,9 @@ struct GapEvidence {
     double length = 1; ///< unit of StepLimits::allowed_interpenetration here, m
 };
 
+/// Steps whose lengths differ by less, relatively, are the same: above what fit_to() stretches a step by.
+inline constexpr double same_step = 1e-6;
+
 /// What is known of an attempt. The defaults speak against nothing, so that a trial can be judged by its gaps alone
 /// before the equilibrium with contact is solved, and the whole step once more afterwards.
 struct StepEvidence {

@@ -96,7 +96,7 @@ private:
                std::to_string(steps) + " instead of " + number(failed_.stage.steps) +
                    ", so that every step asks for less");
     }
-    [[nodiscard]] bool at_smallest() const { return found_.dt <= found_.smallest_dt * (1 + 1e-6); }
+    [[nodiscard]] bool at_smallest() const { return found_.dt <= found_.smallest_dt * (1 + time::same_step); }
 
     /// The same where it is known by how much: nothing where a run would not come to its end with such steps.
     /// @param share  of the last attempt's step that would do

@@ -169,6 +169,17 @@ TEST_F(Ladder, EndsAtTheIterateThatRests) {
     EXPECT_EQ(z, equilibrium->last_iterate());
 }
 
+/// Round-off is some last digits: what is off by more is no equilibrium, however small it is.
+TEST_F(Ladder, HoldsWithinItsLastDigitsAlone) {
+    constexpr double none = 1e-30; // tolerance
+    ladder.tolerance = none;
+    Vector z = start;
+    ASSERT_TRUE(solve_trial(*equilibrium, *solver, z, all, ladder).converged());
+    EXPECT_TRUE(equilibrium->holds(z, all, none));
+    const Vector beside = (1 + 1e-10) * z;
+    EXPECT_FALSE(equilibrium->holds(beside, all, none));
+}
+
 /// A cap that is pulled off meets nothing: it is told so, and no springs are left for the next attempt to lean on.
 TEST_F(Ladder, TakesItsSpringsAwayFromABodyThatNothingHolds) {
     load.force.assign(load.force.size(), Vec3::Zero());

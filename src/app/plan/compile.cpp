@@ -218,6 +218,28 @@ private:
         }
     }
 
+    [[nodiscard]] time::StepLimits step_limits(const scene::Stage& spec, bool dynamic) const {
+        time::StepLimits limits;
+        constexpr double in_dynamics = 0.05, in_statics = 0.5; // of the facet size
+        const scene::RelativeLength g_p = spec.control.allowed_interpenetration.value_or(
+            scene::RelativeLength{dynamic ? in_dynamics : in_statics, false});
+        limits.allowed_interpenetration = g_p.value;
+        limits.in_metres = g_p.metres;
+        limits.usual_bound = !dynamic && !spec.control.allowed_interpenetration;
+        if (spec.control.error_tolerance) limits.error_tolerance = *spec.control.error_tolerance;
+        if (dynamic) limits.energy_tolerance = spec.control.energy_tolerance;
+        if (dynamic && spec.control.step_size == scene::StepSize::controlled) {
+            if (!spec.control.error_tolerance) limits.velocity_error = spec.control.velocity_error;
+            limits.closing_energy = spec.control.closing_energy;
+        }
+        if (audited()) limits.audited_depth = scene_.solver.audited_depth;
+        limits.dt_max = spec.duration / spec.steps;
+        limits.dt_min = scene_.solver.smallest_step * limits.dt_max;
+        limits.growth = spec.control.growth;
+        limits.easy_iterations = scene_.solver.max_iterations;
+        return limits;
+    }
+
     /// Held directions of every stage and external forces at its ends.
     void add_stages() {
         Driving now;          // keeps its values in later stages
@@ -234,24 +256,8 @@ private:
                                           analysis->mass_damping, analysis->stiffness_damping};
             }
             const bool dynamic = stage.dynamics.has_value();
-            constexpr double in_dynamics = 0.05, in_statics = 0.5; // of the facet size
-            const scene::RelativeLength g_p = spec.control.allowed_interpenetration.value_or(
-                scene::RelativeLength{dynamic ? in_dynamics : in_statics, false});
-            stage.limits.allowed_interpenetration = g_p.value;
-            stage.limits.in_metres = g_p.metres;
-            stage.limits.usual_bound = !dynamic && !spec.control.allowed_interpenetration;
-            if (spec.control.error_tolerance) stage.limits.error_tolerance = *spec.control.error_tolerance;
-            if (dynamic) stage.limits.energy_tolerance = spec.control.energy_tolerance;
-            if (dynamic && spec.control.step_size == scene::StepSize::controlled) {
-                if (!spec.control.error_tolerance) stage.limits.velocity_error = spec.control.velocity_error;
-                stage.limits.closing_energy = spec.control.closing_energy;
-            }
+            stage.limits = step_limits(spec, dynamic);
             stage.follow_paths = dynamic && !scene_.contact.empty();
-            if (audited()) stage.limits.audited_depth = scene_.solver.audited_depth;
-            stage.limits.dt_max = spec.duration / spec.steps;
-            stage.limits.dt_min = scene_.solver.smallest_step * stage.limits.dt_max;
-            stage.limits.growth = spec.control.growth;
-            stage.limits.easy_iterations = scene_.solver.max_iterations;
             const Driving before = now;
             now.update(spec);
             CourseList courses(stage.courses);

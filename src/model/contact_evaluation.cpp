@@ -34,14 +34,12 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
-ContactEvaluation::Places ContactEvaluation::gather(const std::vector<Vec3>& field) const {
-    Places places;
-    if (field.empty()) return places;
-    places.slaves.reserve(pair_->slaves().node.size());
-    places.masters.reserve(pair_->master_nodes().size());
-    for (const Index node : pair_->slaves().node) places.slaves.push_back(field[node]);
-    for (const Index node : pair_->master_nodes()) places.masters.push_back(field[node]);
-    return places;
+void ContactEvaluation::gather(const std::vector<Vec3>& field, Places& into) const {
+    into.slaves.clear();
+    into.masters.clear();
+    if (field.empty()) return;
+    for (const Index node : pair_->slaves().node) into.slaves.push_back(field[node]);
+    for (const Index node : pair_->master_nodes()) into.masters.push_back(field[node]);
 }
 
 const Vec3& ContactEvaluation::at(const Places& places, Index vertex) const {
@@ -50,8 +48,8 @@ const Vec3& ContactEvaluation::at(const Places& places, Index vertex) const {
 }
 
 void ContactEvaluation::place(const std::vector<Vec3>& x, const std::vector<Vec3>& tails) {
-    now_ = gather(x);
-    tails_ = gather(tails);
+    gather(x, now_);
+    gather(tails, tails_);
     vertices_ = now_.masters;
     vertex_tails_ = tails_.masters;
     if (!pair_->mirrored()) return;
@@ -264,8 +262,8 @@ void ContactEvaluation::master_force_along(Index j, const Vec3& lambda, const co
 }
 
 void ContactEvaluation::follow_master(Index j, std::vector<Index>& nodes, std::vector<Mat3>& follow) const {
-    std::vector<Index> vertices;
-    std::vector<double> shares;
+    static thread_local std::vector<Index> vertices;
+    static thread_local std::vector<double> shares;
     discretisation_->follow(hit(j), points_[j], carriers(j), vertices, shares);
     nodes.clear();
     follow.clear();

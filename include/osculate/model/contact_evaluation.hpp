@@ -102,7 +102,8 @@ private:
     struct Places {
         std::vector<Vec3> slaves, masters;
     };
-    [[nodiscard]] Places gather(const std::vector<Vec3>& field) const;
+    /// Takes them from a field; none from an empty one.
+    void gather(const std::vector<Vec3>& field, Places& into) const;
     [[nodiscard]] const Vec3& at(const Places& places, Index vertex) const;
     [[nodiscard]] contact::PairPositions positions() const;
     void place(const std::vector<Vec3>& x, const std::vector<Vec3>& tails);

@@ -151,7 +151,7 @@ void Equilibrium::record(const double* F) {
 }
 
 bool Equilibrium::at_round_off(const double* F) const {
-    /// How much round-off a sum may gather, of the sum of the absolute values of its terms: a few last digits.
+    // How much round-off a sum may gather, of the sum of the absolute values of its terms: a few last digits
     constexpr double last_digits = 10 * std::numeric_limits<double>::epsilon();
     std::vector<Vec3> sums(at_.u.size(), Vec3::Zero());
     for (const Term* term : terms_) {

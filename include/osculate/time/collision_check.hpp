@@ -36,7 +36,7 @@ public:
 
     /// Locates every slave node at the accepted state a step starts from.
     void begin_step(const model::State& state);
-    /// Adds what there is to say of a trial that leads to displacements u, at which the pairs have been evaluated last.
+    /// Adds what there is to say of a trial that leads to displacements u, at which contact has been evaluated last.
     void add_trial(const std::vector<Vec3>& u, StepEvidence& evidence);
     /// The same for a solution with contact, whose gaps need no proof.
     void add_solution(const std::vector<Vec3>& u, StepEvidence& evidence);

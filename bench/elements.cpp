@@ -8,7 +8,7 @@
 namespace osculate::bench {
 namespace {
 
-void stiffness(benchmark::State& state, mesh::CellType type, fe::HexFormulation formulation) {
+void stiffness(benchmark::State& state, mesh::CellType type, HexFormulation formulation) {
     const auto kernel = fe::make_kernel(type, formulation, {30e6, 0.2});
     const mesh::Mesh mesh = mesh::make_half_tube(3, 1, 12, {13, 12, 1}, type);
     const mesh::ElementBlock& block = mesh.blocks.at(0);
@@ -25,7 +25,7 @@ void stiffness(benchmark::State& state, mesh::CellType type, fe::HexFormulation 
 }
 
 using mesh::CellType;
-using enum fe::HexFormulation;
+using enum HexFormulation;
 BENCHMARK_CAPTURE(stiffness, hex8_full, CellType::hex8, full);
 BENCHMARK_CAPTURE(stiffness, hex8_b_bar, CellType::hex8, b_bar);
 BENCHMARK_CAPTURE(stiffness, hex8_incompatible_modes, CellType::hex8, incompatible_modes);

@@ -25,7 +25,7 @@ struct Block {
         model.X = mesh.nodes;
         model::Body& body = model.bodies.emplace_back();
         body.mesh = std::move(mesh);
-        body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, fe::HexFormulation::full, {1e8, 0.3}));
+        body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, HexFormulation::full, {1e8, 0.3}));
         model.K = model::assemble_stiffness(model.bodies, model.nodes());
         constraints = std::make_unique<linear::Constraints>(model.nodes(), held);
         stiffness = std::make_unique<linear::PenaltyStiffness>(*constraints, model.K);

@@ -236,7 +236,7 @@ private:
                                     "nodes that cover no facet of their body cannot be slaves");
                         continue;
                     }
-                    if (of_tet10(a, pair.slave) || of_tet10(b, pair.master)) {
+                    if (of_six_node_faces(a, pair.slave) || of_six_node_faces(b, pair.master)) {
                         model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
                                     "faces of C3D10 are in no contact: mesh the body with C3D4");
                         continue;
@@ -277,9 +277,9 @@ private:
         return facets;
     }
 
-    bool of_tet10(std::size_t body, const std::string& key) const {
+    bool of_six_node_faces(std::size_t body, const std::string& key) const {
         return std::ranges::any_of(facets_of(body, key), [&](const mesh::Facet& facet) {
-            return bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)].type == mesh::CellType::tet10;
+            return !mesh::cell_info(bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)].type).edges.empty();
         });
     }
 

@@ -1,6 +1,6 @@
 #include "osculate/equilibrium/body_forces.hpp"
 
-#include "osculate/core/nodal_field.hpp"
+#include "osculate/core/field.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 namespace osculate::equilibrium {
 
 namespace {
-using Field = NodalField;
 
 bool damped(const Dynamics& dynamics) {
     return dynamics.mass_damping > 0 || dynamics.stiffness_damping > 0;
@@ -25,10 +24,9 @@ void add_damping(const model::Model& model, const Dynamics& dynamics, const Fiel
 void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model, const Field& u,
                          Field& f) {
     if (pressures.empty()) return;
-    Field x(u.size());
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = model.X[i] + u[i];
+    const Field x = sum(model.X, u);
     for (const FollowerLoad& load : pressures)
-        for (const mesh::SurfaceFace& face : *load.faces) fe::add_pressure_forces(face, x, load.start, f);
+        for (const mesh::SurfaceFace& face : *load.faces) fe::add_pressure_forces(face, x, load.start, f.values());
 }
 
 BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads)
@@ -45,16 +43,17 @@ void BodyForces::add_pressures(double factor, bool end, const Field& u, Field& f
 
 bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt) {
     pressures_ = std::move(pressures);
+    history_start_ = state.material;
+    if (dynamics_ != nullptr || !history_start_.empty()) u_start_ = state.u;
     if (dynamics_ == nullptr) return false;
     const Integrator& w = dynamics_->integrator;
-    u_start_ = state.u;
     v_start_ = state.v;
     a_start_ = state.a;
     const bool changed = dt != dt_;
     if (changed) {
         dt_ = dt;
         kinematics_ = kinematics(w, dt);
-        mean_ = {1 - w.alpha_f, dynamics_->stiffness_damping / dt};
+        mean_ = fe::StepMean{1 - w.alpha_f, dynamics_->stiffness_damping / dt};
         const double inertia = (1 - w.alpha_m) * kinematics_.by_u_acceleration, rest = 1 - w.alpha_f,
                      rate = rest * kinematics_.by_u_velocity;
         (varies() ? constant_ : tangent_)
@@ -67,7 +66,7 @@ bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pres
         const Vec3 a = kinematics_.acceleration(u_start_[i], u_start_[i], v_start_[i], a_start_[i]);
         by_M[i] = (1 - w.alpha_m) * a + w.alpha_m * a_start_[i];
     }
-    force_start_.assign(n, Vec3::Zero());
+    force_start_.reset(n);
     mass().multiply_add(by_M, force_start_, threads_);
     model_.K.multiply_add_relative(u_start_, force_start_, threads_);
     if (damped(*dynamics_)) {
@@ -103,9 +102,9 @@ void BodyForces::release() {
 model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
     model::WorstElement worst;
     if (dynamics_ == nullptr) {
-        f.assign(u.size(), Vec3::Zero());
+        f.reset(u.size());
         model_.K.multiply_add_relative(u, f, threads_);
-        if (nonlinear()) worst = model_.finite_strain->add_internal_force(model_.X, u, f, threads_);
+        if (nonlinear()) worst = model_.nonlinear->add_force(model_.X, step_to(u), f, threads_);
         if (follower_pressure_) add_pressures(-1, true, u, f);
         if (stabilised())
             for (std::size_t i = 0; i < f.size(); ++i)
@@ -115,7 +114,7 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
     f = force_start_;
     if (follower_pressure_) add_pressures(dynamics_->integrator.alpha_f - 1, true, u, f);
     (varies() ? constant_ : tangent_).multiply_add(weighted(1, u, -1, u_start_), f, threads_);
-    if (nonlinear()) worst = model_.finite_strain->add_step_force(model_.X, u_start_, u, mean_, f, threads_);
+    if (nonlinear()) worst = model_.nonlinear->add_force(model_.X, step_to(u), f, threads_);
     return worst;
 }
 
@@ -129,7 +128,7 @@ void BodyForces::add_terms(const Field& u, Field& terms) const {
     }
     // at finite strain stresses come of F = 1 + du/dX: the digits of the 1 are those of offsets between nodes
     for (const model::Body& body : model_.bodies) {
-        if (std::ranges::all_of(body.kernels, [](const auto& kernel) { return kernel->linear(); })) continue;
+        if (std::ranges::none_of(body.kernels, [](const auto& kernel) { return kernel->finite_strain(); })) continue;
         for (Index i = body.first_node; i < body.first_node + body.nodes(); ++i)
             for (Index k = A.row_begin(i); k < A.row_end(i); ++k) {
                 const auto j = static_cast<std::size_t>(A.column(k)), own = static_cast<std::size_t>(i);
@@ -142,14 +141,10 @@ bool BodyForces::linearise(const Field& u) {
     if (!varies()) return false;
     tangent_ = constant_;
     if (stabilised()) add_springs(tangent_);
-    if (nonlinear() && dynamics_ == nullptr)
-        model_.finite_strain->add_tangent(model_.X, u, tangent_, threads_);
-    else if (nonlinear())
-        model_.finite_strain->add_step_tangent(model_.X, u_start_, u, mean_, tangent_, threads_);
+    if (nonlinear()) model_.nonlinear->add_tangent(model_.X, step_to(u), tangent_, threads_);
     if (!follower_pressure_) return true;
     const double factor = dynamics_ != nullptr ? dynamics_->integrator.alpha_f - 1 : -1;
-    Field x(u.size());
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = model_.X[i] + u[i];
+    const Field x = sum(model_.X, u);
     for (const FollowerLoad& load : pressures_)
         for (const mesh::SurfaceFace& face : *load.faces)
             tangent_.add({face.begin(), face.end()}, fe::pressure_tangent(face, x, factor * load.end));
@@ -157,10 +152,13 @@ bool BodyForces::linearise(const Field& u) {
 }
 
 void BodyForces::complete(model::State& state) const {
+    if (!history_start_.empty()) state.material = model_.nonlinear->history(model_.X, step_to(state.u), threads_);
     if (dynamics_ == nullptr) return;
+    state.v.reset(state.u.size());
+    state.a.reset(state.u.size());
     for (std::size_t i = 0; i < state.u.size(); ++i) {
-        state.v.push_back(kinematics_.velocity(state.u[i], u_start_[i], v_start_[i], a_start_[i]));
-        state.a.push_back(kinematics_.acceleration(state.u[i], u_start_[i], v_start_[i], a_start_[i]));
+        state.v[i] = kinematics_.velocity(state.u[i], u_start_[i], v_start_[i], a_start_[i]);
+        state.a[i] = kinematics_.acceleration(state.u[i], u_start_[i], v_start_[i], a_start_[i]);
     }
 }
 
@@ -175,35 +173,37 @@ BodyWork BodyForces::work(const model::State& state) const {
     const Integrator& w = dynamics_->integrator;
     const Field Du = weighted(1, state.u, -1, u_start_);
     BodyWork work;
-    Field f(Du.size(), Vec3::Zero());
+    Field f(Du.size());
     mass().multiply_add(weighted(1 - w.alpha_m, state.a, w.alpha_m, a_start_), f, threads_);
     work.inertia = dot(Du, f);
 
-    f.assign(f.size(), Vec3::Zero());
+    f.reset(f.size());
     model_.K.multiply_add_relative(weighted(1 - w.alpha_f, state.u, w.alpha_f, u_start_), f, threads_);
-    const auto add_step = [&](const fe::StepMean& mean) {
-        (void)model_.finite_strain->add_step_force(model_.X, u_start_, state.u, mean, f, threads_);
+    const auto add_step = [&](double viscosity) {
+        model::BodyStep step = step_to(state.u);
+        step.mean->viscosity = viscosity;
+        (void)model_.nonlinear->add_force(model_.X, step, f, threads_);
     };
-    if (nonlinear()) add_step({mean_.end_weight, 0});
+    if (nonlinear()) add_step(0);
     work.internal = dot(Du, f);
 
     if (follower_pressure_) {
-        f.assign(f.size(), Vec3::Zero());
+        f.reset(f.size());
         add_pressures(1 - w.alpha_f, true, state.u, f);
         add_pressures(w.alpha_f, false, u_start_, f);
         work.follower = dot(Du, f);
     }
 
     if (!damped(*dynamics_)) return work;
-    f.assign(f.size(), Vec3::Zero());
+    f.reset(f.size());
     add_damping(model_, *dynamics_, weighted(1 - w.alpha_f, state.v, w.alpha_f, v_start_), f, threads_);
     work.damping = dot(Du, f);
-    if (nonlinear() && mean_.viscosity > 0) { // what the viscous stress adds
-        f.assign(f.size(), Vec3::Zero());
-        add_step(mean_);
+    if (nonlinear() && mean_->viscosity > 0) { // what the viscous stress adds
+        f.reset(f.size());
+        add_step(mean_->viscosity);
         work.damping += dot(Du, f);
-        f.assign(f.size(), Vec3::Zero());
-        add_step({mean_.end_weight, 0});
+        f.reset(f.size());
+        add_step(0);
         work.damping -= dot(Du, f);
     }
     return work;
@@ -211,7 +211,7 @@ BodyWork BodyForces::work(const model::State& state) const {
 
 Field BodyForces::outer_forces(const model::State& state) const {
     if (dynamics_ == nullptr && !follower_pressure_) return {};
-    Field f(state.u.size(), Vec3::Zero());
+    Field f(state.u.size());
     if (dynamics_ == nullptr) {
         add_pressures(1, true, state.u, f);
         return f;
@@ -228,7 +228,7 @@ Field BodyForces::outer_forces(const model::State& state) const {
 }
 
 Field body_forces(const model::Model& model, const Dynamics& dynamics, const model::State& state, int threads) {
-    Field f = model::internal_force(model, state.u, threads);
+    Field f = model::internal_force(model, state.at_rest(), threads);
     add_damping(model, dynamics, state.v, f, threads);
     return f;
 }

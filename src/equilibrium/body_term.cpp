@@ -5,7 +5,7 @@ namespace osculate::equilibrium {
 BodyTerm::BodyTerm(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, Timings& timings,
                    int threads)
     : bodies_(model, dynamics, follower_pressure, threads), timings_(timings), threads_(threads),
-      finite_strain_(model.finite_strain != nullptr), internal_(model.X.size(), Vec3::Zero()) {}
+      nonlinear_(model.nonlinear != nullptr), internal_(model.X.size()) {}
 
 bool BodyTerm::begin(const model::State& state, const Iterate&, const StepLoad& load, double dt) {
     const ScopedTimer timer(timings_, Part::assembly);
@@ -15,20 +15,18 @@ bool BodyTerm::begin(const model::State& state, const Iterate&, const StepLoad& 
 bool BodyTerm::evaluate(const Iterate& at) {
     const ScopedTimer timer(timings_, Part::assembly);
     linearised_ = !linear_about_.empty() && linear_about_ != at.u;
-    const std::vector<Vec3>& u = linearised_ ? linear_about_ : at.u;
+    const Field& u = linearised_ ? linear_about_ : at.u;
     worst_element_ = bodies_.evaluate(u, internal_);
     if (linearised_ && worst_element_.admissible()) {
         bodies_.linearise(u);
-        std::vector<Vec3> rest(u.size());
-        for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = at.u[i] - u[i];
-        bodies_.tangent().multiply_add(rest, internal_, threads_);
+        bodies_.tangent().multiply_add(weighted(1, at.u, -1, u), internal_, threads_);
     }
     linear_about_.clear();
     return worst_element_.admissible();
 }
 
-void BodyTerm::add_forces(std::vector<Vec3>& f) const {
-    for (std::size_t i = 0; i < f.size(); ++i) f[i] += internal_[i];
+void BodyTerm::add_forces(Field& f) const {
+    f.add(1, internal_);
 }
 
 bool BodyTerm::update_stiffness(const Iterate& at) {
@@ -36,11 +34,11 @@ bool BodyTerm::update_stiffness(const Iterate& at) {
     return linearised_ || bodies_.linearise(at.u);
 }
 
-void BodyTerm::add_product(const Direction& d, std::vector<Vec3>& f, double*) {
+void BodyTerm::add_product(const Direction& d, Field& f, VectorRef) {
     bodies_.tangent().multiply_add(d.u, f, threads_);
 }
 
-void BodyTerm::complete(const double*, model::State& state) const {
+void BodyTerm::complete(const ConstVectorRef&, model::State& state) const {
     bodies_.complete(state);
 }
 
@@ -49,11 +47,11 @@ bool LoadTerm::begin(const model::State&, const Iterate&, const StepLoad& load, 
     return false;
 }
 
-void LoadTerm::add_forces(std::vector<Vec3>& f) const {
-    for (std::size_t i = 0; i < f.size(); ++i) f[i] -= force_[i];
+void LoadTerm::add_forces(Field& f) const {
+    f.add(-1, force_);
 }
 
-void LoadTerm::add_magnitudes(const Iterate&, std::vector<Vec3>& sums) const {
+void LoadTerm::add_magnitudes(const Iterate&, Field& sums) const {
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += force_[i].cwiseAbs();
 }
 

@@ -51,16 +51,15 @@ double ContactTerm::least_gap() const {
     return least;
 }
 
-Vec3 ContactTerm::force(const double* z, Index coupling) const {
-    const double* const local = z + unknowns_.multiplier(coupling);
-    return constraints_.to_global(unknowns_.slave(coupling), Vec3(local[0], local[1], local[2]));
+Vec3 ContactTerm::force(const ConstVectorRef& z, Index coupling) const {
+    return constraints_.to_global(unknowns_.slave(coupling), Vec3(z.segment<3>(unknowns_.multiplier(coupling))));
 }
 
-void ContactTerm::pack(const std::vector<model::ContactHistory>& contact, double* z) const {
+void ContactTerm::pack(const std::vector<model::ContactHistory>& contact, VectorRef z) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (std::size_t j = 0; j < contact[p].lambda.size(); ++j) {
             const Index coupling = first_[p] + static_cast<Index>(j);
-            Eigen::Map<Vec3>(z + unknowns_.multiplier(coupling)) =
+            z.segment<3>(unknowns_.multiplier(coupling)) =
                 constraints_.to_local(unknowns_.slave(coupling), contact[p].lambda[j]);
         }
 }
@@ -73,7 +72,7 @@ bool ContactTerm::begin(const model::State& state, const Iterate& at, const Step
 
 bool ContactTerm::evaluate(const Iterate& at) {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
-        for (Index j = 0; j < evaluations_[p].pair().size(); ++j) lambda_[p][j] = force(at.z, first_[p] + j);
+        for (Index j = 0; j < evaluations_[p].pair().size(); ++j) lambda_[p][j] = force(*at.z, first_[p] + j);
         evaluations_[p].evaluate(at.x, timings_, threads_, at.tail);
     }
     status_changes_ = 0;
@@ -117,13 +116,13 @@ contact::ContactResidual ContactTerm::law(std::size_t p, Index j) const {
     return evaluation.law(j).residual(evaluation.state(j, lambda_[p][j]), statuses_[p][j]);
 }
 
-void ContactTerm::add_forces(std::vector<Vec3>& f) const {
+void ContactTerm::add_forces(Field& f) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j)
             evaluations_[p].for_each_force(j, lambda_[p][j], [&](Index node, const Vec3& force) { f[node] -= force; });
 }
 
-Index ContactTerm::write_rows(double* F) const {
+Index ContactTerm::write_rows(VectorRef F) const {
     Index without_gap = -1;
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
@@ -142,7 +141,7 @@ Index ContactTerm::write_rows(double* F) const {
     return without_gap;
 }
 
-void ContactTerm::add_magnitudes(const Iterate&, std::vector<Vec3>& sums) const {
+void ContactTerm::add_magnitudes(const Iterate&, Field& sums) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j)
             evaluations_[p].for_each_force(j, lambda_[p][j],
@@ -175,7 +174,7 @@ Vec3 ContactTerm::law_magnitudes(const Iterate& at, std::size_t p, Index j) cons
     return constraints_.frame(slave).cwiseAbs().transpose() * terms;
 }
 
-bool ContactTerm::rows_within(const Iterate& at, const double* F, double share) const {
+bool ContactTerm::rows_within(const Iterate& at, const ConstVectorRef& F, double share) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
             const Vec3 sums = law_magnitudes(at, p, j);
@@ -189,7 +188,7 @@ bool ContactTerm::reaches(std::size_t p, Index j) const {
     return evaluations_[p].point(j).found && (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0));
 }
 
-void ContactTerm::complete(const double* z, model::State& state) const {
+void ContactTerm::complete(const ConstVectorRef& z, model::State& state) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         const model::ContactEvaluation& evaluation = evaluations_[p];
         model::ContactHistory history{std::vector<Vec3>(statuses_[p].size()), statuses_[p], evaluation.facets(),

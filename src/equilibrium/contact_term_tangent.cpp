@@ -83,7 +83,7 @@ void ContactTerm::linearise(const Iterate&) {
     }
 }
 
-void ContactTerm::add_product(const Direction& d, std::vector<Vec3>& f, double* y) {
+void ContactTerm::add_product(const Direction& d, Field& f, VectorRef y) {
     const auto moved = [&](Index node) -> const Vec3& { return d.u[node]; };
     const auto add = [&](Index node, const Vec3& force) { f[node] += force; };
     product_on_.resize(bearing_.size());

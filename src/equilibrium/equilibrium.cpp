@@ -20,14 +20,13 @@ std::vector<Index> slaves_of(const model::Model& model) {
 } // namespace
 
 Equilibrium::Equilibrium(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics,
-                         Timings& timings, int threads, bool follower_pressure, linear::LinearSolver linear)
+                         const TangentChoice& choice, Timings& timings, int threads, bool follower_pressure)
     : model_(model), constraints_(constraints), unknowns_(constraints, slaves_of(model)), timings_(timings),
       bodies_(model, dynamics, follower_pressure, timings, threads),
       contact_(model, constraints, unknowns_, timings, threads), terms_{&bodies_, &loads_, &contact_},
-      tangent_(model, constraints, unknowns_, terms_, bodies_, contact_, at_,
-               {linear, dynamics != nullptr, follower_pressure}, timings, threads),
-      factorisable_(may_factorise(model, linear)) {
-    at_.u.assign(model.X.size(), Vec3::Zero());
+      tangent_(model, constraints, unknowns_, terms_, bodies_, contact_, at_, choice, timings, threads),
+      factorisable_(choice.factorisable) {
+    at_.u.reset(model.X.size());
     at_.x = at_.tail = unbalanced_ = at_.u;
 }
 
@@ -69,37 +68,37 @@ void Equilibrium::place() {
     for (std::size_t i = 0; i < at_.x.size(); ++i) at_.tail[i] = rounded_off(model_.X[i], at_.u[i], at_.x[i]);
 }
 
-void Equilibrium::unpack(const double* z) {
-    constraints_.scatter(z, prescribed_, at_.u);
-    at_.z = z;
+void Equilibrium::unpack() {
+    constraints_.scatter(last_z_, prescribed_, at_.u);
+    at_.z = &last_z_;
     place();
 }
 
-Vector Equilibrium::unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const {
+Vector Equilibrium::unknowns(const Field& u, const std::vector<model::ContactHistory>& contact) const {
     Vector z(size());
-    constraints_.gather(u, z.data());
-    contact_.pack(contact, z.data());
+    constraints_.gather(u, z);
+    contact_.pack(contact, z);
     return z;
 }
 
-std::vector<Vec3> Equilibrium::displacements(const Vector& z) const {
-    std::vector<Vec3> u(at_.u.size(), Vec3::Zero());
-    constraints_.scatter(z.data(), prescribed_, u);
+Field Equilibrium::displacements(const Vector& z) const {
+    Field u(at_.u.size());
+    constraints_.scatter(z, prescribed_, u);
     return u;
 }
 
 model::State Equilibrium::state(const Vector& z) const {
     model::State state;
     state.u = displacements(z);
-    for (const Term* term : terms_) term->complete(z.data(), state);
+    for (const Term* term : terms_) term->complete(z, state);
     return state;
 }
 
-solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* F) {
+solve::NonlinearProblem::Verdict Equilibrium::residual(const ConstVectorRef& z, VectorRef F) {
     rests_ = false;
     before_z_.swap(last_z_);
-    last_z_ = Eigen::Map<const Vector>(z, size());
-    unpack(z);
+    last_z_ = z;
+    unpack();
     for (Term* term : terms_)
         if (!term->evaluate(at_)) return Verdict::shorten;
     fill(F);
@@ -110,7 +109,7 @@ solve::NonlinearProblem::Verdict Equilibrium::residual(const double* z, double* 
     return round || rests_ ? Verdict::stop : Verdict::proceed;
 }
 
-void Equilibrium::fill(double* F) {
+void Equilibrium::fill(VectorRef F) {
     const ScopedTimer timer(timings_, Part::assembly);
     unbalanced_.assign(unbalanced_.size(), Vec3::Constant(-0.0)); // what the first sum begins with, sign and all
     Index without_value = -1;                                     // node
@@ -133,10 +132,10 @@ void Equilibrium::fill(double* F) {
     if (without_value >= 0) worst_node_ = without_value;
 }
 
-void Equilibrium::record(const double* F) {
+void Equilibrium::record(const ConstVectorRef& F) {
     IterationRecord line;
     line.iteration = static_cast<int>(records_.size());
-    line.residual = Eigen::Map<const Vector>(F, size()).norm() / reference_force_;
+    line.residual = F.norm() / reference_force_;
     line.status_changes = contact_.status_changes();
     for (std::size_t p = 0; p < statuses().size(); ++p) {
         for (const Status status : statuses()[p]) {
@@ -150,10 +149,10 @@ void Equilibrium::record(const double* F) {
     cycles_.note(statuses(), line.residual);
 }
 
-bool Equilibrium::at_round_off(const double* F) const {
+bool Equilibrium::at_round_off(const ConstVectorRef& F) const {
     // How much round-off a sum may gather, of the sum of the absolute values of its terms: a few last digits
     constexpr double last_digits = 10 * std::numeric_limits<double>::epsilon();
-    std::vector<Vec3> sums(at_.u.size(), Vec3::Zero());
+    Field sums(at_.u.size());
     for (const Term* term : terms_) {
         if (!term->rows_within(at_, F, last_digits)) return false;
         term->add_magnitudes(at_, sums);
@@ -171,9 +170,9 @@ bool Equilibrium::at_round_off(const double* F) const {
 bool Equilibrium::holds(const Vector& z, Statuses statuses, double tolerance) {
     set_statuses(std::move(statuses), StatusRule::frozen, false);
     Vector F(size());
-    if (residual(z.data(), F.data()) != Verdict::proceed) return false;
+    if (residual(z, F) != Verdict::proceed) return false;
     if (F.cwiseAbs().maxCoeff() <= tolerance * reference_force_) return true;
-    rests_ = at_round_off(F.data());
+    rests_ = at_round_off(F);
     return rests_;
 }
 

@@ -11,7 +11,7 @@ using linear::Constraints;
 
 namespace {
 /// Whether supports leave a body a rigid motion.
-bool loose(const model::Body& body, const std::vector<Vec3>& X, const Constraints& constraints) {
+bool loose(const model::Body& body, const Field& X, const Constraints& constraints) {
     model::RigidHold hold(body, X);
     for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
@@ -37,20 +37,19 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
                                        ContactTerm& contact, const Iterate& at, const TangentChoice& choice,
                                        Timings& timings, int threads)
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact), at_(at),
-      timings_(timings), may_buckle_(model.finite_strain != nullptr),
-      products_(goes_by_products(model, choice.linear)) {
+      timings_(timings), may_buckle_(model.nonlinear != nullptr),
+      products_(choice.products) {
     const linear::BlockMatrix& K = bodies_.bodies().tangent();
     for (Index j = 0; j < unknowns.couplings(); ++j) couplings_.push_back({unknowns.slave(j), {}});
     kept_couplings_ = couplings_;
-    const bool symmetric = bodies_.bodies().symmetric(), multigrid = goes_by_multigrid(model, choice.linear);
-    if (multigrid || ((!model.pairs.empty() || !symmetric) && choice.linear != linear::LinearSolver::direct))
+    if (choice.preconditioned)
         preconditioner_ = std::make_unique<linear::ContactPreconditioner>(
-            constraints_, K, multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
+            constraints_, K, choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
             [&model, threads] { return model::undeformed_stiffness(model, threads); });
-    if (!condenses(model, choice.linear, choice.follower_pressure)) return;
+    if (!choice.condensed) return;
     std::vector<linear::CondensedBody> condensed;
     for (const model::Body& body : model.bodies)
-        condensed.push_back({body.first_node, body.nodes(), !choice.dynamic && loose(body, model.X, constraints_)});
+        condensed.push_back({body.first_node, body.nodes(), !bodies_.bodies().dynamic() && loose(body, model.X, constraints_)});
     std::vector<Index> slaves;
     for (const linear::Coupling& c : couplings_) slaves.push_back(c.slave);
     condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, contact_nodes(model),
@@ -120,7 +119,7 @@ solve::FactorStatus EquilibriumTangent::factorise() {
     return preconditioner_->factorise(std::move(soft));
 }
 
-void EquilibriumTangent::precondition(const double* r, double* z) {
+void EquilibriumTangent::precondition(const ConstVectorRef& r, VectorRef z) {
     preconditioner_->apply(unknowns_, r, z);
 }
 
@@ -133,10 +132,10 @@ void EquilibriumTangent::linearise() {
     for (Term* term : terms_) term->linearise(at_);
 }
 
-void EquilibriumTangent::multiply(const double* x, double* y) {
-    std::vector<Vec3>&u = product_u_, &f = product_f_;
-    u.assign(at_.u.size(), Vec3::Zero());
-    f.assign(at_.u.size(), Vec3::Zero());
+void EquilibriumTangent::multiply(const ConstVectorRef& x, VectorRef y) {
+    Field&u = product_u_, &f = product_f_;
+    u.reset(at_.u.size());
+    f.reset(at_.u.size());
     for (Index node = 0; node < constraints_.nodes(); ++node) {
         Vec3 local = Vec3::Zero();
         for (int k = 0; k < 3; ++k)
@@ -152,23 +151,22 @@ void EquilibriumTangent::multiply(const double* x, double* y) {
     }
 }
 
-bool EquilibriumTangent::solve(const double* b, double* x, double allowed) {
+bool EquilibriumTangent::solve(const ConstVectorRef& b, VectorRef x, double allowed) {
     // condensation takes for granted that a body's solution balances: where displacements are large and forces small, round-off
     // is in the way, and only the tangent itself tells
     constexpr int most_corrections = 2;
     condensed_->set(contact_.bearing());
     const Index size = unknowns_.size();
-    Eigen::Map<Vector> solution(x, size);
-    Vector left = Eigen::Map<const Vector>(b, size), more(size), product(size);
-    solution.setZero();
+    Vector left = b, more(size), product(size);
+    x.setZero();
     for (int k = 0; k <= most_corrections; ++k) {
-        if (!condensed_->solve(unknowns_, contact_.open_laws(), left.data(), more.data(), allowed, timings_))
+        if (!condensed_->solve(unknowns_, contact_.open_laws(), left, more, allowed, timings_))
             return false;
         if (!more.allFinite()) return false;
-        solution += more;
+        x += more;
         const ScopedTimer timer(timings_, Part::solve);
-        multiply(x, product.data());
-        left = Eigen::Map<const Vector>(b, size) - product;
+        multiply(x, product);
+        left = b - product;
         if (left.norm() <= 2 * allowed) return true; // its own measure, and round-off
     }
     return false;
@@ -195,7 +193,7 @@ const solve::SparseMatrix& EquilibriumTangent::jacobian() {
             matrix_->stiffness_changed();
         }
         stale_matrix_ = false;
-        if (!contact) return matrix_->matrix(); // constant without finite strain: factorised once
+        if (!contact) return matrix_->matrix(); // constant without nonlinear elements: factorised once
         matrix_->reset();
     }
     for (Term* term : terms_) term->add_derivatives(*matrix_);

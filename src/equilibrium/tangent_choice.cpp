@@ -34,32 +34,36 @@ CondensationCost condensation_cost(const model::Model& model) {
     return cost;
 }
 
-bool goes_by_multigrid(const model::Model& model, linear::LinearSolver solver) {
+namespace {
+bool goes_by_multigrid(const model::Model& model, LinearSolver asked, bool condensable) {
     constexpr Index many = 20000;      // nodes from which cycles cost less than factors that serve one step
     constexpr Index very_many = 50000; // and less than those that condensation makes once
-    if (solver != linear::LinearSolver::automatic) return solver == linear::LinearSolver::multigrid;
-    const bool condensable = !model.finite_strain && condensation_cost(model).pays();
+    if (asked != LinearSolver::automatic) return asked == LinearSolver::multigrid;
     return model.nodes() > (condensable ? very_many : many);
 }
 
-bool may_factorise(const model::Model& model, linear::LinearSolver solver) {
-    constexpr Index most = 100000; // nodes: LU takes some 7 GB
-    return !goes_by_multigrid(model, solver) || model.nodes() <= most;
-}
-
-bool goes_by_products(const model::Model& model, linear::LinearSolver solver) {
-    if (goes_by_multigrid(model, solver)) return true;
+/// Not where LU wants a matrix, nor with so many slave nodes that their derivatives, held one by one, would take more memory.
+bool goes_by_products(const model::Model& model, LinearSolver asked) {
     constexpr Index most = 40000; // some 50 kB each on a smooth master
     Index slaves = 0;
     for (const auto& pair : model.pairs) slaves += pair->size();
-    return slaves > 0 && slaves <= most && solver != linear::LinearSolver::direct;
+    return slaves > 0 && slaves <= most && asked != LinearSolver::direct;
 }
+} // namespace
 
-bool condenses(const model::Model& model, linear::LinearSolver solver, bool follows) {
-    if (model.finite_strain || follows || goes_by_multigrid(model, solver) || !goes_by_products(model, solver))
-        return false;
-    return solver == linear::LinearSolver::condensed ||
-           (solver == linear::LinearSolver::automatic && condensation_cost(model).pays());
+TangentChoice choose_tangent(const model::Model& model, LinearSolver asked, bool dynamic, bool follows) {
+    constexpr Index most = 100000; // nodes: LU takes some 7 GB
+    const bool pays = !model.nonlinear && condensation_cost(model).pays();
+    const bool symmetric = !follows && (!dynamic || !model.nonlinear);
+    const bool contact = !model.pairs.empty();
+    TangentChoice choice;
+    choice.multigrid = goes_by_multigrid(model, asked, pays);
+    choice.factorisable = !choice.multigrid || model.nodes() <= most;
+    choice.products = choice.multigrid || goes_by_products(model, asked);
+    choice.preconditioned = choice.multigrid || ((contact || !symmetric) && asked != LinearSolver::direct);
+    choice.condensed = !model.nonlinear && !follows && !choice.multigrid && choice.products &&
+                       (asked == LinearSolver::condensed || (asked == LinearSolver::automatic && pays));
+    return choice;
 }
 
 } // namespace osculate::equilibrium

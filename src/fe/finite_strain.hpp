@@ -24,22 +24,22 @@ class FiniteStrainKernel final : public SolidKernel<E> {
     using Row = Eigen::Matrix<double, 1, 3 * n>;
     using Stresses = std::array<Mat3, E::points>;
     using Moduli = std::array<Mat6, E::points>;
-    using ConstPositions = Eigen::Ref<const Eigen::Matrix3Xd>;
 
 public:
     explicit FiniteStrainKernel(const Material& material) : material_(material) {}
 
     [[nodiscard]] bool linear() const override { return false; }
+    [[nodiscard]] bool finite_strain() const override { return true; }
 
-    void stiffness(const ConstPositions& X, Eigen::Ref<Matrix> Ke) const override {
+    void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const override {
         const Positions rest = Positions::Zero();
-        (void)tangent(X, rest, Ke); // J = 1
+        (void)tangent({X, rest, rest}, Ke); // J = 1
     }
 
-    Deformation energy(const ConstPositions& X, const ConstPositions& u, double& W) const override {
-        require(X.cols() == n && u.cols() == n, "energy: sizes do not match the element");
+    Deformation energy(const ElementState& state, double& W) const override {
+        require(state.X.cols() == n && state.u.cols() == n, "energy: sizes do not match the element");
         W = 0;
-        const Kinematics k(this->table_, X, u);
+        const Kinematics k(this->table_, state.X, state.u);
         if (!k.deformation.admissible()) return k.deformation;
         for (std::size_t q = 0; q < E::points; ++q) W += material_.energy(k.strain(q)) * k.points.volumes[q];
         if (std::isfinite(W)) return k.deformation;
@@ -47,63 +47,26 @@ public:
         return overflow;
     }
 
-    Deformation internal_force(const ConstPositions& X, const ConstPositions& u,
-                               Eigen::Ref<Eigen::Matrix3Xd> f) const override {
-        require(X.cols() == n && u.cols() == n && f.cols() == n, "internal_force: sizes do not match the element");
+    Deformation update(const ElementStep& step, std::span<double>, Eigen::Ref<Eigen::Matrix3Xd> f) const override {
+        require(step.X.cols() == n && step.u.cols() == n && f.cols() == n, "update: sizes do not match the element");
+        require(!step.mean || step.u_start.cols() == n, "update: a mean over a step wants its start");
         f.setZero();
-        const Kinematics k(this->table_, X, u);
-        if (!k.deformation.admissible()) return k.deformation;
-        const Forces sum = forces(k, stresses(k));
-        if (!sum.allFinite()) return overflow;
-        f = sum;
-        return k.deformation;
+        return step.mean ? mean_force({*this, step}, f) : force(Kinematics(this->table_, step.X, step.u), f);
     }
 
-    Deformation tangent(const ConstPositions& X, const ConstPositions& u, Eigen::Ref<Matrix> Ke) const override {
-        require(X.cols() == n && u.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n,
+    Deformation tangent(const ElementStep& step, Eigen::Ref<Matrix> Ke) const override {
+        require(step.X.cols() == n && step.u.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n,
                 "tangent: sizes do not match the element");
+        require(!step.mean || step.u_start.cols() == n, "tangent: a mean over a step wants its start");
         Ke.setZero();
-        const Kinematics k(this->table_, X, u);
-        if (!k.deformation.admissible()) return k.deformation;
-        const Stiffness K = stress_tangent(k, stresses(k)) + material_tangent(k, k, moduli(k));
-        if (!K.allFinite()) return overflow;
-        Ke = (K + K.transpose()) / 2;
-        return k.deformation;
+        return step.mean ? mean_tangent({*this, step}, Ke) : end_tangent(Kinematics(this->table_, step.X, step.u), Ke);
     }
 
-    Deformation step_force(const ConstPositions& X, const ConstPositions& u0, const ConstPositions& u1,
-                           const StepMean& mean, Eigen::Ref<Eigen::Matrix3Xd> f) const override {
-        require(X.cols() == n && u0.cols() == n && u1.cols() == n && f.cols() == n,
-                "step_force: sizes do not match the element");
-        f.setZero();
-        const Step step(*this, X, u0, u1, mean);
-        if (!step.deformation().admissible()) return step.deformation();
-        const Forces sum = forces(step.mean, step.S);
-        if (!sum.allFinite()) return overflow;
-        f = sum;
-        return step.deformation();
-    }
-
-    Deformation step_tangent(const ConstPositions& X, const ConstPositions& u0, const ConstPositions& u1,
-                             const StepMean& mean, Eigen::Ref<Matrix> Ke) const override {
-        require(X.cols() == n && u0.cols() == n && u1.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n,
-                "step_tangent: sizes do not match the element");
-        Ke.setZero();
-        const Step step(*this, X, u0, u1, mean);
-        if (!step.deformation().admissible()) return step.deformation();
-        const Stiffness K = mean.end_weight * stress_tangent(step.mean, step.S) +
-                            material_tangent(step.mean, step.end, step.moduli(*this));
-        if (!K.allFinite()) return overflow;
-        Ke = K;
-        return step.deformation();
-    }
-
-    Deformation nodal_stress(const ConstPositions& X, const ConstPositions& u,
-                             Eigen::Ref<Matrix> stress) const override {
-        require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,
+    Deformation nodal_stress(const ElementState& state, Eigen::Ref<Matrix> stress) const override {
+        require(state.X.cols() == n && state.u.cols() == n && stress.rows() == 6 && stress.cols() == n,
                 "nodal_stress: sizes do not match the element");
         stress.setZero();
-        const Kinematics k(this->table_, X, u);
+        const Kinematics k(this->table_, state.X, state.u);
         if (!k.deformation.admissible()) return k.deformation;
         Eigen::Matrix<double, 6, E::points> sigma;
         for (std::size_t q = 0; q < E::points; ++q) {
@@ -291,6 +254,8 @@ private:
         Stresses S, S_difference, DE;
         std::array<double, E::points> g;
 
+        Step(const FiniteStrainKernel& kernel, const ElementStep& step)
+            : Step(kernel, step.X, step.u_start, step.u, *step.mean) {}
         Step(const FiniteStrainKernel& kernel, const Positions& X, const Positions& u0, const Positions& u1,
              const StepMean& w)
             : start(kernel.table_, X, u0), end(kernel.table_, X, u1),
@@ -370,6 +335,39 @@ private:
                         (pdV[q] - share) * g.row(b).transpose() * g.row(a);
         }
         K.noalias() -= (pressure * mean.transpose()) * mean;
+    }
+
+    [[nodiscard]] Deformation force(const Kinematics& k, Eigen::Ref<Eigen::Matrix3Xd> f) const {
+        if (!k.deformation.admissible()) return k.deformation;
+        const Forces sum = forces(k, stresses(k));
+        if (!sum.allFinite()) return overflow;
+        f = sum;
+        return k.deformation;
+    }
+
+    [[nodiscard]] Deformation end_tangent(const Kinematics& k, Eigen::Ref<Matrix> Ke) const {
+        if (!k.deformation.admissible()) return k.deformation;
+        const Stiffness K = stress_tangent(k, stresses(k)) + material_tangent(k, k, moduli(k));
+        if (!K.allFinite()) return overflow;
+        Ke = (K + K.transpose()) / 2;
+        return k.deformation;
+    }
+
+    [[nodiscard]] Deformation mean_force(const Step& step, Eigen::Ref<Eigen::Matrix3Xd> f) const {
+        if (!step.deformation().admissible()) return step.deformation();
+        const Forces sum = forces(step.mean, step.S);
+        if (!sum.allFinite()) return overflow;
+        f = sum;
+        return step.deformation();
+    }
+
+    [[nodiscard]] Deformation mean_tangent(const Step& step, Eigen::Ref<Matrix> Ke) const {
+        if (!step.deformation().admissible()) return step.deformation();
+        const Stiffness K = step.weights.end_weight * stress_tangent(step.mean, step.S) +
+                            material_tangent(step.mean, step.end, step.moduli(*this));
+        if (!K.allFinite()) return overflow;
+        Ke = K;
+        return step.deformation();
     }
 
     Material material_;

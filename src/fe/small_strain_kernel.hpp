@@ -28,14 +28,14 @@ public:
     }
 
     [[nodiscard]] bool linear() const override { return true; }
+    [[nodiscard]] bool finite_strain() const override { return false; }
 
-    Deformation energy(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                       double& W) const override {
-        require(X.cols() == n && u.cols() == n, "energy: sizes do not match the element");
+    Deformation energy(const ElementState& state, double& W) const override {
+        require(state.X.cols() == n && state.u.cols() == n, "energy: sizes do not match the element");
         W = 0;
         StrainPoints<E> points;
-        formulation_(this->table_, Positions(X), points);
-        const Positions displacement = u;
+        formulation_(this->table_, Positions(state.X), points);
+        const Positions displacement = state.u;
         for (std::size_t q = 0; q < points.B.size(); ++q) {
             const Vec6 strain = points.B[q] * displacement.reshaped();
             W += strain.dot(D_ * strain) / 2 * points.volumes[q];
@@ -43,12 +43,11 @@ public:
         return {};
     }
 
-    Deformation internal_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                               Eigen::Ref<Eigen::Matrix3Xd> f) const override {
-        require(X.cols() == n && u.cols() == n && f.cols() == n, "internal_force: sizes do not match the element");
+    Deformation update(const ElementStep& step, std::span<double>, Eigen::Ref<Eigen::Matrix3Xd> f) const override {
+        require(step.X.cols() == n && step.u.cols() == n && f.cols() == n, "update: sizes do not match the element");
         StrainPoints<E> points;
-        formulation_(this->table_, Positions(X), points);
-        const Positions displacement = u;
+        formulation_(this->table_, Positions(step.X), points);
+        const Positions displacement = felt(step);
         Positions sum = Positions::Zero();
         for (std::size_t q = 0; q < points.B.size(); ++q) {
             const Vec6 sigma = D_ * (points.B[q] * displacement.reshaped());
@@ -58,35 +57,18 @@ public:
         return {};
     }
 
-    Deformation tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>&,
-                        Eigen::Ref<Matrix> Ke) const override {
-        stiffness(X, Ke);
+    Deformation tangent(const ElementStep& step, Eigen::Ref<Matrix> Ke) const override {
+        stiffness(step.X, Ke);
+        if (step.mean) Ke *= step.mean->end_weight + step.mean->viscosity;
         return {};
     }
 
-    Deformation step_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u0,
-                           const Eigen::Ref<const Eigen::Matrix3Xd>& u1, const StepMean& mean,
-                           Eigen::Ref<Eigen::Matrix3Xd> f) const override {
-        const double w = mean.end_weight;
-        const Positions u = w * u1 + (1 - w) * u0 + mean.viscosity * (u1 - u0);
-        return internal_force(X, u, f);
-    }
-
-    Deformation step_tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>&,
-                             const Eigen::Ref<const Eigen::Matrix3Xd>&, const StepMean& mean,
-                             Eigen::Ref<Matrix> Ke) const override {
-        stiffness(X, Ke);
-        Ke *= mean.end_weight + mean.viscosity;
-        return {};
-    }
-
-    Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                             Eigen::Ref<Matrix> stress) const override {
-        require(X.cols() == n && u.cols() == n && stress.rows() == 6 && stress.cols() == n,
+    Deformation nodal_stress(const ElementState& state, Eigen::Ref<Matrix> stress) const override {
+        require(state.X.cols() == n && state.u.cols() == n && stress.rows() == 6 && stress.cols() == n,
                 "nodal_stress: sizes do not match the element");
         StrainPoints<E> points;
-        formulation_(this->table_, Positions(X), points);
-        const Positions displacement = u;
+        formulation_(this->table_, Positions(state.X), points);
+        const Positions displacement = state.u;
         Eigen::Matrix<double, 6, E::points> sigma;
         for (std::size_t q = 0; q < points.B.size(); ++q) {
             sigma.col(static_cast<int>(q)) = D_ * (points.B[q] * displacement.reshaped());
@@ -96,6 +78,14 @@ public:
     }
 
 private:
+    /// The displacements whose stress acts.
+    [[nodiscard]] static Positions felt(const ElementStep& step) {
+        if (!step.mean) return step.u;
+        require(step.u_start.cols() == n, "update: a mean over a step wants its start");
+        const double w = step.mean->end_weight;
+        return w * step.u + (1 - w) * step.u_start + step.mean->viscosity * (step.u - step.u_start);
+    }
+
     Mat6 D_;
     Formulation formulation_;
 };

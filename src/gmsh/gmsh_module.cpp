@@ -83,17 +83,6 @@ std::string physical_name(int dimension, int tag) {
     return name.empty() ? "physical_" + std::to_string(tag) : name;
 }
 
-/// Our type of an element of Gmsh's, and the place of every node of ours among Gmsh's; nullptr where it has none.
-struct Translation {
-    int gmsh;
-    CellType type;
-    std::array<int, 10> nodes;
-};
-constexpr Translation translations[] = {{4, CellType::tet4, {0, 1, 2, 3}},
-                                        {5, CellType::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
-                                        {6, CellType::wedge6, {0, 2, 1, 3, 5, 4}},
-                                        {11, CellType::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}}};
-
 class Model {
 public:
     Model(std::string file, RawMesh& raw, double unit) : raw_(raw), unit_(unit) { raw_.file = std::move(file); }
@@ -254,9 +243,8 @@ private:
     void take_volume(int tag) {
         std::vector<Index> members;
         for (const Elements& some : elements_of(3, tag)) {
-            const auto* to = std::find_if(std::begin(translations), std::end(translations),
-                                          [&](const Translation& one) { return one.gmsh == some.type; });
-            if (to == std::end(translations) && !some.tags.empty())
+            const CellInfo* to = find_cell_type([&](const CellInfo& info) { return info.gmsh == some.type; });
+            if (to == nullptr && !some.tags.empty())
                 throw MeshError(raw_.file, "element " + std::to_string(some.tags.front()) + " is a " + some.name +
                                                "; only tetrahedra of 4 or 10 nodes, wedges and hexahedra are read");
             for (std::size_t e = 0; e < some.tags.size(); ++e) {
@@ -265,7 +253,7 @@ private:
                 cell.type = to->type;
                 for (int i = 0; i < cell.count(); ++i)
                     cell.nodes[i] = number(some.nodes[e * static_cast<std::size_t>(some.node_count) +
-                                                      static_cast<std::size_t>(to->nodes[i])]);
+                                                      static_cast<std::size_t>(to->from_gmsh[static_cast<std::size_t>(i)])]);
                 members.push_back(static_cast<Index>(raw_.cells.size()));
                 raw_.cells.push_back(cell);
             }

@@ -48,7 +48,7 @@ void BlockMatrix::set_combination(double a, const BlockMatrix& A, double b, cons
     for (std::size_t k = 0; k < block_.size(); ++k) block_[k] = a * A.block_[k] + b * B.block_[k];
 }
 
-void BlockMatrix::multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const {
+void BlockMatrix::multiply_add(const Field& x, Field& y, int threads) const {
     parallel_for(threads, rows(), [&](Index begin, Index end) {
         for (Index row = begin; row < end; ++row) {
             Vec3 sum = Vec3::Zero();
@@ -58,7 +58,7 @@ void BlockMatrix::multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y,
     });
 }
 
-void BlockMatrix::multiply_add_relative(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const {
+void BlockMatrix::multiply_add_relative(const Field& x, Field& y, int threads) const {
     parallel_for(threads, rows(), [&](Index begin, Index end) {
         for (Index row = begin; row < end; ++row) {
             Vec3 sum = Vec3::Zero();

@@ -15,7 +15,7 @@ namespace {
 constexpr int worth_keeping = 10;
 
 /// Three of the nodes, as far from one line as can be had.
-std::vector<Index> three_apart(const std::vector<Index>& nodes, const std::vector<Vec3>& X) {
+std::vector<Index> three_apart(const std::vector<Index>& nodes, const Field& X) {
     const auto farthest = [&](auto&& distance) {
         return *std::max_element(nodes.begin(), nodes.end(),
                                  [&](Index a, Index b) { return distance(X[a]) < distance(X[b]); });
@@ -33,7 +33,7 @@ std::vector<Index> three_apart(const std::vector<Index>& nodes, const std::vecto
 
 } // namespace
 
-CondensedTangent::CondensedTangent(const Constraints& constraints, const BlockMatrix& K, const std::vector<Vec3>& X,
+CondensedTangent::CondensedTangent(const Constraints& constraints, const BlockMatrix& K, const Field& X,
                                    const std::vector<CondensedBody>& bodies, std::vector<Index> contact,
                                    std::vector<Index> slaves, int threads)
     : constraints_(constraints), K_(&K), threads_(threads), slaves_(std::move(slaves)), nodes_(std::move(contact)),
@@ -222,7 +222,7 @@ void CondensedTangent::apply_contact(const Vector& lambda, const Vector& u, doub
     collect(by, z);
 }
 
-bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, const double* b, double* x, double allowed,
+bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x, double allowed,
                              Timings& timings) {
     {
         const ScopedTimer timer(timings, Part::factor);
@@ -305,7 +305,7 @@ bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, cons
     for (std::size_t body = 0; body < bodies_.size(); ++body)
         for (std::size_t i = 0; i < bodies_[body].equations().size(); ++i)
             r(bodies_[body].equations()[i]) += f(first_[body] + static_cast<Index>(i));
-    for (const BodyCompliance& body : bodies_) body.solve(r.data(), x);
+    for (const BodyCompliance& body : bodies_) body.solve(r.data(), x.data());
     for (std::size_t j = 0; j < contacts_->size(); ++j)
         lambda[(*contacts_)[j].law.coupling] = force.segment<3>(3 * static_cast<Index>(j));
     for (std::size_t j = 0; j < slaves_.size(); ++j) {

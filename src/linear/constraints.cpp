@@ -99,7 +99,7 @@ Vec3 Constraints::to_global(Index node, const Vec3& v) const {
     return turned(node) ? Vec3(frame(node) * v) : v;
 }
 
-void Constraints::scatter(const double* unknowns, const std::vector<Vec3>& prescribed, std::vector<Vec3>& u) const {
+void Constraints::scatter(const ConstVectorRef& unknowns, const Field& prescribed, Field& u) const {
     for (Index node = 0; node < nodes(); ++node) {
         Vec3 local = prescribed[node];
         for (int k = 0; k < 3; ++k)
@@ -108,7 +108,7 @@ void Constraints::scatter(const double* unknowns, const std::vector<Vec3>& presc
     }
 }
 
-void Constraints::gather(const std::vector<Vec3>& u, double* unknowns) const {
+void Constraints::gather(const Field& u, VectorRef unknowns) const {
     for (Index node = 0; node < nodes(); ++node) {
         const Vec3 local = to_local(node, u[node]);
         for (int k = 0; k < 3; ++k)

@@ -42,7 +42,7 @@ solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> co
     return multigrid_->factorise(stiffness_.matrix(), [&] { return stiffness_.values_of(undeformed_()); });
 }
 
-void ContactPreconditioner::apply(const Unknowns& rows, const double* r, double* z) const {
+void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const {
     const auto equilibrium_rows = [&](Index node, auto&& each) {
         for (int k = 0; k < 3; ++k)
             if (const Index e = constraints_.equation(node, k); e != Constraints::held) each(e, k);
@@ -67,9 +67,9 @@ void ContactPreconditioner::apply(const Unknowns& rows, const double* r, double*
             add(c.where.masters[i], Vec3(-c.where.follow[i].transpose() * force));
     }
     if (multigrid_)
-        multigrid_->cycle(load_.data(), z);
+        multigrid_->cycle(load_.data(), z.data());
     else
-        solver_->solve(load_.data(), z);
+        solver_->solve(load_.data(), z.data());
     const auto moved = [&](Index node) {
         Vec3 local = Vec3::Zero();
         equilibrium_rows(node, [&](Index e, int k) { local(k) = z[e]; });

@@ -18,29 +18,24 @@
 namespace osculate::mesh {
 namespace {
 
+constexpr NodeOrder as_it_is = [] {
+    NodeOrder order{};
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+    return order;
+}();
+constexpr NodeOrder of_a_voxel{0, 1, 3, 2, 4, 5, 7, 6};
+
 /// Our type of a VTK cell and the place of every node of ours among VTK's.
 struct Translation {
-    CellType type;
-    std::array<int, 10> nodes;
+    const CellInfo* to;
+    const NodeOrder& nodes;
 };
-
-constexpr Translation tet{CellType::tet4, {0, 1, 2, 3}};
-constexpr Translation wedge{CellType::wedge6, {0, 1, 2, 3, 4, 5}};
-constexpr Translation hex{CellType::hex8, {0, 1, 2, 3, 4, 5, 6, 7}};
-constexpr Translation quadratic_tet{CellType::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}};
-constexpr Translation voxel{CellType::hex8, {0, 1, 3, 2, 4, 5, 7, 6}};
 
 constexpr std::size_t most_values = 10000; // of an array whose values name parts
 
-const Translation* translation(int vtk_type) {
-    switch (vtk_type) {
-    case VTK_TETRA: return &tet;
-    case VTK_QUADRATIC_TETRA: return &quadratic_tet;
-    case VTK_WEDGE: return &wedge;
-    case VTK_HEXAHEDRON: return &hex;
-    case VTK_VOXEL: return &voxel;
-    default: return nullptr;
-    }
+Translation translation(int vtk_type) {
+    if (vtk_type == VTK_VOXEL) return {&cell_info(CellType::hex8), of_a_voxel};
+    return {find_cell_type([&](const CellInfo& info) { return info.vtk == vtk_type; }), as_it_is};
 }
 
 bool is_volume(int vtk_type) {
@@ -99,7 +94,7 @@ std::vector<Index> add_cells(RawMesh& raw, vtkUnstructuredGrid& grid, std::int64
         const auto fail = [&](const std::string& what) {
             throw MeshError(raw.file, raw.cell_word + (" " + std::to_string(first_id + c)) + what);
         };
-        const Translation* to = translation(vtk_type);
+        const auto [to, order] = translation(vtk_type);
         if (to == nullptr) {
             signed char& known = volume[static_cast<unsigned char>(vtk_type)];
             if (known == 0) known = is_volume(vtk_type) ? 1 : -1;
@@ -111,7 +106,7 @@ std::vector<Index> add_cells(RawMesh& raw, vtkUnstructuredGrid& grid, std::int64
         vtkIdType count = 0;
         const vtkIdType* points = nullptr;
         grid.GetCells()->GetCellAtId(c, count, points);
-        if (to != nullptr && count != nodes_per_cell(to->type)) fail(" has the wrong number of points");
+        if (to != nullptr && count != to->nodes) fail(" has the wrong number of points");
         if (std::any_of(points, points + count, [&](vtkIdType p) { return p < 0 || p >= points_in_all; }))
             fail(" has a point that does not exist");
         if (to == nullptr) {
@@ -121,7 +116,8 @@ std::vector<Index> add_cells(RawMesh& raw, vtkUnstructuredGrid& grid, std::int64
         RawCell& cell = raw.cells.emplace_back();
         cell.id = first_id + c;
         cell.type = to->type;
-        for (int i = 0; i < cell.count(); ++i) cell.nodes[i] = static_cast<Index>(points[to->nodes[i]]);
+        for (int i = 0; i < cell.count(); ++i)
+            cell.nodes[i] = static_cast<Index>(points[order[static_cast<std::size_t>(i)]]);
         numbers[c] = static_cast<Index>(raw.cells.size()) - 1;
     }
     return numbers;

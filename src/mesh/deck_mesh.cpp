@@ -77,7 +77,7 @@ private:
 
     void read_elements(const DeckCard& card) {
         const std::string name = type_name(card);
-        const DeckElementType* type = deck_element_type(name);
+        const CellInfo* type = deck_element_type(name);
         if (type == nullptr) {
             reading_.fault(card, "*ELEMENT of type '" + name + "'; only " + deck_element_names() + " are read");
             reading_.refused = true;
@@ -86,7 +86,7 @@ private:
         auto kind = std::find(mesh_.types.begin(), mesh_.types.end(), name);
         if (kind == mesh_.types.end()) kind = mesh_.types.insert(kind, name);
         const auto kind_number = static_cast<char>(kind - mesh_.types.begin());
-        const auto count = static_cast<std::size_t>(nodes_per_cell(type->cell));
+        const auto count = static_cast<std::size_t>(type->nodes);
         std::vector<long long> numbers;
         for (auto line = deck_.begin(card); line != deck_.end(card);) {
             // An element goes on over as many lines as it takes.
@@ -111,12 +111,12 @@ private:
     }
 
     /// @param numbers  the element's and its nodes'
-    bool add_cell(const DeckLine& line, const DeckElementType& type, const std::vector<long long>& numbers) {
+    bool add_cell(const DeckLine& line, const CellInfo& type, const std::vector<long long>& numbers) {
         RawCell cell;
         cell.id = numbers[0];
-        cell.type = type.cell;
+        cell.type = type.type;
         for (std::size_t i = 0; i + 1 < numbers.size(); ++i) {
-            const long long id = numbers[static_cast<std::size_t>(type.nodes[i]) + 1];
+            const long long id = numbers[static_cast<std::size_t>(type.from_deck[i]) + 1];
             cell.nodes[i] = points_.look_up(id);
             if (cell.nodes[i] >= 0) continue;
             reading_.fault(line, "element " + std::to_string(cell.id) + " has node " + std::to_string(id) +
@@ -132,8 +132,8 @@ private:
         for (const DeckCard& card : deck_.cards) {
             if (card.keyword == "NODE") node_sets_.read_defined(card, 1);
             if (card.keyword == "ELEMENT") {
-                const DeckElementType* type = deck_element_type(type_name(card));
-                const int nodes = type == nullptr ? 0 : nodes_per_cell(type->cell);
+                const CellInfo* type = deck_element_type(type_name(card));
+                const int nodes = type == nullptr ? 0 : type->nodes;
                 element_sets_.read_defined(card, static_cast<std::size_t>(nodes) + 1);
             }
             if (card.keyword == "NSET") node_sets_.read(card);

@@ -75,7 +75,7 @@ void DeckSurfaces::add_outside(const std::vector<Index>& cells, std::vector<RawF
     }
     for (const Index c : cells)
         for (const int local : exterior_[c]) {
-            const CornerFace& corners = cell_corner_faces(mesh_.raw.cells[c].type)[local];
+            const LocalFace& corners = cell_info(mesh_.raw.cells[c].type).faces[static_cast<std::size_t>(local)];
             std::array<Index, 4> wanted{-1, -1, -1, -1};
             for (int i = 0; i < corners.count; ++i) wanted[i] = mesh_.raw.cells[c].nodes[corners.nodes[i]];
             sort_few(wanted.begin(), wanted.end());

@@ -7,30 +7,10 @@
 #include <tuple>
 
 namespace osculate::mesh {
-namespace {
-
-constexpr CornerFace tet_faces[] = {{{0, 1, 3, -1}, 3}, {{1, 2, 3, -1}, 3}, {{2, 0, 3, -1}, 3}, {{0, 2, 1, -1}, 3}};
-constexpr CornerFace wedge_faces[] = {
-    {{0, 1, 2, -1}, 3}, {{3, 5, 4, -1}, 3}, {{0, 3, 4, 1}, 4}, {{1, 4, 5, 2}, 4}, {{2, 5, 3, 0}, 4}};
-constexpr CornerFace hex_faces[] = {{{0, 4, 7, 3}, 4}, {{1, 2, 6, 5}, 4}, {{0, 1, 5, 4}, 4},
-                                    {{3, 7, 6, 2}, 4}, {{0, 3, 2, 1}, 4}, {{4, 5, 6, 7}, 4}};
-
-} // namespace
-
-std::span<const CornerFace> cell_corner_faces(CellType type) {
-    switch (type) {
-    case CellType::tet4:
-    case CellType::tet10: return tet_faces;
-    case CellType::wedge6: return wedge_faces;
-    case CellType::hex8: return hex_faces;
-    }
-    return {};
-}
-
 std::vector<FaceOfCell> faces_side_by_side(const std::vector<RawCell>& cells, std::size_t point_count) {
     const auto visit = [&](const auto& act) {
         for (std::size_t c = 0; c < cells.size(); ++c) {
-            const auto faces = cell_corner_faces(cells[c].type);
+            const auto faces = cell_info(cells[c].type).faces;
             for (std::size_t f = 0; f < faces.size(); ++f) {
                 FaceOfCell face{{-1, -1, -1, -1}, static_cast<Index>(c), static_cast<int>(f)};
                 for (int i = 0; i < faces[f].count; ++i) face.corners[i] = cells[c].nodes[faces[f].nodes[i]];

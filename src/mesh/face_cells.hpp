@@ -3,23 +3,14 @@
 
 #include "osculate/mesh/raw_mesh.hpp"
 
-#include <span>
-
 namespace osculate::mesh {
 
 /// A face by its corners in ascending order; nodes[3] is -1 for a triangle.
 struct FaceOfCell {
     std::array<Index, 4> corners{-1, -1, -1, -1};
     Index cell = -1;
-    int face = -1; ///< as in cell_corner_faces
+    int face = -1; ///< of CellInfo::faces
 };
-
-/// Faces of a cell by local corners, whole six-node faces too, counter-clockwise seen from outside.
-struct CornerFace {
-    std::array<int, 4> nodes;
-    int count;
-};
-[[nodiscard]] std::span<const CornerFace> cell_corner_faces(CellType type);
 
 /// All faces of all cells, those of the same corners side by side, in ascending order of corners. O(n) for meshes whose
 /// nodes have a bounded number of cells.

@@ -1,7 +1,5 @@
 #include "osculate/mesh/mesh.hpp"
 
-#include "mesh/cell_faces.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
@@ -19,7 +17,7 @@ std::vector<Facet> exterior_facets(const Mesh& mesh) {
     for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
         const ElementBlock& block = mesh.blocks[b];
         const int stride = nodes_per_cell(block.type);
-        const auto local_faces = cell_faces(block.type);
+        const auto local_faces = cell_info(block.type).facets;
         for (Index e = 0; e < block.size(); ++e) {
             const Index* nodes = block.connectivity.data() + static_cast<std::ptrdiff_t>(e) * stride;
             for (const LocalFace& local : local_faces) {

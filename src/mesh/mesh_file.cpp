@@ -159,9 +159,8 @@ void name_node_sets(const RawMesh& raw, const std::vector<Index>& number, Mesh& 
 }
 
 void add_blocks(const RawMesh& raw, const std::vector<Index>& number, Mesh& mesh) {
-    std::array<ElementBlock, 4> blocks{
-        {{CellType::hex8, {}}, {CellType::wedge6, {}}, {CellType::tet4, {}}, {CellType::tet10, {}}}};
-    for (ElementBlock& block : blocks) {
+    for (const CellInfo& info : cell_types()) {
+        ElementBlock block{info.type, {}};
         for (const RawCell& cell : raw.cells)
             if (cell.type == block.type)
                 for (const Index node : cell) block.connectivity.push_back(number[node]);

@@ -1,7 +1,5 @@
 #include "osculate/mesh/quality.hpp"
 
-#include "mesh/cell_faces.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
@@ -32,16 +30,6 @@ private:
     std::vector<std::string> faults_;
 };
 
-const char* cell_name(CellType type) {
-    switch (type) {
-    case CellType::tet4: return "tet4";
-    case CellType::wedge6: return "wedge6";
-    case CellType::hex8: return "hex8";
-    case CellType::tet10: return "tet10";
-    }
-    return "";
-}
-
 /// Jacobian of a tet10 at the point with barycentric coordinates L, from the derivatives
 /// dx/dL_k = (4 L_k - 1) x_k + 4 sum_l L_l m_kl, m_kl the node midway between corners k and l.
 double tet10_jacobian(std::span<const Index> nodes, const std::vector<Vec3>& positions,
@@ -71,7 +59,7 @@ int bad_tet10_node(std::span<const Index> nodes, const std::vector<Vec3>& positi
 
 int bad_corner(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions) {
     if (type == CellType::tet10) return bad_tet10_node(nodes, positions);
-    const auto corners = corner_neighbours(type);
+    const auto corners = cell_info(type).corner_neighbours;
     for (int c = 0; c < static_cast<int>(corners.size()); ++c) {
         const auto edge = [&](int i) -> Vec3 { return positions[nodes[corners[c][i]]] - positions[nodes[c]]; };
         if (!(triple(edge(0), edge(1), edge(2)) > 0)) return c;
@@ -83,7 +71,7 @@ double cell_volume(CellType type, std::span<const Index> nodes, const std::vecto
     // Divergence theorem about the first node. A bilinear face encloses the mean of its two splits into triangles.
     const Vec3& origin = positions[nodes[0]];
     double sixfold = 0;
-    for (const LocalFace& face : cell_faces(type)) {
+    for (const LocalFace& face : cell_info(type).facets) {
         const auto at = [&](int i) -> Vec3 { return positions[nodes[face.nodes[i]]] - origin; };
         if (face.count == 3)
             sixfold += triple(at(0), at(1), at(2));
@@ -106,7 +94,7 @@ std::vector<std::string> faults(const Mesh& mesh, std::size_t limit) {
         for (Index e = 0; e < block.size(); ++e) {
             const std::span<const Index> nodes(block.connectivity.data() + e * stride, stride);
             const auto name = [&] {
-                return std::string(cell_name(block.type)) + " element " + std::to_string(e) + " of block " +
+                return std::string(cell_info(block.type).name) + " element " + std::to_string(e) + " of block " +
                        std::to_string(b);
             };
             if (std::any_of(nodes.begin(), nodes.end(), [&](Index n) { return n < 0 || n >= mesh.node_count(); })) {

@@ -80,23 +80,14 @@ double extent(const RawMesh& raw, const RawCell& cell) {
 
 /// The same cell seen in a mirror.
 void turn_over(RawCell& cell) {
-    auto& n = cell.nodes;
-    switch (cell.type) {
-    case CellType::hex8: std::swap_ranges(n.begin(), n.begin() + 4, n.begin() + 4); break;
-    case CellType::wedge6:
-        std::swap(n[1], n[2]);
-        std::swap(n[4], n[5]);
-        break;
-    case CellType::tet10:
-        std::swap(n[5], n[6]);
-        std::swap(n[7], n[8]);
-        [[fallthrough]];
-    case CellType::tet4: std::swap(n[0], n[1]); break;
-    }
+    const auto before = cell.nodes;
+    const NodeOrder& mirrored = cell_info(cell.type).mirrored;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(cell.count()); ++i)
+        cell.nodes[i] = before[static_cast<std::size_t>(mirrored[i])];
 }
 
 bool has_node_twice(const RawCell& cell) {
-    std::array<Index, 10> nodes = cell.nodes;
+    auto nodes = cell.nodes;
     sort_few(nodes.begin(), nodes.begin() + cell.count());
     return std::adjacent_find(nodes.begin(), nodes.begin() + cell.count()) != nodes.begin() + cell.count();
 }
@@ -115,7 +106,7 @@ bool becomes_wedge(RawCell& cell) {
         RawCell wedge;
         wedge.id = cell.id;
         wedge.type = CellType::wedge6;
-        wedge.nodes = {at(0), at(2), at(3), at(4), at(6), at(7), -1, -1, -1, -1};
+        std::ranges::copy(std::array{at(0), at(2), at(3), at(4), at(6), at(7)}, wedge.nodes.begin());
         if (has_node_twice(wedge)) continue;
         cell = wedge;
         return true;
@@ -222,7 +213,7 @@ void check_shapes(RawMesh& raw, const Repairs& repairs, MeshFaults& all) {
 /// Cells of the same nodes; the first stays. Returns whether any is left.
 bool check_duplicates(RawMesh& raw, bool wanted, MeshFaults& all) {
     const auto sorted = [](const RawCell& cell) {
-        std::array<Index, 10> nodes = cell.nodes;
+        auto nodes = cell.nodes;
         sort_few(nodes.begin(), nodes.begin() + cell.count());
         return nodes;
     };

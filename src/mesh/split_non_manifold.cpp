@@ -9,7 +9,7 @@
 namespace osculate::mesh {
 namespace {
 
-constexpr Index stride = 10;
+constexpr Index stride = most_nodes_per_cell;
 
 Index root_of(std::vector<Index>& parent, Index i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -20,13 +20,11 @@ Index slot_of(const RawCell& cell, Index number, Index node) {
     return number * stride + static_cast<Index>(std::find(cell.begin(), cell.end(), node) - cell.begin());
 }
 
-/// Node of a tet10 midway between two corners.
+/// Node of a quadratic cell midway between two corners.
 Index middle(const RawCell& cell, Index a, Index b) {
-    constexpr int mid[4][4] = {{-1, 4, 6, 7}, {4, -1, 5, 8}, {6, 5, -1, 9}, {7, 8, 9, -1}};
-    const auto place = [&](Index n) {
-        return std::find(cell.nodes.begin(), cell.nodes.begin() + 4, n) - cell.nodes.begin();
-    };
-    return cell.nodes[mid[place(a)][place(b)]];
+    const CellInfo& info = cell_info(cell.type);
+    const auto place = [&](Index n) { return static_cast<int>(std::find(cell.begin(), cell.end(), n) - cell.begin()); };
+    return cell.nodes[static_cast<std::size_t>(info.midway(place(a), place(b)))];
 }
 
 std::array<Index, 4> key_of(const RawFace& face) {
@@ -56,7 +54,7 @@ NonManifold find_non_manifold(const RawMesh& raw) {
         const FaceOfCell& face = faces[first];
         for (std::size_t more = first + 2; more < last; ++more) found.crowded_faces.push_back(faces[more]);
         if (last - first == 1) {
-            const CornerFace& local = cell_corner_faces(raw.cells[face.cell].type)[face.face];
+            const LocalFace& local = cell_info(raw.cells[face.cell].type).faces[static_cast<std::size_t>(face.face)];
             for (int i = 0; i < local.count; ++i) {
                 const Index a = raw.cells[face.cell].nodes[local.nodes[i]],
                             b = raw.cells[face.cell].nodes[local.nodes[(i + 1) % local.count]];
@@ -68,7 +66,7 @@ NonManifold find_non_manifold(const RawMesh& raw) {
             const Index a = face.cell, b = faces[other].cell;
             for (const Index node : face.corners)
                 if (node >= 0) join(a, b, node);
-            if (raw.cells[a].type != CellType::tet10 || raw.cells[b].type != CellType::tet10) continue;
+            if (cell_info(raw.cells[a].type).edges.empty() || cell_info(raw.cells[b].type).edges.empty()) continue;
             for (int i = 0; i < 3; ++i) {
                 const Index p = face.corners[i], q = face.corners[(i + 1) % 3], mid = middle(raw.cells[a], p, q);
                 if (middle(raw.cells[b], p, q) == mid) join(a, b, mid);
@@ -81,7 +79,7 @@ NonManifold find_non_manifold(const RawMesh& raw) {
         if (last - first > 2) found.crowded_edges.push_back(edges[first]);
     }
     std::vector<Index> group(raw.points.size(), -1);
-    std::vector<char> touching(raw.points.size(), 0);
+    std::vector<bool> touching(raw.points.size(), false);
     for (std::size_t c = 0; c < raw.cells.size(); ++c)
         for (int i = 0; i < raw.cells[c].count(); ++i) {
             const auto slot = static_cast<Index>(c) * stride + i;
@@ -90,7 +88,7 @@ NonManifold find_non_manifold(const RawMesh& raw) {
             if (known < 0)
                 known = parent[slot];
             else if (known != parent[slot])
-                touching[raw.cells[c].nodes[i]] = 1;
+                touching[raw.cells[c].nodes[i]] = true;
         }
     for (std::size_t p = 0; p < touching.size(); ++p)
         if (touching[p]) found.touching_points.push_back(static_cast<Index>(p));
@@ -98,7 +96,7 @@ NonManifold find_non_manifold(const RawMesh& raw) {
 }
 
 void split_non_manifold(RawMesh& raw, const NonManifold& found) {
-    std::vector<char> touching(raw.points.size(), 0);
+    std::vector<bool> touching(raw.points.size(), false);
     for (const Index p : found.touching_points) touching[p] = 1;
     // Faces of sets that have such points, by their cells, before numbers change.
     std::map<std::array<Index, 4>, std::pair<Index, int>> exterior;

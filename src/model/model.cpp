@@ -172,15 +172,21 @@ const Body* body_of(const Model& model, Index node) {
     return b < 0 ? nullptr : &model.bodies[static_cast<std::size_t>(b)];
 }
 
-std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u, int threads) {
-    std::vector<Vec3> f(u.size(), Vec3::Zero());
-    model.K.multiply_add_relative(u, f, threads);
-    if (model.finite_strain) (void)model.finite_strain->add_internal_force(model.X, u, f, threads);
+Field internal_force(const Model& model, const BodyStep& step, int threads) {
+    Field f(step.u.size());
+    model.K.multiply_add_relative(step.u, f, threads);
+    if (model.nonlinear) (void)model.nonlinear->add_force(model.X, step, f, threads);
     return f;
 }
 
+MaterialHistory initial_history(const Model& model) {
+    std::size_t size = 0;
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) size += history_place(model.bodies, b).size;
+    return MaterialHistory(size, 0.0);
+}
+
 double largest_stiffness(const Model& model) {
-    double largest = model.finite_strain ? model.finite_strain->largest_stiffness() : 0;
+    double largest = model.nonlinear ? model.nonlinear->largest_stiffness() : 0;
     for (Index i = 0; i < model.K.rows(); ++i)
         largest = std::max(largest, model.K.block(model.K.slot(i, i)).diagonal().maxCoeff());
     return largest;
@@ -188,17 +194,18 @@ double largest_stiffness(const Model& model) {
 
 linear::BlockMatrix undeformed_stiffness(const Model& model, int threads) {
     linear::BlockMatrix K = model.K;
-    const std::vector<Vec3> none(model.X.size(), Vec3::Zero());
-    if (model.finite_strain) model.finite_strain->add_tangent(model.X, none, K, threads);
+    if (!model.nonlinear) return K;
+    const Field none(model.X.size());
+    const MaterialHistory history = initial_history(model);
+    model.nonlinear->add_tangent(model.X, {none, none, history}, K, threads);
     return K;
 }
 
-double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads) {
-    std::vector<Vec3> f(u.size(), Vec3::Zero());
+double strain_energy(const Model& model, const Field& u, const MaterialHistory& history, int threads) {
+    Field f(u.size());
     model.K.multiply_add_relative(u, f, threads);
-    double sum = 0;
-    for (std::size_t i = 0; i < u.size(); ++i) sum += u[i].dot(f[i]);
-    return sum / 2 + (model.finite_strain ? model.finite_strain->energy(model.X, u, threads) : 0);
+    const double linear = dot(u, f) / 2;
+    return linear + (model.nonlinear ? model.nonlinear->energy(model.X, u, history, threads) : 0);
 }
 
 std::vector<double> volume_shares(const Model& model) {
@@ -220,7 +227,7 @@ std::vector<double> volume_shares(const Model& model) {
 
 Vec3 centre_of_mass(const Body& body) {
     // nodal shares of the volume are exact for the first moment, too
-    std::vector<Vec3> share(static_cast<std::size_t>(body.first_node + body.nodes()), Vec3::Zero());
+    Field share(static_cast<std::size_t>(body.first_node + body.nodes()));
     add_body_force(body, Vec3::UnitX(), share);
     Vec3 moment = Vec3::Zero();
     double volume = 0;
@@ -232,7 +239,7 @@ Vec3 centre_of_mass(const Body& body) {
     return moment / volume;
 }
 
-void add_body_force(const Body& body, const Vec3& b, std::vector<Vec3>& f) {
+void add_body_force(const Body& body, const Vec3& b, Field& f) {
     for_each_element(
         body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
             Eigen::Matrix3Xd fe(3, kernel.nodes());
@@ -241,16 +248,20 @@ void add_body_force(const Body& body, const Vec3& b, std::vector<Vec3>& f) {
         });
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Body& body, const std::vector<Vec3>& u) {
+Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index b, const State& state) {
+    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    std::size_t history = history_place(model.bodies, static_cast<std::size_t>(b)).first;
     Eigen::Matrix<double, Eigen::Dynamic, 6> stress = decltype(stress)::Zero(body.nodes(), 6);
     Vector weight = Vector::Zero(body.nodes());
     Matrix element_stress;
     for_each_element(
         body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
             Eigen::Matrix3Xd ue(3, kernel.nodes());
-            for (int i = 0; i < kernel.nodes(); ++i) ue.col(i) = u[element[static_cast<std::size_t>(i)]];
+            for (int i = 0; i < kernel.nodes(); ++i) ue.col(i) = state.u[element[static_cast<std::size_t>(i)]];
             element_stress.resize(6, kernel.nodes());
-            kernel.nodal_stress(X, ue, element_stress);
+            kernel.nodal_stress({X, ue, std::span(state.material).subspan(history, kernel.history_size())},
+                                element_stress);
+            history += kernel.history_size();
             const double volume = kernel.volume(X);
             for (int i = 0; i < kernel.nodes(); ++i) {
                 const Index local = element[static_cast<std::size_t>(i)] - body.first_node;

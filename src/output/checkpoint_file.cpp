@@ -247,6 +247,7 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
     visit("v", run.state.v);
     visit("a", run.state.a);
     visit("contact", run.state.contact);
+    visit("material", run.state.material);
     visit("ledger", run.ledger);
     visit("moved", run.moved);
     visit("attempts", run.counts.attempts);
@@ -263,7 +264,11 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
 struct Writer {
     Json& json;
 
+    void operator()(const char* name, const Field& value) const { json[name] = packed_matrices(value.values()); }
     void operator()(const char* name, const std::vector<Vec3>& value) const { json[name] = packed_matrices(value); }
+    void operator()(const char* name, const std::vector<double>& value) const {
+        if (!value.empty()) json[name] = packed(value);
+    }
     void operator()(const char* name, const std::vector<contact::Status>& value) const { json[name] = packed(value); }
     void operator()(const char* name, const std::vector<Index>& value) const { json[name] = packed(value); }
     void operator()(const char* name, const std::vector<model::ContactHistory>& pairs) const {
@@ -290,7 +295,11 @@ struct Writer {
 struct Reader {
     const Json& json;
 
+    void operator()(const char* name, Field& value) const { value = unpacked_matrices<Vec3>(json, name); }
     void operator()(const char* name, std::vector<Vec3>& value) const { value = unpacked_matrices<Vec3>(json, name); }
+    void operator()(const char* name, std::vector<double>& value) const { // left out where there is nothing
+        if (json.contains(name)) value = unpacked<double>(json, name);
+    }
     void operator()(const char* name, std::vector<contact::Status>& value) const {
         value = unpacked<contact::Status>(json, name);
     }

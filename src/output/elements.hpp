@@ -1,24 +1,13 @@
 #pragma once
 /// Elements of a body by number, and their shape functions by type.
 
-#include "osculate/core/error.hpp"
-#include "osculate/fe/reference_element.hpp"
+#include "osculate/fe/with_element.hpp"
 #include "osculate/model/model.hpp"
 
+#include <span>
 #include <vector>
 
 namespace osculate::output {
-
-/// f.operator()<E>() for the reference element of a cell type.
-template <class F> decltype(auto) with_element(mesh::CellType type, F&& f) {
-    switch (type) {
-    case mesh::CellType::tet4: return f.template operator()<fe::Tet4>();
-    case mesh::CellType::wedge6: return f.template operator()<fe::Wedge6>();
-    case mesh::CellType::hex8: return f.template operator()<fe::Hex8>();
-    case mesh::CellType::tet10: return f.template operator()<fe::Tet10>();
-    }
-    throw InternalError("cell type without a reference element");
-}
 
 /// An element of a body.
 struct ElementOf {
@@ -48,6 +37,17 @@ struct ElementOf {
     for (std::size_t i = 0; i < nodes.size(); ++i)
         ue.col(static_cast<Eigen::Index>(i)) = u[static_cast<std::size_t>(body.first_node + nodes[i])];
     return ue;
+}
+
+/// What an element carries in a state.
+[[nodiscard]] inline std::span<const double> history_of(const model::Model& model, Index body, const ElementOf& element,
+                                                        const model::State& state) {
+    const model::Body& own = model.bodies[static_cast<std::size_t>(body)];
+    std::size_t first = model::history_place(model.bodies, static_cast<std::size_t>(body)).first;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(element.block); ++b)
+        first += own.kernels[b]->history_size() * static_cast<std::size_t>(own.mesh.blocks[b].size());
+    const std::size_t size = own.kernels[static_cast<std::size_t>(element.block)]->history_size();
+    return std::span(state.material).subspan(first + static_cast<std::size_t>(element.number) * size, size);
 }
 
 /// f(element) for every element of a body.

@@ -108,7 +108,7 @@ Values strain(const Snapshot& snapshot, Index body) {
 }
 
 Values energy_density(const Snapshot& snapshot, Index body) {
-    return nodal_energy_density(snapshot.model().bodies[body], snapshot.state().u);
+    return nodal_energy_density(snapshot.model(), body, snapshot.state());
 }
 
 Values gap(const Snapshot& snapshot, Index pair) {
@@ -255,7 +255,7 @@ Values area(const Snapshot& snapshot, Index pair) {
     return snapshot.model().pairs[pair]->slaves().area;
 }
 
-constexpr Field table[] = {
+constexpr OutputField table[] = {
     {"displacement", FieldPlace::body, 3, "m", false, displacement},
     {"velocity", FieldPlace::body, 3, "m/s", false, velocity},           // 0 before the first dynamic stage
     {"acceleration", FieldPlace::body, 3, "m/s^2", false, acceleration}, // the same
@@ -286,17 +286,17 @@ constexpr Field table[] = {
 
 } // namespace
 
-std::span<const Field> all_fields() {
+std::span<const OutputField> all_fields() {
     return table;
 }
 
-const Field& field(FieldPlace where, const std::string& name) {
-    for (const Field& row : table)
+const OutputField& field(FieldPlace where, const std::string& name) {
+    for (const OutputField& row : table)
         if (row.where == where && name == row.name) return row;
     throw InternalError("no field is called '" + name + "' there");
 }
 
-Array evaluate(const Field& field, const Snapshot& snapshot, Index body_or_pair) {
+Array evaluate(const OutputField& field, const Snapshot& snapshot, Index body_or_pair) {
     return {field.name, field.components, field.values(snapshot, body_or_pair), field.integer, field.unit};
 }
 

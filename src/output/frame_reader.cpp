@@ -65,19 +65,16 @@ Frame frame_of(vtkPointSet& data) {
 }
 
 std::vector<mesh::Facet> facets_of(vtkPointSet& data) {
-    static const std::map<int, mesh::CellType> solids{{VTK_TETRA, mesh::CellType::tet4},
-                                                      {VTK_WEDGE, mesh::CellType::wedge6},
-                                                      {VTK_HEXAHEDRON, mesh::CellType::hex8},
-                                                      {VTK_QUADRATIC_TETRA, mesh::CellType::tet10}};
     std::vector<mesh::Facet> polygons;
     std::map<mesh::CellType, mesh::ElementBlock> blocks;
     for (vtkIdType i = 0; i < data.GetNumberOfCells(); ++i) {
         vtkCell* cell = data.GetCell(i);
         const int count = static_cast<int>(cell->GetNumberOfPoints());
-        const auto solid = solids.find(cell->GetCellType());
-        if (solid != solids.end()) {
-            mesh::ElementBlock& block = blocks[solid->second];
-            block.type = solid->second;
+        const mesh::CellInfo* solid =
+            mesh::find_cell_type([&](const mesh::CellInfo& info) { return info.vtk == cell->GetCellType(); });
+        if (solid != nullptr) {
+            mesh::ElementBlock& block = blocks[solid->type];
+            block.type = solid->type;
             for (int c = 0; c < count; ++c) block.connectivity.push_back(static_cast<Index>(cell->GetPointId(c)));
         } else if (cell->GetCellDimension() == 2 && (count == 3 || count == 4)) {
             mesh::Facet& facet = polygons.emplace_back();

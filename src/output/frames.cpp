@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<const Field*> chosen(FieldPlace where, const std::vector<std::string>& names) {
-    std::vector<const Field*> fields;
+std::vector<const OutputField*> chosen(FieldPlace where, const std::vector<std::string>& names) {
+    std::vector<const OutputField*> fields;
     for (const std::string& name : names) fields.push_back(&field(where, name));
     return fields;
 }
@@ -55,7 +55,7 @@ std::vector<std::string> Frames::files(long number) const {
 }
 
 void Frames::add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
-                         const std::vector<mesh::Facet>& facets, std::vector<const Field*> fields) {
+                         const std::vector<mesh::Facet>& facets, std::vector<const OutputField*> fields) {
     if (fields.empty()) return;
     Surface surface{std::move(name), pair, nodes, {}, facets, std::move(fields)};
     std::unordered_map<Index, Index> point_of;
@@ -82,12 +82,12 @@ void Frames::write(const Snapshot& snapshot, long number) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         const model::Body& body = model.bodies[b];
         File& one = files.emplace_back(File{nullptr, &body, body.name, file(body.name, number, "vtu"), {}});
-        for (const Field* f : body_fields_) one.arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));
+        for (const OutputField* f : body_fields_) one.arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));
     }
     for (const Surface& surface : surfaces_) {
         File& one = files.emplace_back(File{&surface, nullptr, surface.name, file(surface.name, number, "vtp"), {}});
         one.arrays.push_back(displacement_of(surface.nodes, snapshot.state().u));
-        for (const Field* f : surface.fields) one.arrays.push_back(evaluate(*f, snapshot, surface.pair));
+        for (const OutputField* f : surface.fields) one.arrays.push_back(evaluate(*f, snapshot, surface.pair));
     }
     finish();
     if (!beside_) return write_files(files, model.origin, time);

@@ -59,7 +59,7 @@ LocatedPoint locate_point(const model::Body& body, const Vec3& X) {
         const Vec3 air = Vec3::Constant(at_the_edge * box.diagonal().norm());
         box = Eigen::AlignedBox3d(box.min() - air, box.max() + air);
         if (!box.contains(X)) return;
-        with_element(body.mesh.blocks[static_cast<std::size_t>(element.block)].type, [&]<class E>() {
+        fe::with_element(body.mesh.blocks[static_cast<std::size_t>(element.block)].type, [&]<class E>() {
             if (const auto xi = natural_coordinates<E>(positions, X)) found.place = {nodes, E::shape(*xi)};
         });
     });

@@ -31,7 +31,7 @@ private:
 /// (6 x nodes of the element)
 template <fe::ReferenceElement E>
 Eigen::Matrix<double, 6, E::nodes> element_strain(const Eigen::Matrix<double, 3, E::nodes>& X,
-                                                  const Eigen::Matrix<double, 3, E::nodes>& u, bool linear) {
+                                                  const Eigen::Matrix<double, 3, E::nodes>& u, bool finite) {
     static const fe::ShapeTable<E> table(E::quadrature());
     static const Eigen::Matrix<double, E::nodes, E::points> to_nodes = fe::extrapolation<E>();
     const fe::ElementPoints<E> points(table, X);
@@ -39,7 +39,7 @@ Eigen::Matrix<double, 6, E::nodes> element_strain(const Eigen::Matrix<double, 3,
     for (int q = 0; q < E::points; ++q) {
         const Mat3 H = u * points.gradients[static_cast<std::size_t>(q)];
         Mat3 e = (H + H.transpose()) / 2;
-        if (!linear) e += H.transpose() * H / 2;
+        if (finite) e += H.transpose() * H / 2;
         strain.col(q) << e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(1, 2), e(2, 0);
     }
     return strain * to_nodes.transpose();
@@ -47,7 +47,7 @@ Eigen::Matrix<double, 6, E::nodes> element_strain(const Eigen::Matrix<double, 3,
 
 } // namespace
 
-std::vector<double> nodal_strain(const model::Body& body, const std::vector<Vec3>& u) {
+std::vector<double> nodal_strain(const model::Body& body, const Field& u) {
     NodalMean mean(body.nodes(), 6);
     for_each_element(body, [&](const ElementOf& element) {
         const auto block = static_cast<std::size_t>(element.block);
@@ -55,23 +55,24 @@ std::vector<double> nodal_strain(const model::Body& body, const std::vector<Vec3
         const std::vector<Index> nodes = nodes_of(body, element);
         const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, u);
         const double volume = kernel.volume(X);
-        with_element(body.mesh.blocks[block].type, [&]<class E>() {
-            const auto strain = element_strain<E>(X, ue, kernel.linear());
+        fe::with_element(body.mesh.blocks[block].type, [&]<class E>() {
+            const auto strain = element_strain<E>(X, ue, kernel.finite_strain());
             for (int i = 0; i < E::nodes; ++i) mean.add(nodes[static_cast<std::size_t>(i)], strain.col(i), volume);
         });
     });
     return mean.values();
 }
 
-std::vector<double> nodal_energy_density(const model::Body& body, const std::vector<Vec3>& u) {
+std::vector<double> nodal_energy_density(const model::Model& model, Index b, const model::State& state) {
+    const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
     NodalMean mean(body.nodes(), 1);
     for_each_element(body, [&](const ElementOf& element) {
         const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(element.block)];
         const std::vector<Index> nodes = nodes_of(body, element);
-        const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, u);
+        const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, state.u);
         const double volume = kernel.volume(X);
         double energy = 0;
-        (void)kernel.energy(X, ue, energy); // 0 where it is not admissible, as in an iterate that failed
+        (void)kernel.energy({X, ue, history_of(model, b, element, state)}, energy); // 0 where it is not admissible, as in an iterate that failed
         for (const Index node : nodes) mean.add(node, Eigen::Matrix<double, 1, 1>(energy / volume), volume);
     });
     return mean.values();

@@ -46,7 +46,7 @@ public:
     [[nodiscard]] std::vector<std::vector<double>> rows(const Snapshot& snapshot) const override {
         std::vector<double> row;
         for (const std::string& reduction : reductions_)
-            for (const Field* f : fields_.all()) {
+            for (const OutputField* f : fields_.all()) {
                 const std::vector<double> values = f->values(snapshot, part_);
                 const auto n = static_cast<std::size_t>(f->components);
                 for (std::size_t c = 0; c < n; ++c) {

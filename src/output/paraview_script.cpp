@@ -139,7 +139,7 @@ void write_paraview_script(const std::filesystem::path& folder, const model::Mod
         if (!fields.master.empty()) masters.push_back(pair->name() + ".master");
     }
     if (std::ranges::count(fields.slave, "contact_force") > 0) arrows.emplace_back("slave");
-    for (const Field& f : all_fields())
+    for (const OutputField& f : all_fields())
         if (f.components == 3 && std::ranges::count(vectors, f.name) == 0) vectors.emplace_back(f.name);
     const std::string text =
         fmt::format("\"\"\"Shows the frames of this folder: View > Python Shell > Run Script in ParaView, or\n"

@@ -26,18 +26,18 @@ ProbeFields::ProbeFields(FieldPlace where, const FieldNames& names) {
 }
 
 void ProbeFields::append_columns(std::vector<ProbeColumn>& columns, const std::string& prefix) const {
-    for (const Field* f : fields_)
+    for (const OutputField* f : fields_)
         for (int c = 0; c < f->components; ++c)
             columns.push_back({prefix + f->name + ending(f->components, c), f->unit});
 }
 
 bool ProbeFields::has(const std::string& field) const {
-    return std::ranges::any_of(fields_, [&](const Field* f) { return f->name == field; });
+    return std::ranges::any_of(fields_, [&](const OutputField* f) { return f->name == field; });
 }
 
 void ProbeFields::append_rows(const Snapshot& snapshot, Index body_or_pair, const std::vector<Between>& places,
                               std::vector<std::vector<double>>& rows) const {
-    for (const Field* f : fields_) {
+    for (const OutputField* f : fields_) {
         const std::vector<double> values = f->values(snapshot, body_or_pair);
         const auto value = [&](Index point, int c) {
             return values[static_cast<std::size_t>(point) * static_cast<std::size_t>(f->components) +

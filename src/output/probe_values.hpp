@@ -19,13 +19,13 @@ public:
     /// "stress_xx", one per component. @param prefix  "mean_"
     void append_columns(std::vector<ProbeColumn>& columns, const std::string& prefix = {}) const;
     [[nodiscard]] bool has(const std::string& field) const;
-    [[nodiscard]] const std::vector<const Field*>& all() const { return fields_; }
+    [[nodiscard]] const std::vector<const OutputField*>& all() const { return fields_; }
     /// Values at a place, appended to every row.
     void append_rows(const Snapshot& snapshot, Index body_or_pair, const std::vector<Between>& places,
                      std::vector<std::vector<double>>& rows) const;
 
 private:
-    std::vector<const Field*> fields_;
+    std::vector<const OutputField*> fields_;
 };
 
 } // namespace osculate::output

@@ -10,17 +10,14 @@ Snapshot::Snapshot(const model::Model& model, const model::State& state, const m
     : model_(model), state_(state), contact_(contact), reactions_(std::move(reactions)),
       out_of_balance_(std::move(out_of_balance)), dt_(dt), audit_(audit) {}
 
-const std::vector<Vec3>& Snapshot::x() const {
-    if (x_.empty()) {
-        x_ = model_.X;
-        for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state_.u[i];
-    }
+const Field& Snapshot::x() const {
+    if (x_.empty()) x_ = sum(model_.X, state_.u);
     return x_;
 }
 
 const Snapshot::Stress& Snapshot::stress(Index body) const {
     auto known = stress_.find(body);
-    if (known == stress_.end()) known = stress_.emplace(body, model::nodal_stress(model_.bodies[body], state_.u)).first;
+    if (known == stress_.end()) known = stress_.emplace(body, model::nodal_stress(model_, body, state_)).first;
     return known->second;
 }
 

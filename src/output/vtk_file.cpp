@@ -27,16 +27,6 @@ namespace osculate::output {
 
 namespace {
 
-int vtk_cell(mesh::CellType type) {
-    switch (type) {
-    case mesh::CellType::tet4: return VTK_TETRA;
-    case mesh::CellType::wedge6: return VTK_WEDGE;
-    case mesh::CellType::hex8: return VTK_HEXAHEDRON;
-    case mesh::CellType::tet10: return VTK_QUADRATIC_TETRA;
-    }
-    throw InternalError("cell type without a VTK counterpart");
-}
-
 vtkSmartPointer<vtkPoints> vtk_points(const std::vector<Vec3>& points) {
     auto result = vtkSmartPointer<vtkPoints>::New();
     result->SetDataTypeToDouble();
@@ -102,7 +92,7 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
             for (int k = 0; k < count; ++k)
                 nodes[static_cast<std::size_t>(k)] = block.connectivity[static_cast<std::size_t>(e * count + k)];
             cells->InsertNextCell(count, nodes.data());
-            types->InsertNextValue(static_cast<unsigned char>(vtk_cell(block.type)));
+            types->InsertNextValue(static_cast<unsigned char>(mesh::cell_info(block.type).vtk));
         }
     }
     vtkNew<vtkUnstructuredGrid> grid;

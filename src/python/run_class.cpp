@@ -75,7 +75,7 @@ const output::Snapshot& snapshot(Session& session, bool reactions = false) {
 /// Values of a field of the table of output, as frames hold them.
 py::array field_values(Session& session, FieldPlace where, Index index, const std::string& name) {
     std::vector<std::string> known;
-    for (const output::Field& field : output::all_fields())
+    for (const output::OutputField& field : output::all_fields())
         if (field.where == where) known.emplace_back(field.name);
     if (std::ranges::count(known, name) == 0) unknown("field", name, known);
     const output::Array array =
@@ -102,20 +102,10 @@ py::array nodes(const py::object& self, const std::string& name) {
     return owned(std::move(moved), 3);
 }
 
-const char* name_of(mesh::CellType type) {
-    switch (type) {
-    case mesh::CellType::tet4: return "tetra";
-    case mesh::CellType::wedge6: return "wedge";
-    case mesh::CellType::hex8: return "hexahedron";
-    case mesh::CellType::tet10: return "tetra10";
-    }
-    return "";
-}
-
 py::list cells(const py::object& self, const std::string& name) {
     py::list blocks;
     for (const mesh::ElementBlock& block : body(self.cast<const Session&>(), name).mesh.blocks)
-        blocks.append(py::make_tuple(name_of(block.type),
+        blocks.append(py::make_tuple(std::string(mesh::cell_info(block.type).meshio),
                                      view(std::span(block.connectivity), mesh::nodes_per_cell(block.type), self)));
     return blocks;
 }

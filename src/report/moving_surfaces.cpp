@@ -55,7 +55,7 @@ std::string unit_of(PartKind kind, const std::string& name) {
     const output::FieldPlace where = kind == PartKind::body    ? output::FieldPlace::body
                                      : kind == PartKind::slave ? output::FieldPlace::slave
                                                                : output::FieldPlace::master;
-    for (const output::Field& field : output::all_fields())
+    for (const output::OutputField& field : output::all_fields())
         if (field.name == name && (field.where == where || name == "displacement")) return field.unit;
     return "";
 }

@@ -80,6 +80,10 @@ struct KinsolSolver::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
+    [[nodiscard]] Eigen::Map<Vector> values(N_Vector of) const { return {N_VGetArrayPointer(of), size}; }
+    [[nodiscard]] Eigen::Map<Vector> values(double* of) const { return {of, size}; }
+    [[nodiscard]] Eigen::Map<const Vector> values(const double* of) const { return {of, size}; }
+
     /// Runs a callback's body; an exception is kept for solve() to rethrow and becomes a fatal return.
     template <class Body> int guarded(Body&& body) noexcept {
         try {
@@ -93,7 +97,7 @@ struct KinsolSolver::Impl {
     int residual(N_Vector at, N_Vector F) {
         return guarded([&] {
             double* f = N_VGetArrayPointer(F);
-            const auto verdict = problem->residual(N_VGetArrayPointer(at), f);
+            const auto verdict = problem->residual(values(at), values(F));
             if (verdict == NonlinearProblem::Verdict::stop) {
                 stopped = true;
                 return fatal;
@@ -176,7 +180,7 @@ struct KinsolSolver::Impl {
         Tangent* tangent = problem->tangent();
         if (tangent == nullptr || !tangent->solves() || own_failures >= worth_trying) return false;
         const int before = tangent->factorisations();
-        const bool solved = tangent->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed_error(b));
+        const bool solved = tangent->solve(values(b), values(x), allowed_error(b));
         factorisations += tangent->factorisations() - before;
         own_failures += solved ? 0 : 1;
         return solved;
@@ -196,9 +200,11 @@ struct KinsolSolver::Impl {
             if (matrix != nullptr)
                 matrix->multiply(v, y);
             else
-                problem->tangent()->multiply(v, y);
+                problem->tangent()->multiply(values(v), values(y));
         };
-        const auto nearly = [this](const double* r, double* y) { problem->preconditioner()->precondition(r, y); };
+        const auto nearly = [this](const double* r, double* y) {
+            problem->preconditioner()->precondition(values(r), values(y));
+        };
         const double allowed = allowed_error(b);
         SparseIndex suspect = -1;
         for (bool fresh = false; !fresh && preconditioner_failures < worth_trying;) {
@@ -305,15 +311,15 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     s.error = nullptr;
     if (s.size == 0) { // everything is held; KINSOL looks at the first entry of every vector
         KinsolResult nothing;
-        double none = 0;
-        const auto verdict = problem.residual(&none, &none);
+        Vector none;
+        const auto verdict = problem.residual(none, none);
         if (verdict == NonlinearProblem::Verdict::shorten) nothing.outcome = KinsolOutcome::not_evaluable;
         if (verdict == NonlinearProblem::Verdict::stop) nothing.outcome = KinsolOutcome::stopped;
         return nothing;
     }
     const long factorisations_before = s.factorisations;
-    Eigen::Map<Vector>(N_VGetArrayPointer(s.z.get()), s.size) = unknowns;
-    Eigen::Map<Vector>(N_VGetArrayPointer(s.u_scale.get()), s.size) = options.unknown_scale;
+    s.values(s.z.get()) = unknowns;
+    s.values(s.u_scale.get()) = options.unknown_scale;
     N_VConst(options.residual_scale, s.f_scale.get());
     s.create(options);
 
@@ -321,7 +327,7 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     result.return_code =
         KINSol(s.memory, s.z.get(), options.line_search ? KIN_LINESEARCH : KIN_NONE, s.u_scale.get(), s.f_scale.get());
     if (s.error) std::rethrow_exception(s.error);
-    unknowns = Eigen::Map<const Vector>(N_VGetArrayPointer(s.z.get()), s.size);
+    unknowns = s.values(s.z.get());
     long iterations = 0;
     KINGetNumNonlinSolvIters(s.memory, &iterations);
     result.iterations = static_cast<int>(iterations);

@@ -32,9 +32,8 @@ Audit::Audit(const model::Model& model) : model_(model), surfaces_(outer_facets(
                              model::body_index(model, pair->master_nodes().front())));
 }
 
-const contact::AuditResult& Audit::examine(const std::vector<Vec3>& u) {
-    x_ = model_.X;
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += u[i];
+const contact::AuditResult& Audit::examine(const Field& u) {
+    x_ = sum(model_.X, u);
     result_ = surfaces_.examine(x_);
     return result_;
 }

@@ -15,12 +15,6 @@ using model::ContactPair;
 
 namespace {
 
-std::vector<Vec3> positions(const model::Model& model, const model::State& state) {
-    std::vector<Vec3> x = model.X;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += state.u[i];
-    return x;
-}
-
 bool takes_part(const model::Model& model, const ContactPair& pair, const Body& body) {
     return body_of(model, pair.slaves().node.front()) == &body || body_of(model, pair.master_nodes().front()) == &body;
 }
@@ -43,7 +37,7 @@ bool is_loose(const FailedAttempt& failed, const BodyHold& hold) {
 std::vector<BodyHold> holds_before(const FailedAttempt& failed) {
     const model::Model& model = failed.model;
     Timings unused;
-    const std::vector<Vec3> x = positions(model, failed.last);
+    const Field x = sum(model.X, failed.last.u);
     model::ContactEvaluations contact = model::contact_evaluations(model);
     for (std::size_t p = 0; p < contact.size(); ++p) {
         contact[p].begin_step(x, failed.last.contact[p], unused, 1);
@@ -76,7 +70,7 @@ void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equil
               std::vector<BodyHold>& holds) {
     const model::Model& model = failed.model;
     const linear::Constraints& constraints = equilibrium.constraints();
-    const std::vector<Vec3> x = positions(model, state);
+    const Field x = sum(model.X, state.u);
     const double round_off = failed.ladder.tolerance * failed.ladder.reference_force;
     for (std::size_t b = 0; b < holds.size(); ++b) {
         const Body& body = model.bodies[b];

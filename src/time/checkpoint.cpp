@@ -15,8 +15,8 @@ bool within(const std::vector<Index>& values, Index end) {
     return std::ranges::all_of(values, [&](Index value) { return within(value, end); });
 }
 
-template <class T> bool finite(const std::vector<T>& values) {
-    return std::ranges::all_of(values, [](const T& value) { return value.allFinite(); });
+template <class List> bool finite(const List& values) {
+    return std::ranges::all_of(values, [](const auto& value) { return value.allFinite(); });
 }
 
 std::string misfit(const model::ContactHistory& history, const model::ContactPair& pair) {
@@ -71,6 +71,7 @@ std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std:
     if (state.u.size() != nodes || checkpoint.displacement_start.size() != nodes || state.v.size() != state.a.size() ||
         (!state.v.empty() && state.v.size() != nodes))
         return "number of nodes";
+    if (state.material.size() != model::initial_history(model).size()) return "what materials remember";
     if (!finite(state.u) || !finite(state.v) || !finite(state.a) || !finite(checkpoint.displacement_start))
         return "values that are not finite";
     if (state.contact.size() != model.pairs.size() || checkpoint.patches.size() != model.pairs.size())

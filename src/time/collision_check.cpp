@@ -26,8 +26,7 @@ CollisionCheck::CollisionCheck(const model::Model& model, model::ContactEvaluati
     : model_(model), contact_(contact), limits_(limits), paths_(paths), timings_(timings), threads_(threads) {}
 
 void CollisionCheck::begin_step(const model::State& state) {
-    x_ = model_.X;
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += state.u[i];
+    x_ = sum(model_.X, state.u);
     starts_.clear();
     for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
         model::ContactEvaluation& evaluation = contact_[p];
@@ -73,7 +72,7 @@ bool CollisionCheck::sheet_lost(std::size_t p, Index j) const {
     return !point.found || point.normal.dot(starts_[p][j].normal) <= same_side;
 }
 
-void CollisionCheck::add_trial(const std::vector<Vec3>& u, StepEvidence& evidence) {
+void CollisionCheck::add_trial(const Field& u, StepEvidence& evidence) {
     add_normal_motions(u, evidence);
     for (std::size_t p = 0; p < starts_.size(); ++p)
         for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
@@ -88,12 +87,12 @@ void CollisionCheck::add_trial(const std::vector<Vec3>& u, StepEvidence& evidenc
     if (paths_) add_paths(u, evidence);
 }
 
-void CollisionCheck::add_solution(const std::vector<Vec3>& u, StepEvidence& evidence) {
+void CollisionCheck::add_solution(const Field& u, StepEvidence& evidence) {
     add_normal_motions(u, evidence);
     if (paths_) add_paths(u, evidence);
 }
 
-void CollisionCheck::add_normal_motions(const std::vector<Vec3>& u, StepEvidence& evidence) const {
+void CollisionCheck::add_normal_motions(const Field& u, StepEvidence& evidence) const {
     for (std::size_t p = 0; p < starts_.size(); ++p) {
         const model::ContactPair& pair = *model_.pairs[p];
         for (Index j = 0; j < pair.size(); ++j) {
@@ -109,9 +108,8 @@ void CollisionCheck::add_normal_motions(const std::vector<Vec3>& u, StepEvidence
     }
 }
 
-void CollisionCheck::add_paths(const std::vector<Vec3>& u, StepEvidence& evidence) {
-    std::vector<Vec3> x = model_.X;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += u[i];
+void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
+    const Field x = sum(model_.X, u);
     for (std::size_t p = 0; p < starts_.size(); ++p) {
         const model::ContactPair& pair = *model_.pairs[p];
         // motion relative to the mean of the master's
@@ -134,7 +132,7 @@ void CollisionCheck::add_paths(const std::vector<Vec3>& u, StepEvidence& evidenc
     }
 }
 
-void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, const std::vector<Vec3>& x,
+void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, const Field& x,
                             StepEvidence& evidence) {
     const ScopedTimer timer(timings_, Part::search);
     const model::ContactPair& pair = *model_.pairs[p];

@@ -10,7 +10,7 @@ namespace osculate::time {
 
 namespace {
 
-std::optional<NotFinite> first_in(const char* what, const std::vector<Vec3>& field) {
+std::optional<NotFinite> first_in(const char* what, const Field& field) {
     for (std::size_t i = 0; i < field.size(); ++i)
         for (const double value : field[i])
             if (!std::isfinite(value)) return NotFinite{what, static_cast<Index>(i), value};

@@ -1,6 +1,6 @@
 #include "osculate/time/force_balance.hpp"
 
-#include "osculate/core/nodal_field.hpp"
+#include "osculate/core/field.hpp"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ namespace osculate::time {
 namespace {
 
 /// Adds a pair's contact forces on nodes to f; their sum.
-Vec3 add_contact(const model::ContactEvaluation& evaluation, const std::vector<Vec3>& lambda, NodalField& f) {
+Vec3 add_contact(const model::ContactEvaluation& evaluation, const std::vector<Vec3>& lambda, Field& f) {
     Vec3 sum = Vec3::Zero();
     const auto add = [&](Index node, const Vec3& force) {
         f[static_cast<std::size_t>(node)] += force;
@@ -26,13 +26,13 @@ Vec3 add_contact(const model::ContactEvaluation& evaluation, const std::vector<V
 ForceBalance force_balance(const model::Model& model, const equilibrium::Equilibrium& equilibrium,
                            const model::State& state) {
     ForceBalance balance;
-    NodalField contact(state.u.size(), Vec3::Zero());
+    Field contact(state.u.size());
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         const Vec3 sum = add_contact(equilibrium.contact()[p], state.contact[p].lambda, contact);
         if (!model.pairs[p]->mirrored()) balance.left_over = std::max(balance.left_over, sum.norm());
     }
-    const NodalField outer = equilibrium.bodies().outer_forces(state);
-    const NodalField &load = equilibrium.external_force(), &unbalanced = equilibrium.unbalanced();
+    const Field outer = equilibrium.bodies().outer_forces(state);
+    const Field &load = equilibrium.external_force(), &unbalanced = equilibrium.unbalanced();
     for (const model::Body& body : model.bodies) {
         Vec3 sum = Vec3::Zero();
         for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node) {

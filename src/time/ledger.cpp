@@ -1,15 +1,14 @@
 #include "osculate/time/ledger.hpp"
 
-#include "osculate/core/nodal_field.hpp"
+#include "osculate/core/field.hpp"
 
 namespace osculate::time {
 
 namespace {
 
-using Field = NodalField;
 
 Field times(const linear::BlockMatrix& A, const Field& x) {
-    Field y(x.size(), Vec3::Zero());
+    Field y(x.size());
     A.multiply_add(x, y, 1);
     return y;
 }
@@ -19,13 +18,11 @@ void take_stock(Ledger& ledger, const model::Model& model, const equilibrium::Dy
                 const model::State& state) {
     const Field p = times(model.mass(dynamics.lumped_mass), state.v);
     ledger.kinetic = 0.5 * dot(state.v, p);
-    ledger.strain = model::strain_energy(model, state.u, 1);
-    ledger.linear.setZero();
-    ledger.angular.setZero();
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        ledger.linear += p[i];
-        ledger.angular += (model.X[i] + state.u[i]).cross(p[i]);
-    }
+    ledger.strain = model::strain_energy(model, state.u, state.material, 1);
+    const Vec3 none = Vec3::Zero();
+    ledger.linear = sum_over(model.nodes(), none, [&](Index i) { return p[i]; });
+    ledger.angular =
+        sum_over(model.nodes(), none, [&](Index i) { return Vec3((model.X[i] + state.u[i]).cross(p[i])); });
 }
 
 } // namespace
@@ -43,9 +40,9 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibri
     take_stock(next, model, dynamics, to);
     const Field Du = weighted(1, to.u, -1, from.u);
 
-    double external = dot(Du, force);
-    for (Index i = 0; i < model.nodes(); ++i)
-        external += Du[i].dot(equilibrium.constraints().reaction(i, equilibrium.unbalanced()[i]));
+    double external = sum_over(model.nodes(), dot(Du, force), [&](Index i) {
+        return Du[i].dot(equilibrium.constraints().reaction(i, equilibrium.unbalanced()[i]));
+    });
     const equilibrium::BodyWork work = equilibrium.bodies().work(to);
     external += work.follower;
     double contact = 0, friction = 0;

@@ -218,7 +218,7 @@ PostMortem examine(const FailedAttempt& failed, equilibrium::Equilibrium& equili
         found.bodies = holds_before(failed);
         Vector F(failed.z.size());
         equilibrium.set_statuses(equilibrium.statuses(), equilibrium::StatusRule::frozen, false);
-        (void)equilibrium.residual(failed.z.data(), F.data());
+        (void)equilibrium.residual(failed.z, F);
         hold_now(failed, equilibrium, state, found.bodies);
     }
     found.cause = cause_of_decision(failed, found);

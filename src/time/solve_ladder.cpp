@@ -15,12 +15,6 @@ namespace {
 constexpr int most_settlings = 40; ///< KINSOL calls of rung 3
 constexpr int most_means = 3;      ///< ways out of a cycle of two iterates, one after another
 
-double largest_component(const std::vector<Vec3>& u) {
-    double largest = 0;
-    for (const Vec3& v : u) largest = std::max(largest, v.cwiseAbs().maxCoeff());
-    return largest;
-}
-
 solve::KinsolOptions kinsol_options(equilibrium::Equilibrium& equilibrium, Index size, const LadderOptions& options) {
     solve::KinsolOptions kinsol;
     kinsol.tolerance = options.tolerance;
@@ -117,16 +111,6 @@ LadderResult settle(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& 
     return result;
 }
 
-double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, Index& where) {
-    double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        if (const double distance = (a[i] - b[i]).norm(); distance > largest) {
-            largest = distance;
-            where = static_cast<Index>(i);
-        }
-    return largest;
-}
-
 /// Rung 4, a proximal point iteration: u_k+1 solves f(u) + k S (u - u_k) = f_ext + f_contact.
 LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                        equilibrium::Statuses statuses, bool force_first, LadderOptions& options) {
@@ -140,12 +124,12 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
     LadderResult result;
     result.rung = "stabilised";
     result.outcome = KinsolOutcome::stopped;
-    const std::vector<Vec3> start = equilibrium.displacements(z);
+    const Field start = equilibrium.displacements(z);
     // a wide gap is crossed in a few strides, and nothing is gone through that should have been met
     double gap = how.gap();
     const auto stride = [&] { return std::max(how.finest, 0.5 * gap); };
     const auto too_far = [&] { return std::max(how.finest, gap); };
-    std::vector<Vec3> anchor = start;
+    Field anchor = start;
     Vector anchor_z = z;
     // the reference force is a norm over the nodes; this is no less than their sum
     double stiffness = options.reference_force * std::sqrt(static_cast<double>(start.size())) / stride();
@@ -174,16 +158,16 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
             stiffness *= stiffer;
             continue;
         }
-        std::vector<Vec3> u = equilibrium.displacements(z);
-        Index node = -1;
-        const double moved = largest_distance(u, anchor, node);
+        Field u = equilibrium.displacements(z);
+        const double moved = largest_distance(u, anchor).value;
         if (moved > too_far()) {
             stiffness *= moved / stride();
             continue;
         }
-        result.travelled = largest_distance(u, start, node);
+        const AtNode travelled = largest_distance(u, start);
+        result.travelled = travelled.value;
         if (result.travelled > how.farthest) {
-            result.adrift = node;
+            result.adrift = travelled.node;
             break;
         }
         const double before = stride();
@@ -198,7 +182,7 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
         equilibrium.release();
         equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
         Vector F(z.size());
-        if (equilibrium.residual(z.data(), F.data()) == equilibrium::Equilibrium::Verdict::proceed && F.allFinite()) {
+        if (equilibrium.residual(z, F) == equilibrium::Equilibrium::Verdict::proceed && F.allFinite()) {
             result.residual = F.cwiseAbs().maxCoeff() / options.reference_force;
             if (result.residual <= options.tolerance && equilibrium.natural_statuses() == statuses) {
                 result.outcome = KinsolOutcome::converged;
@@ -207,9 +191,8 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
         }
         if (moved < near * before && !undetermined) {
             const auto free = newton(false);
-            Index any = -1;
             if (free.outcome == KinsolOutcome::converged &&
-                largest_distance(equilibrium.displacements(z), anchor, any) < stride()) {
+                largest_distance(equilibrium.displacements(z), anchor).value < stride()) {
                 result.outcome = KinsolOutcome::converged;
                 return result;
             }
@@ -219,8 +202,10 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
         stiffness *= std::max(solved.iterations <= easy ? softer : little_softer, moved / stride());
     }
     if (result.adrift < 0 && result.stabilised_solves == most_solves && failures < most_failures) {
-        result.travelled = largest_distance(anchor, start, result.adrift);
-        if (result.travelled < 0.5 * how.farthest) result.adrift = -1; // it moved, but did not run away
+        const AtNode travelled = largest_distance(anchor, start);
+        result.travelled = travelled.value;
+        // below it moved, but did not run away
+        if (!(travelled.value < 0.5 * how.farthest)) result.adrift = travelled.node;
     }
     if (result.adrift < 0 || result.stabilised_solves == most_solves) z = anchor_z; // not a try without springs
     equilibrium.release();
@@ -244,7 +229,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
     LadderOptions now = options;
     const bool predicted = z != unpredicted;
     LadderResult result;
-    const auto newton = [&](const char* rung, const std::vector<Vec3>& from, bool force) {
+    const auto newton = [&](const char* rung, const Field& from, bool force) {
         equilibrium.set_statuses(start, equilibrium::StatusRule::natural, force);
         equilibrium.linearise_first_about(from);
         auto solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::natural, now);

@@ -14,15 +14,15 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
                    const Checkpoint* from)
     : context_(context), stage_(stage), progress_(progress), observer_(observer),
       constraints_(context.model.nodes(), stage.constraints), dynamics_(stage.dynamics ? &*stage.dynamics : nullptr),
-      equilibrium_(context.model, constraints_, dynamics_, context.timings, context.options.threads,
-                   !stage.follower_pressures.empty(), context.options.linear_solver),
+      equilibrium_(context.model, constraints_, dynamics_, stage.tangent, context.timings, context.options.threads,
+                   !stage.follower_pressures.empty()),
       solver_(equilibrium_.size(), context.timings),
       collisions_(context.model, equilibrium_.contact(), stage.limits, stage.follow_paths, context.timings,
                   context.options.threads),
       bounded_(std::isfinite(stage.limits.allowed_interpenetration) && !context.model.pairs.empty()) {
     const model::Model& model = context.model;
     if (from == nullptr) {
-        progress_.displacement_start.assign(model.X.size(), Vec3::Zero());
+        progress_.displacement_start.reset(model.X.size());
         for (Index node = 0; node < model.nodes(); ++node)
             progress_.displacement_start[node] = constraints_.to_local(node, progress_.state.u[node]);
         progress_.stage_start = progress_.state.time;
@@ -57,7 +57,7 @@ void StageRun::run() {
     }
 }
 
-equilibrium::StepLoad StageRun::mean_load(const StepAttempt& attempt, std::vector<Vec3>& u) const {
+equilibrium::StepLoad StageRun::mean_load(const StepAttempt& attempt, Field& u) const {
     const model::State& state = progress_.state;
     const double start = progress_.stage_start;
     equilibrium::StepLoad load =
@@ -87,7 +87,7 @@ StepAttempt StageRun::prepare() {
     attempt.dt = fit.dt;
     attempt.on_target = fit.on_target;
 
-    std::vector<Vec3> u = state.u;
+    Field u = state.u;
     equilibrium::StepLoad load = mean_load(attempt, u);
     if (dynamics_ != nullptr) attempt.force = load.force;
     if (bounded_ && repeats_ == 0) collisions_.begin_step(state);
@@ -95,7 +95,7 @@ StepAttempt StageRun::prepare() {
     equilibrium_.begin_attempt(state, load, attempt.dt);
     attempt.z = equilibrium_.unknowns(u, state.contact);
     attempt.unpredicted = equilibrium_.unknowns(state.u, state.contact);
-    const std::vector<Vec3> start = equilibrium_.displacements(attempt.z);
+    const Field start = equilibrium_.displacements(attempt.z);
 
     LadderOptions& ladder = attempt.ladder;
     ladder.tolerance = options.tolerance;
@@ -103,9 +103,9 @@ StepAttempt StageRun::prepare() {
     ladder.characteristic_length = context_.characteristic_length;
     ladder.reference_force = reference;
     ladder.round_off = context_.round_off_force();
-    ladder.farthest = context_.characteristic_length + largest_displacement(state);
+    ladder.farthest = context_.characteristic_length + largest_component(state.u);
     ladder.last_chance = cannot_be_cut(stage_.limits, attempt.dt, repeats_);
-    if (context_.model.finite_strain) {
+    if (context_.model.nonlinear) {
         ladder.predicted = u;
         ladder.unpredicted = state.u;
     }
@@ -117,8 +117,8 @@ StepAttempt StageRun::prepare() {
     if (dynamics_ == nullptr && options.stabilisation)
         ladder.stabilisation = stabilisation_options(context_, state, start);
     if (reference == 0) {
-        equilibrium::Equilibrium alone(context_.model, constraints_, dynamics_, context_.timings, options.threads,
-                                       !stage_.follower_pressures.empty(), linear::LinearSolver::direct);
+        equilibrium::Equilibrium alone(context_.model, constraints_, dynamics_, {}, context_.timings, options.threads,
+                                       !stage_.follower_pressures.empty());
         alone.begin_attempt(state, std::move(load), attempt.dt);
         ladder.reference_force = imbalance(alone, attempt.z, attempt.statuses, attempt.forced);
     }
@@ -188,9 +188,12 @@ void StageRun::gather_dynamic_evidence(StepAttempt& attempt) {
     const StepLimits& limits = stage_.limits;
     const Ledger &before = progress_.ledger, &after = attempt.ledger;
     const bool finite = !attempt.not_finite;
-    if (std::isfinite(limits.error_tolerance))
-        evidence.local_error = local_error(context_.model, *dynamics_, constraints_, progress_.state, attempt.next,
-                                           attempt.dt, attempt.worst_in_time);
+    if (std::isfinite(limits.error_tolerance)) {
+        const AtNode worst =
+            local_error(context_.model, *dynamics_, constraints_, progress_.state, attempt.next, attempt.dt);
+        evidence.local_error = worst.value;
+        attempt.worst_in_time = worst.node;
+    }
     if (std::isfinite(limits.velocity_error) && finite)
         evidence.velocity_error = velocity_error(context_.model, *dynamics_, *centres_, progress_.state, attempt.next,
                                                  attempt.dt, std::max(energy_so_far(before), energy_so_far(after)));
@@ -262,12 +265,11 @@ Checkpoint StageRun::checkpoint() const {
 
 void StageRun::refit_patches() {
     const model::Model& model = context_.model;
-    std::vector<Vec3> x;
+    Field x;
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         std::shared_ptr<const contact::MasterSurface>& master = progress_.state.contact[p].master;
         if (!master->refits()) continue;
-        if (x.empty())
-            for (std::size_t i = 0; i < model.X.size(); ++i) x.push_back(model.X[i] + progress_.state.u[i]);
+        if (x.empty()) x = sum(model.X, progress_.state.u);
         const auto refitted = master->refitted(model.pairs[p]->vertices(x));
         if (!refitted) continue;
         progress_.counts.refreshed_patches += refitted->refits_done() - master->refits_done();

@@ -19,7 +19,7 @@ struct StepAttempt {
     double time = 0, dt = 0; ///< at its end, s
     double proposed = 0;     ///< dt where no time to hit were near
     bool on_target = false;
-    std::vector<Vec3> force;        ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
+    Field force;        ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
     Vector z, unpredicted;          ///< start values, the last iterate afterwards; the same without prediction
     equilibrium::Statuses statuses; ///< to start from
     bool forced = false;            ///< contact made by hand, see starting_statuses()
@@ -46,7 +46,7 @@ public:
 
 private:
     [[nodiscard]] StepAttempt prepare();
-    [[nodiscard]] equilibrium::StepLoad mean_load(const StepAttempt& attempt, std::vector<Vec3>& u) const;
+    [[nodiscard]] equilibrium::StepLoad mean_load(const StepAttempt& attempt, Field& u) const;
     [[nodiscard]] bool wants_trial(const StepAttempt& attempt) const;
     /// With the statuses known at the start; its solution is where the equilibrium with contact starts from.
     void trial(StepAttempt& attempt);

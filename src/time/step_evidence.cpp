@@ -10,8 +10,8 @@ using linear::Constraints;
 CentreMasses::CentreMasses(const model::Model& model, const equilibrium::Dynamics& dynamics,
                            const linear::Constraints& constraints, int threads)
     : mass(model.bodies.size(), 0.0), free(model.bodies.size(), Eigen::Array<bool, 3, 1>::Constant(true)) {
-    std::vector<Vec3> sums(model.X.size(), Vec3::Zero());
-    model.mass(dynamics.lumped_mass).multiply_add(std::vector<Vec3>(sums.size(), Vec3::UnitX()), sums, threads);
+    Field sums(model.X.size());
+    model.mass(dynamics.lumped_mass).multiply_add(Field(sums.size(), Vec3::UnitX()), sums, threads);
     constexpr double across = 1e-6; // of a unit vector: round-off of a support's axes
     for (std::size_t b = 0; b < model.bodies.size(); ++b)
         for (Index n = 0; n < model.bodies[b].nodes(); ++n) {
@@ -67,24 +67,22 @@ double velocity_error(const model::Model& model, const equilibrium::Dynamics& dy
     return dynamics.integrator.error * dt * std::sqrt(twice / (2 * energy));
 }
 
-double local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
-                   const linear::Constraints& constraints, const model::State& from, const model::State& to, double dt,
-                   Index& worst) {
+AtNode local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
+                   const linear::Constraints& constraints, const model::State& from, const model::State& to, double dt) {
     const linear::BlockMatrix& M = model.mass(dynamics.lumped_mass);
-    double largest = 0;
-    for (Index i = 0; i < model.nodes(); ++i) {
-        // nothing ties down the acceleration of a node without mass; that of a held direction is given
+    // nothing ties down the acceleration of a node without mass; that of a held direction is given
+    constexpr double nothing = -1;
+    const auto error_of = [&](Index i) {
         bool massless = true;
         for (Index k = M.row_begin(i); k < M.row_end(i) && massless; ++k) massless = M.block(k).isZero(0);
-        if (massless) continue;
+        if (massless) return nothing;
         Vec3 change = constraints.to_local(i, to.a[i] - from.a[i]);
         for (int k = 0; k < 3; ++k)
             if (constraints.constraint(i, k) != nullptr) change(k) = 0;
-        const double error = dynamics.integrator.local_error(change, Vec3::Zero(), dt);
-        if (error > largest || worst < 0) worst = i;
-        largest = std::max(largest, error);
-    }
-    return largest;
+        return dynamics.integrator.local_error(change, Vec3::Zero(), dt);
+    };
+    const AtNode largest = largest_over(model.nodes(), error_of, nothing);
+    return {std::max(0.0, largest.value), largest.node};
 }
 
 /// StepEvidence::unseen.

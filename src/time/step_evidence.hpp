@@ -33,10 +33,9 @@ struct CentreMasses {
                                     const CentreMasses& masses, const model::State& from, const model::State& to,
                                     double dt, double energy);
 /// Largest of Integrator::local_error() over the nodes with mass, free directions, m.
-/// @param worst  whose it is
-[[nodiscard]] double local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
+[[nodiscard]] AtNode local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
                                  const linear::Constraints& constraints, const model::State& from,
-                                 const model::State& to, double dt, Index& worst);
+                                 const model::State& to, double dt);
 /// StepEvidence::unseen.
 [[nodiscard]] GapEvidence deepest_unseen(const model::ContactEvaluations& contact);
 

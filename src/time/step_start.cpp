@@ -27,10 +27,10 @@ std::vector<double> times_to_hit(const Stage& stage, double t_start) {
 }
 
 equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, const linear::Constraints& constraints,
-                              const std::vector<Vec3>& prescribed_start, double elapsed) {
+                              const Field& prescribed_start, double elapsed) {
     const double ramp = stage.ramp ? elapsed / stage.duration : 1;
     equilibrium::StepLoad load;
-    load.force.resize(model.X.size());
+    load.force.reset(model.X.size());
     for (std::size_t i = 0; i < load.force.size(); ++i)
         load.force[i] = stage.force_start[i] + ramp * (stage.force_end[i] - stage.force_start[i]);
     std::vector<double> value;
@@ -41,8 +41,7 @@ equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, con
                                     number(elapsed) + " s after the stage's start",
                                 course.name, elapsed);
     }
-    for (const CourseForce& part : stage.course_forces)
-        for (std::size_t i = 0; i < load.force.size(); ++i) load.force[i] += value[part.course] * part.pattern[i];
+    for (const CourseForce& part : stage.course_forces) load.force.add(value[part.course], part.pattern);
     for (const FollowerPressure& pressure : stage.follower_pressures) {
         const double now =
             pressure.course >= 0 ? value[pressure.course] : pressure.start + ramp * (pressure.end - pressure.start);
@@ -59,8 +58,8 @@ equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, con
     return load;
 }
 
-void predict(const model::Model& model, const linear::Constraints& constraints, const std::vector<Vec3>& prescribed,
-             std::vector<Vec3>& u) {
+void predict(const model::Model& model, const linear::Constraints& constraints, const Field& prescribed,
+             Field& u) {
     for (const model::Body& body : model.bodies) {
         Vec3 centre = Vec3::Zero();
         for (const Vec3& X : body.mesh.nodes) centre += X / static_cast<double>(body.nodes());
@@ -101,10 +100,10 @@ void predict(const model::Model& model, const linear::Constraints& constraints, 
 namespace {
 /// Contact of pair p at displacements u, in a step from a state.
 model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const model::State& state,
-                                   const std::vector<Vec3>& u) {
+                                   const Field& u) {
     const std::size_t n = u.size();
-    std::vector<Vec3> x(n), tails(n);
-    const auto place = [&](const std::vector<Vec3>& at) {
+    Field x(n), tails(n);
+    const auto place = [&](const Field& at) {
         for (std::size_t i = 0; i < n; ++i) tails[i] = rounded_off(context.model.X[i], at[i], x[i]);
     };
     model::ContactEvaluation evaluation(*context.model.pairs[p]);
@@ -117,7 +116,7 @@ model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const mod
 } // namespace
 
 bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies, const model::State& state,
-                       const std::vector<Vec3>& u, equilibrium::Statuses& statuses) {
+                       const Field& u, equilibrium::Statuses& statuses) {
     statuses.clear();
     bool any = false;
     for (const auto& history : state.contact) {
@@ -125,7 +124,7 @@ bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodie
         any = any || std::none_of(history.status.begin(), history.status.end(), contact::is_closed);
     }
     if (!any) return false;
-    std::vector<Vec3> unused;
+    Field unused;
     if (!bodies.evaluate(u, unused).admissible()) return false;
 
     bool forced = false;
@@ -147,7 +146,7 @@ bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodie
     return forced;
 }
 
-StabilisationOptions stabilisation_options(RunContext& context, const model::State& state, const std::vector<Vec3>& u) {
+StabilisationOptions stabilisation_options(RunContext& context, const model::State& state, const Field& u) {
     StabilisationOptions how;
     how.share = [&context]() -> const std::vector<double>& { return context.volume_shares(); };
     how.farthest = context.characteristic_length;
@@ -165,18 +164,16 @@ StabilisationOptions stabilisation_options(RunContext& context, const model::Sta
 }
 
 namespace {
-std::vector<Vec3> initial_acceleration(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
-                                       const model::State& state, const std::vector<Vec3>& force) {
+Field initial_acceleration(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
+                                       const model::State& state, const Field& force) {
     const model::Model& model = context.model;
     const equilibrium::Dynamics& dynamics = *stage.dynamics;
     const linear::BlockMatrix& M = model.mass(dynamics.lumped_mass);
     const auto n = static_cast<std::size_t>(model.nodes());
-    const std::vector<Vec3> own = equilibrium::body_forces(model, dynamics, state, context.options.threads);
-    std::vector<Vec3> f = force, x = model.X;
-    for (std::size_t i = 0; i < n; ++i) {
-        f[i] -= own[i];
-        x[i] += state.u[i];
-    }
+    const Field own = equilibrium::body_forces(model, dynamics, state, context.options.threads);
+    const Field x = sum(model.X, state.u);
+    Field f = force;
+    f.add(-1, own);
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         model::ContactEvaluation evaluation(*model.pairs[p]);
         evaluation.begin_step(x, state.contact[p], context.timings, context.options.threads);
@@ -201,12 +198,12 @@ std::vector<Vec3> initial_acceleration(RunContext& context, const Stage& stage, 
     if (solver->factorise(matrix) != solve::FactorStatus::ok)
         throw RunFailure("stage '" + stage.name + "': the mass matrix is not positive definite");
     Vector right(constraints.equations()), a(constraints.equations());
-    constraints.gather(f, right.data());
+    constraints.gather(f, right);
     for (Index i = 0; i < right.size(); ++i)
         if (empty[static_cast<std::size_t>(i)] != 0) right(i) = 0;
     solver->solve(right.data(), a.data());
-    std::vector<Vec3> result(n, Vec3::Zero());
-    constraints.scatter(a.data(), std::vector<Vec3>(n, Vec3::Zero()), result);
+    Field result(n);
+    constraints.scatter(a, Field(n), result);
     return result;
 }
 } // namespace
@@ -216,7 +213,7 @@ void start_motion(RunContext& context, const Stage& stage, const linear::Constra
     const model::Model& model = context.model;
     model::State& state = progress.state;
     // a later one, after statics, starts at rest
-    state.v = progress.moved ? std::vector<Vec3>(model.X.size(), Vec3::Zero()) : model.initial_velocity;
+    state.v = progress.moved ? Field(model.X.size()) : model.initial_velocity;
     progress.moved = true;
     for (Index node = 0; node < model.nodes(); ++node) { // what holds a body does not move with it
         Vec3 v = constraints.to_local(node, state.v[node]);
@@ -233,17 +230,12 @@ double reference_force(const RunContext& context, const Stage& stage, const line
                        const model::State& state, const equilibrium::StepLoad& load, double dt) {
     const model::Model& model = context.model;
     const StepperOptions& options = context.options;
-    const auto norm = [](const std::vector<Vec3>& f) {
-        double sum = 0;
-        for (const Vec3& v : f) sum += v.squaredNorm();
-        return std::sqrt(sum);
-    };
-    std::vector<Vec3> internal = model::internal_force(model, state.u, options.threads);
+    Field internal = model::internal_force(model, state.at_rest(), options.threads);
     double external = 0;
     if (load.pressures.empty()) {
         external = norm(load.force);
     } else {
-        std::vector<Vec3> force = load.force;
+        Field force = load.force;
         std::vector<equilibrium::FollowerLoad> pressures = load.pressures;
         for (equilibrium::FollowerLoad& pressure : pressures) pressure.start = pressure.end;
         equilibrium::add_follower_forces(pressures, model, state.u, force);
@@ -262,24 +254,21 @@ double reference_force(const RunContext& context, const Stage& stage, const line
         // inertia of the last digit of positions, which gaps are made of: no tolerance can ask for less
         double largest = 0;
         for (const bool displacements : {true, false}) {
-            std::vector<Vec3> x = state.u;
-            for (std::size_t i = 0; i < x.size() && !displacements; ++i) x[i] += model.X[i];
             std::fill(internal.begin(), internal.end(), Vec3::Zero());
-            M.multiply_add(x, internal, options.threads);
-            for (const Vec3& f : internal) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+            M.multiply_add(displacements ? state.u : sum(state.u, model.X), internal, options.threads);
+            largest = std::max(largest, largest_component(internal));
             if (model.pairs.empty()) break;
         }
         const double digit = std::numeric_limits<double>::epsilon() / options.tolerance;
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;
         carried = std::max(carried, digit * by_u * largest);
     }
-    double farthest = largest_displacement(state);
-    for (const Vec3& u : load.prescribed) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
+    const double farthest = std::max(largest_component(state.u), largest_component(load.prescribed));
     const double round_off = context.round_off_force() * farthest;
     if (carried > round_off) return carried;
     // driven nodes that move ahead of their bodies; by a small part of it, as elements may not bear the whole
     constexpr double part = 1e-3;
-    std::vector<Vec3> u = state.u;
+    Field u = state.u;
     for (Index i = 0; i < model.nodes(); ++i) {
         const Vec3 now = constraints.to_local(i, u[i]);
         Vec3 moved = now;
@@ -287,14 +276,8 @@ double reference_force(const RunContext& context, const Stage& stage, const line
             if (constraints.constraint(i, k) != nullptr) moved(k) += part * (load.prescribed[i](k) - now(k));
         u[i] = constraints.to_global(i, moved);
     }
-    const double driven = norm(model::internal_force(model, u, options.threads)) / part;
+    const double driven = norm(model::internal_force(model, {state.u, u, state.material}, options.threads)) / part;
     return std::max(driven, round_off);
-}
-
-double largest_displacement(const model::State& state) {
-    double farthest = 0;
-    for (const Vec3& u : state.u) farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
-    return farthest;
 }
 
 double RunContext::round_off_force() const {
@@ -305,7 +288,7 @@ double imbalance(equilibrium::Equilibrium& equilibrium, const Vector& z, const e
                  bool forced) {
     Vector F(z.size());
     equilibrium.set_statuses(statuses, equilibrium::StatusRule::natural, forced);
-    if (equilibrium.residual(z.data(), F.data()) == solve::NonlinearProblem::Verdict::shorten) return 1;
+    if (equilibrium.residual(z, F) == solve::NonlinearProblem::Verdict::shorten) return 1;
     return F.norm() > 0 ? F.norm() : 1; // where nothing is out of balance any unit will do
 }
 

@@ -14,20 +14,19 @@ namespace osculate::time {
 /// Loads and motions at a time since the stage's start, s. @throws LoadNotFinite
 [[nodiscard]] equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage,
                                             const linear::Constraints& constraints,
-                                            const std::vector<Vec3>& prescribed_start, double elapsed);
+                                            const Field& prescribed_start, double elapsed);
 /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
-void predict(const model::Model& model, const linear::Constraints& constraints, const std::vector<Vec3>& prescribed,
-             std::vector<Vec3>& u);
+void predict(const model::Model& model, const linear::Constraints& constraints, const Field& prescribed,
+             Field& u);
 /// Statuses to start from at displacements u; true where a pair is brought into contact by hand because nothing of it is
 /// closed yet.
 [[nodiscard]] bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies,
-                                     const model::State& state, const std::vector<Vec3>& u,
+                                     const model::State& state, const Field& u,
                                      equilibrium::Statuses& statuses);
 /// What forces are measured by, N; 0 where nothing acts yet.
 [[nodiscard]] double reference_force(const RunContext& context, const Stage& stage,
                                      const linear::Constraints& constraints, const model::State& state,
                                      const equilibrium::StepLoad& load, double dt);
-[[nodiscard]] double largest_displacement(const model::State& state); ///< component, m
 /// Norm of the residual at z, contact laws included: the reference where it is initial overlap alone that acts, N.
 /// @param equilibrium  a throw-away: it is left evaluated
 [[nodiscard]] double imbalance(equilibrium::Equilibrium& equilibrium, const Vector& z,
@@ -38,6 +37,6 @@ void start_motion(RunContext& context, const Stage& stage, const linear::Constra
                   equilibrium::StepLoad load, Progress& progress);
 /// Of the last rung of an attempt from a state, which must outlive them, that starts from displacements u.
 [[nodiscard]] StabilisationOptions stabilisation_options(RunContext& context, const model::State& state,
-                                                         const std::vector<Vec3>& u);
+                                                         const Field& u);
 
 } // namespace osculate::time

@@ -9,9 +9,10 @@ namespace osculate::time {
 
 Stepper::Stepper(const model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
     : stages_(std::move(stages)), context_(new RunContext{model, options, timings}) {
-    progress_.state.u.assign(model.X.size(), Vec3::Zero());
+    progress_.state.u.reset(model.X.size());
     for (const auto& pair : model.pairs) progress_.state.contact.push_back(pair->initial_history());
-    Vec3 low = model.X.front(), high = low;
+    progress_.state.material = model::initial_history(model);
+    Vec3 low = model.X[0], high = low;
     for (const Vec3& X : model.X) {
         low = low.cwiseMin(X);
         high = high.cwiseMax(X);

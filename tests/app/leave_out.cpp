@@ -77,7 +77,7 @@ struct LittleRun final : time::StepObserver {
 TEST(LeaveOut, NothingIsCompiledThatTheSceneDoesNotAskFor) {
     const Plan plan = LittleRun().plan;
     const model::Model& model = plan.model;
-    EXPECT_EQ(model.finite_strain, nullptr);
+    EXPECT_EQ(model.nonlinear, nullptr);
     EXPECT_TRUE(model.consistent_mass.empty());
     EXPECT_TRUE(model.lumped_mass.empty());
     EXPECT_TRUE(model.initial_velocity.empty()) << "nothing moves in statics, whatever the body says";

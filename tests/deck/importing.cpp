@@ -42,7 +42,7 @@ TEST_F(Importing, TranslatesContactSupportsAndLoads) {
     const scene::Scene scene = checked(imported);
     ASSERT_EQ(scene.contact.size(), 1u);
     EXPECT_EQ(scene.contact[0].second.friction, 0.25);
-    EXPECT_EQ(scene.contact[0].second.discretisation, scene::Discretisation::mortar);
+    EXPECT_EQ(scene.contact[0].second.discretisation, Discretisation::mortar);
     ASSERT_TRUE(scene::find(scene.supports, "Floor") != nullptr && scene::find(scene.supports, "Lid") != nullptr);
     EXPECT_EQ(scene::find(scene.supports, "Floor")->fixed, (std::array{true, true, true}));
     EXPECT_EQ(scene::find(scene.supports, "Lid")->fixed, (std::array{true, true, false}));
@@ -172,8 +172,8 @@ TEST_F(Importing, FormulationsFollowTheElements) {
     std::string model = mesh_of_cubes + properties;
     model.replace(model.find("C3D8"), 4, "C3D8I");
     EXPECT_EQ(checked(import(pressed, DeckUnits::mm, model)).bodies[0].second.hex_formulation,
-              scene::HexFormulation::incompatible_modes);
-    EXPECT_EQ(checked(import(pressed)).bodies[0].second.hex_formulation, scene::HexFormulation::full);
+              HexFormulation::incompatible_modes);
+    EXPECT_EQ(checked(import(pressed)).bodies[0].second.hex_formulation, HexFormulation::full);
 }
 
 // ---- what is lost ----
@@ -267,9 +267,9 @@ TEST_F(Importing, PairsAreNamedWithAndWithoutBlanks) {
     };
     for (const char* mortar :
          {"TYPE=MORTAR", "TYPE=SURFACETOSURFACE", "type=Surface to Surface", "TYPE=SURFACE  TO SURFACE"})
-        EXPECT_EQ(pair(mortar).discretisation, scene::Discretisation::mortar) << mortar;
+        EXPECT_EQ(pair(mortar).discretisation, Discretisation::mortar) << mortar;
     for (const char* nodes : {"TYPE=NODE TO SURFACE", "TYPE=nodetosurface", "ADJUST=0."}) {
-        EXPECT_EQ(pair(nodes).discretisation, scene::Discretisation::node) << nodes;
+        EXPECT_EQ(pair(nodes).discretisation, Discretisation::node) << nodes;
         EXPECT_TRUE(std::holds_alternative<scene::FacetsSurface>(pair(nodes).master.surface)) << nodes;
     }
     std::string model = mesh_of_cubes + properties;

@@ -16,7 +16,7 @@ using testing::Press;
 /// Bodies that lean on springs while their inverses are made do not lean on them in what is solved: nothing has to be
 /// solved by other means.
 TEST(CondensedTangent, SolvesForABodyThatContactAloneHolds) {
-    Press press(linear::LinearSolver::condensed);
+    Press press(LinearSolver::condensed);
     double rear = 0;
     for (const Status status : {Status::stick, Status::slip}) {
         press.accept(press.attempt(rear, {press.all(status)}));
@@ -66,7 +66,7 @@ struct Apart {
         return {nodes.begin(), nodes.end()};
     }
 
-    Press press{linear::LinearSolver::condensed};
+    Press press{LinearSolver::condensed};
     linear::BlockMatrix K;
     std::vector<Index> slaves = press.plan.model.pairs[0]->slaves().node;
     std::vector<linear::BearingContact> none;
@@ -77,7 +77,7 @@ struct Apart {
 
 /// Whichever body it is that has no inverse, and whatever comes after it.
 TEST(CondensedTangent, SaysSoWhereABodyHasNoInverse) {
-    const Press press(linear::LinearSolver::condensed);
+    const Press press(LinearSolver::condensed);
     for (const model::Body& body : press.plan.model.bodies) {
         linear::BlockMatrix K = press.plan.model.K;
         const Index node = body.first_node + body.nodes() / 2;
@@ -88,7 +88,7 @@ TEST(CondensedTangent, SaysSoWhereABodyHasNoInverse) {
 }
 
 TEST(CondensedTangent, MakesInversesAndLawsAnewForAStepOfAnotherLength) {
-    const Press press(linear::LinearSolver::condensed);
+    const Press press(LinearSolver::condensed);
     Apart apart(press.plan.model.K);
     int made = 0; // of the bodies, and of the laws
     for (const auto& [dt, changed] : {std::pair{0.2, true}, {0.2, false}, {0.1, true}, {0.1, false}}) {

@@ -12,7 +12,7 @@ namespace {
 using contact::Status;
 using testing::Press;
 
-class Rollback : public ::testing::TestWithParam<linear::LinearSolver> {};
+class Rollback : public ::testing::TestWithParam<LinearSolver> {};
 
 /// More nodes closed, and those of before again with other statuses: laws and patterns that the next step could go on with.
 constexpr std::size_t open = 3;
@@ -48,7 +48,7 @@ TEST_P(Rollback, ComesBackToWhatAMemoryRecalls) {
 }
 
 TEST(Equilibrium, LeavesNoForceOnOpenNodes) {
-    Press press(linear::LinearSolver::direct);
+    Press press(LinearSolver::direct);
     press.accept(press.attempt(0, {press.all(Status::stick, open)}));
     model::State shaken = press.state; // as the last digits of a solver do
     const Vec3 round_off = Vec3::Constant(1e-12);
@@ -70,7 +70,7 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const time::Stage& pull = plan.stages[1];
     const linear::Constraints constraints(plan.model.nodes(), pull.constraints);
-    Equilibrium equilibrium(plan.model, constraints, &*pull.dynamics, timings, 1);
+    Equilibrium equilibrium(plan.model, constraints, &*pull.dynamics, pull.tangent, timings, 1);
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
     state.v = state.a = state.u;
@@ -88,11 +88,11 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Rollback,
-                         ::testing::Values(linear::LinearSolver::condensed, linear::LinearSolver::iterative,
-                                           linear::LinearSolver::direct),
+                         ::testing::Values(LinearSolver::condensed, LinearSolver::iterative,
+                                           LinearSolver::direct),
                          [](const auto& solver) {
-                             return solver.param == linear::LinearSolver::condensed   ? "condensed"
-                                    : solver.param == linear::LinearSolver::iterative ? "iterative"
+                             return solver.param == LinearSolver::condensed   ? "condensed"
+                                    : solver.param == LinearSolver::iterative ? "iterative"
                                                                                       : "direct";
                          });
 

@@ -15,12 +15,13 @@ namespace osculate::equilibrium::testing {
 /// A block pressed on another, and what is done with it over two steps.
 class Press {
 public:
-    explicit Press(linear::LinearSolver solver) {
+    explicit Press(LinearSolver solver) {
         const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml", {});
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);
         const time::Stage& pull = plan.stages[1];
         constraints = std::make_unique<linear::Constraints>(plan.model.nodes(), pull.constraints);
-        equilibrium = std::make_unique<Equilibrium>(plan.model, *constraints, nullptr, timings, 1, false, solver);
+        equilibrium = std::make_unique<Equilibrium>(plan.model, *constraints, nullptr,
+                                                    choose_tangent(plan.model, solver, false, false), timings, 1);
         kinsol = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
         state.u.assign(plan.model.X.size(), Vec3::Zero());
         state.contact.push_back(plan.model.pairs[0]->initial_history());

@@ -71,9 +71,9 @@ TEST_P(Kernel, EnergyForceAndTangentAreThoseOfTheStiffness) {
     Matrix tangent(3 * n, 3 * n);
     double W = 0;
     EXPECT_TRUE(kernel->linear());
-    EXPECT_TRUE(kernel->energy(X, u, W).admissible());
-    EXPECT_TRUE(kernel->internal_force(X, u, f).admissible());
-    EXPECT_TRUE(kernel->tangent(X, u, tangent).admissible());
+    EXPECT_TRUE(kernel->energy({X, u}, W).admissible());
+    EXPECT_TRUE(kernel->internal_force({X, u}, f).admissible());
+    EXPECT_TRUE(kernel->tangent({X, u, u}, tangent).admissible());
     const Vector expected = K * u.reshaped();
     EXPECT_LT((f.reshaped() - expected).norm(), round_off * expected.norm());
     EXPECT_NEAR(W, u.reshaped().dot(expected) / 2, round_off * W);
@@ -91,7 +91,7 @@ TEST_P(Kernel, EnergyOfALinearFieldIsExact) {
 TEST_P(Kernel, LinearFieldGivesItsConstantStressAtEveryNode) {
     const Mat3 H = displacement_gradient();
     Matrix stress(6, n);
-    kernel->nodal_stress(X, H * X, stress);
+    kernel->nodal_stress({X, H * X}, stress);
     const Vec6 expected = material.stress(strain_of(H));
     EXPECT_LT((stress.colwise() - expected).norm(), round_off);
 }
@@ -186,7 +186,7 @@ TEST_P(Kernel, StressLinearInSpaceIsExactAtTheNodesOfAStraightElement) {
     Eigen::Matrix3Xd u = Eigen::Matrix3Xd::Zero(3, n);
     u.row(0) = straight.row(0).cwiseProduct(straight.row(2)); // u = (x z, 0, 0): eps_xx = z, gamma_zx = x
     Matrix stress(6, n);
-    kernel->nodal_stress(straight, u, stress);
+    kernel->nodal_stress({straight, u}, stress);
     for (int a = 0; a < n; ++a) {
         Vec6 strain = Vec6::Zero();
         strain[0] = straight(2, a);
@@ -229,7 +229,7 @@ TEST_P(Kernel, PatchOfDistortedElementsReproducesConstantStrain) {
     const Vec6 expected = material.stress(strain_of(H));
     Matrix stress(6, n);
     for (const auto& cell : grid.cells) {
-        kernel->nodal_stress(grid.gather(cell, grid.X), grid.gather(cell, u), stress);
+        kernel->nodal_stress({grid.gather(cell, grid.X), grid.gather(cell, u)}, stress);
         EXPECT_LT((stress.colwise() - expected).norm(), round_off);
     }
 }

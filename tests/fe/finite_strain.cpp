@@ -54,17 +54,17 @@ protected:
     }
     [[nodiscard]] double energy(const Eigen::Matrix3Xd& u) const {
         double W = 0;
-        EXPECT_TRUE(kernel->energy(X, u, W).admissible());
+        EXPECT_TRUE(kernel->energy({X, u}, W).admissible());
         return W;
     }
     [[nodiscard]] Eigen::Matrix3Xd force(const Eigen::Matrix3Xd& u) const {
         Eigen::Matrix3Xd f(3, n);
-        EXPECT_TRUE(kernel->internal_force(X, u, f).admissible());
+        EXPECT_TRUE(kernel->internal_force({X, u}, f).admissible());
         return f;
     }
     [[nodiscard]] Matrix tangent(const Eigen::Matrix3Xd& u) const {
         Matrix K(3 * n, 3 * n);
-        EXPECT_TRUE(kernel->tangent(X, u, K).admissible());
+        EXPECT_TRUE(kernel->tangent({X, u, u}, K).admissible());
         return K;
     }
 };
@@ -117,12 +117,12 @@ TEST_P(FiniteStrain, StepForceDoesTheWorkOfTheEnergyDifference) {
     if (element.formulation == HexFormulation::b_bar) GTEST_SKIP() << "F-bar varies in the mean of the step only";
     const Eigen::Matrix3Xd u0 = displacements(), u1 = turned(2 * displacements(-0.07), 1.1);
     Eigen::Matrix3Xd f(3, n);
-    ASSERT_TRUE(kernel->step_force(X, u0, u1, {0.5, 0}, f).admissible());
+    ASSERT_TRUE(kernel->update({X, u0, u1, {}, StepMean{0.5, 0}}, {}, f).admissible());
     EXPECT_NEAR(f.cwiseProduct(u1 - u0).sum(), energy(u1) - energy(u0), round_off);
     EXPECT_GT(std::abs(energy(u1) - energy(u0)), 1e-3) << "too little to tell anything";
 
     const double work = f.cwiseProduct(u1 - u0).sum();
-    ASSERT_TRUE(kernel->step_force(X, u0, u1, {0.5, 0.1}, f).admissible());
+    ASSERT_TRUE(kernel->update({X, u0, u1, {}, StepMean{0.5, 0.1}}, {}, f).admissible());
     EXPECT_GT(f.cwiseProduct(u1 - u0).sum(), work) << "viscosity dissipates";
 }
 
@@ -134,7 +134,7 @@ TEST_P(FiniteStrain, StepForceDoesTheWorkOfTheEnergyDifferenceInSmallStepsToo) {
     for (const double amount : {3e-2, 1e-2, 3e-3, 1e-3}) {
         const Eigen::Matrix3Xd u1 = u0 + displacements(-amount);
         Eigen::Matrix3Xd f(3, n);
-        ASSERT_TRUE(kernel->step_force(X, u0, u1, {0.5, 0}, f).admissible());
+        ASSERT_TRUE(kernel->update({X, u0, u1, {}, StepMean{0.5, 0}}, {}, f).admissible());
         EXPECT_NEAR(f.cwiseProduct(u1 - u0).sum(), energy(u1) - energy(u0), last_digits) << amount;
     }
 }
@@ -143,7 +143,7 @@ TEST_P(FiniteStrain, StepForceHasNoMomentAboutTheMeanConfiguration) {
     const Eigen::Matrix3Xd u0 = displacements(), u1 = turned(2 * displacements(-0.07), 1.1);
     const double w = 0.6;
     Eigen::Matrix3Xd f(3, n);
-    ASSERT_TRUE(kernel->step_force(X, u0, u1, {w, 0.1}, f).admissible());
+    ASSERT_TRUE(kernel->update({X, u0, u1, {}, StepMean{w, 0.1}}, {}, f).admissible());
     const Eigen::Matrix3Xd x = X + w * u1 + (1 - w) * u0;
     Vec3 moment = Vec3::Zero();
     for (int a = 0; a < n; ++a) moment += Vec3(x.col(a)).cross(Vec3(f.col(a)));
@@ -153,7 +153,7 @@ TEST_P(FiniteStrain, StepForceHasNoMomentAboutTheMeanConfiguration) {
 
 TEST_P(FiniteStrain, StepForceIsTheInternalForceWhereNothingMoves) {
     Eigen::Matrix3Xd f(3, n);
-    ASSERT_TRUE(kernel->step_force(X, displacements(), displacements(), {0.7, 0.1}, f).admissible());
+    ASSERT_TRUE(kernel->update({X, displacements(), displacements(), {}, StepMean{0.7, 0.1}}, {}, f).admissible());
     EXPECT_LT((f - force(displacements())).norm(), round_off);
 }
 
@@ -161,7 +161,7 @@ TEST_P(FiniteStrain, ATurnCallsUpNoStepForce) {
     Eigen::Matrix3Xd f(3, n);
     for (const double angle : {1e-3, 0.5, 2.0}) {
         const Eigen::Matrix3Xd rest = Eigen::Matrix3Xd::Zero(3, n);
-        ASSERT_TRUE(kernel->step_force(X, rest, turned(rest, angle), {0.6, 0.1}, f).admissible());
+        ASSERT_TRUE(kernel->update({X, rest, turned(rest, angle), {}, StepMean{0.6, 0.1}}, {}, f).admissible());
         EXPECT_LT(f.norm(), round_off);
     }
 }
@@ -171,11 +171,11 @@ TEST_P(FiniteStrain, StepTangentIsTheDerivativeOfTheStepForce) {
     const StepMean mean{0.6, 0.1};
     const auto at = [&](const Vector& u) {
         Eigen::Matrix3Xd f(3, n);
-        EXPECT_TRUE(kernel->step_force(X, u0, u.reshaped(3, n), mean, f).admissible());
+        EXPECT_TRUE(kernel->update({X, u0, u.reshaped(3, n), {}, mean}, {}, f).admissible());
         return Vector(f.reshaped());
     };
     Matrix K(3 * n, 3 * n);
-    ASSERT_TRUE(kernel->step_tangent(X, u0, u1, mean, K).admissible());
+    ASSERT_TRUE(kernel->tangent({X, u0, u1, {}, mean}, K).admissible());
     EXPECT_LT((osculate::testing::central_differences(at, u1.reshaped(), step) - K).norm(), difference * K.norm());
 }
 
@@ -193,8 +193,8 @@ TEST_P(FiniteStrain, IsTheLinearKernelAtSmallStrain) {
     EXPECT_LT((force(u) - expected).norm(), relative * expected.norm());
     const double W = u.cwiseProduct(expected).sum() / 2;
     EXPECT_NEAR(energy(u), W, relative * W);
-    (void)kernel->nodal_stress(X, u, stress);
-    (void)linear->nodal_stress(X, u, linear_stress);
+    (void)kernel->nodal_stress({X, u}, stress);
+    (void)linear->nodal_stress({X, u}, linear_stress);
     EXPECT_LT((stress - linear_stress).norm(), relative * linear_stress.norm());
 }
 
@@ -219,7 +219,7 @@ TEST_P(FiniteStrain, StretchesABarAsItsMaterialsClosedFormulaSays) {
         work(0, 0) -= axial;
         EXPECT_LT(work.norm(), round_off) << stretch;
         Matrix stress(6, n);
-        EXPECT_TRUE(kernel->nodal_stress(X, u, stress).admissible());
+        EXPECT_TRUE(kernel->nodal_stress({X, u}, stress).admissible());
         const Vec6 cauchy = axial / (lateral * lateral) * Vec6::Unit(0);
         EXPECT_LT((stress.colwise() - cauchy).norm(), round_off) << stretch;
     }
@@ -232,8 +232,8 @@ TEST_P(FiniteStrain, ReportsAnInvertedElementWithItsSmallestVolumeRatioAndZeros)
     Eigen::Matrix3Xd f = Eigen::Matrix3Xd::Constant(3, n, nan);
     Matrix K = Matrix::Constant(3 * n, 3 * n, nan), stress = Matrix::Constant(6, n, nan);
     const auto expect_zero = [&](const Eigen::Matrix3Xd& u, double smallest) {
-        for (const Deformation& d : {kernel->energy(X, u, W), kernel->internal_force(X, u, f), kernel->tangent(X, u, K),
-                                     kernel->nodal_stress(X, u, stress)}) {
+        for (const Deformation& d : {kernel->energy({X, u}, W), kernel->internal_force({X, u}, f), kernel->tangent({X, u, u}, K),
+                                     kernel->nodal_stress({X, u}, stress)}) {
             EXPECT_FALSE(d.admissible());
             const bool equal = d.smallest_J == smallest || std::abs(d.smallest_J - smallest) < round_off;
             EXPECT_TRUE(equal) << d.smallest_J << " instead of " << smallest;
@@ -250,13 +250,13 @@ TEST_P(FiniteStrain, ReportsAnInvertedElementWithItsSmallestVolumeRatioAndZeros)
     for (const double stretch : {1e-7, 1e-9, 1e-12, 1e-17, 1e80, 1e160}) {
         const Eigen::Matrix3Xd extreme = Vec3(stretch - 1, 0, 0).asDiagonal() * X;
         W = f(0, 0) = K(0, 0) = stress(0, 0) = nan;
-        for (const Deformation& d : {kernel->energy(X, extreme, W), kernel->internal_force(X, extreme, f),
-                                     kernel->tangent(X, extreme, K), kernel->nodal_stress(X, extreme, stress)})
+        for (const Deformation& d : {kernel->energy({X, extreme}, W), kernel->internal_force({X, extreme}, f),
+                                     kernel->tangent({X, extreme, extreme}, K), kernel->nodal_stress({X, extreme}, stress)})
             EXPECT_TRUE(stretch > 1 || !d.admissible()) << stretch;
         EXPECT_TRUE(std::isfinite(W) && f.allFinite() && K.allFinite() && stress.allFinite()) << stretch;
     }
     // and a sound one with its own
-    EXPECT_NEAR(kernel->energy(X, Vec3(1, 0, -0.5).asDiagonal() * X, W).smallest_J, 1, round_off);
+    EXPECT_NEAR(kernel->energy({X, Vec3(1, 0, -0.5).asDiagonal() * X}, W).smallest_J, 1, round_off);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, FiniteStrain,
@@ -301,7 +301,7 @@ double tip_deflection(HexFormulation formulation) {
         double sum = -share * dead.dot(v);
         for (const auto& cell : grid.cells) {
             double W = 0;
-            if (!kernel->energy(grid.gather(cell, grid.X), gather(cell, v), W).admissible()) return infinite;
+            if (!kernel->energy({grid.gather(cell, grid.X), gather(cell, v)}, W).admissible()) return infinite;
             sum += W;
         }
         return sum;
@@ -317,8 +317,8 @@ double tip_deflection(HexFormulation formulation) {
             Eigen::Matrix3Xd f(3, 8);
             for (const auto& cell : grid.cells) {
                 const Eigen::Matrix3Xd X = grid.gather(cell, grid.X), ue = gather(cell, u);
-                EXPECT_TRUE(kernel->internal_force(X, ue, f).admissible());
-                EXPECT_TRUE(kernel->tangent(X, ue, Ke).admissible());
+                EXPECT_TRUE(kernel->internal_force({X, ue}, f).admissible());
+                EXPECT_TRUE(kernel->tangent({X, ue, ue}, Ke).admissible());
                 for (std::size_t a = 0; a < 8; ++a) {
                     residual.segment<3>(3 * cell[a]) -= f.col(int(a));
                     for (std::size_t b = 0; b < 8; ++b)

@@ -117,7 +117,7 @@ TEST(Locking, StressOfPureBendingIsExactInOneElementWithIncompatibleModes) {
         u.col(a) << kappa * x * y, -kappa * (x * x + nu * (y * y - z * z)) / 2, -kappa * nu * y * z;
         expected(0, a) = E * kappa * y;
     }
-    kernel->nodal_stress(X, u, stress);
+    kernel->nodal_stress({X, u}, stress);
     EXPECT_LT((stress - expected).norm(), 1e-13); // round-off on stresses of 0.1
 }
 

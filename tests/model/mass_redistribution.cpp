@@ -19,7 +19,7 @@ Body body_of(mesh::Mesh mesh) {
     body.mesh = std::move(mesh);
     for (const mesh::ElementBlock& block : body.mesh.blocks)
         body.kernels.push_back(
-            fe::make_kernel(block.type, fe::HexFormulation::full, material::LinearElastic{1e6, 0.3}));
+            fe::make_kernel(block.type, HexFormulation::full, material::LinearElastic{1e6, 0.3}));
     return body;
 }
 

@@ -21,14 +21,14 @@ Vec3 vector_at(const std::vector<double>& values, Index i) {
 
 TEST(Fields, AreNamedOncePerPlace) {
     std::set<std::pair<FieldPlace, std::string>> names;
-    for (const Field& f : all_fields()) EXPECT_TRUE(names.insert({f.where, f.name}).second) << f.name;
+    for (const OutputField& f : all_fields()) EXPECT_TRUE(names.insert({f.where, f.name}).second) << f.name;
     EXPECT_THROW((void)field(FieldPlace::body, "gap"), InternalError);
 }
 
 TEST(Fields, FitThePointsOfTheirPlace) {
     const TwoBlocks blocks;
     const Snapshot snapshot = blocks.snapshot();
-    for (const Field& f : all_fields()) {
+    for (const OutputField& f : all_fields()) {
         const std::size_t points = f.where == FieldPlace::body ? 12 : 6;
         EXPECT_EQ(f.values(snapshot, 0).size(), points * static_cast<std::size_t>(f.components)) << f.name;
     }

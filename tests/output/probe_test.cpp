@@ -60,7 +60,7 @@ TEST(PointProbe, IsExactInDistortedElementsOfEveryType) {
         model.X = body.mesh.nodes;
         model.bodies.push_back(std::move(body));
         model::State state;
-        for (const Vec3& node : model.X) state.u.push_back(affine(node));
+        for (const Vec3& node : model.X) state.u.values().push_back(affine(node));
         const auto rows = make_point_probe(model, 0, X, {"displacement"})->rows(Snapshot(model, state, no_contact, {}));
         EXPECT_NEAR((Eigen::Map<const Vec3>(rows[0].data()) - affine(X)).norm(), 0, round_off)
             << static_cast<int>(type);
@@ -141,7 +141,7 @@ TEST(NodesProbe, TakesTheMeanOverTheAreaByTheShapeFunctions) {
         model::State state;
         // what the elements hold exactly: x for hexahedra, x^2 for ten nodes
         const bool quadratic = type == mesh::CellType::tet10;
-        for (const Vec3& X : model.X) state.u.emplace_back(quadratic ? X.x() * X.x() : X.x(), 0, 0);
+        for (const Vec3& X : model.X) state.u.values().emplace_back(quadratic ? X.x() * X.x() : X.x(), 0, 0);
         const auto probe = make_nodes_probe(model, top, {"displacement"}, {"area_mean"});
         EXPECT_EQ(names(*probe).front(), "area_mean_displacement_x [m]");
         EXPECT_NEAR(probe->rows(Snapshot(model, state, no_contact, {}))[0][0], quadratic ? 4.0 / 3 : 1, round_off);

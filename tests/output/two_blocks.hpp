@@ -22,7 +22,7 @@ public:
         add_body("cap", mesh::make_block({0.5, 0.25, 1}, {2, 0.5, 0.5}, {2, 1, 1}));
         add_pair();
         state.time = 2.5;
-        state.u.assign(model.X.size(), Vec3::Zero());
+        state.u.reset(model.X.size());
         for (Index i = 0; i < model.bodies[1].nodes(); ++i) state.u[model.bodies[1].first_node + i] = shift;
         const model::ContactPair& pair = *model.pairs[0];
         state.contact.push_back(pair.initial_history());
@@ -35,9 +35,7 @@ public:
         Timings unused;
         contact = model::contact_evaluations(model);
         contact[0].begin_step(model.X, pair.initial_history(), unused, 1);
-        std::vector<Vec3> x = model.X;
-        for (std::size_t i = 0; i < x.size(); ++i) x[i] += state.u[i];
-        contact[0].evaluate(x, unused, 1);
+        contact[0].evaluate(sum(model.X, state.u), unused, 1);
     }
 
     [[nodiscard]] Snapshot snapshot() const {
@@ -52,8 +50,8 @@ public:
 private:
     void add_body(const std::string& name, mesh::Mesh mesh) {
         model::Body body{name, std::move(mesh), model.nodes(), {}};
-        body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, fe::HexFormulation::full, {E, 0}));
-        model.X.insert(model.X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
+        body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, HexFormulation::full, {E, 0}));
+        model.X.values().insert(model.X.values().end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
         model.bodies.push_back(std::move(body));
     }
 

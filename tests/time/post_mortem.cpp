@@ -31,7 +31,8 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const Stage& stage = plan.stages.front();
     const linear::Constraints constraints(plan.model.nodes(), stage.constraints);
-    equilibrium::Equilibrium equilibrium(plan.model, constraints, nullptr, timings, 1);
+    equilibrium::Equilibrium equilibrium(plan.model, constraints, nullptr,
+                                    equilibrium::choose_tangent(plan.model, LinearSolver::automatic, false, false), timings, 1);
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
     for (const auto& pair : plan.model.pairs) state.contact.push_back(pair->initial_history());
@@ -42,7 +43,7 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
         for (const equilibrium::Statuses& imposed : statuses(equilibrium.statuses())) {
             Vector F(z.size());
             equilibrium.set_statuses(imposed, equilibrium::StatusRule::frozen, false);
-            (void)equilibrium.residual(z.data(), F.data());
+            (void)equilibrium.residual(z, F);
         }
     Decision decision;
     decision.verdict = Verdict::give_up;

@@ -79,8 +79,8 @@ protected:
                                                        std::move(nodes), std::move(facets), pair().options());
         constraints = std::make_unique<linear::Constraints>(model.nodes(), plan.stages[0].constraints);
         // an LU factorisation tells at once that nothing holds the cap
-        equilibrium = std::make_unique<equilibrium::Equilibrium>(model, *constraints, nullptr, timings, 1, false,
-                                                                 linear::LinearSolver::direct);
+        equilibrium = std::make_unique<equilibrium::Equilibrium>(model, *constraints, nullptr,
+                                                                 equilibrium::TangentChoice{}, timings, 1);
         solver = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
         state.u.assign(model.X.size(), Vec3::Zero());
         state.contact.push_back(pair().initial_history());

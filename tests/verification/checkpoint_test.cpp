@@ -153,8 +153,8 @@ TEST(Checkpoint, OfAnotherSceneIsRefused) {
         time::Stepper stepper(run.plan.model, run.plan.stages, run.plan.stepper, run.timings);
         EXPECT_THROW(stepper.resume(std::move(checkpoint)), RunFailure);
     };
-    refused([](time::Checkpoint& c) { c.state.u.pop_back(); });
-    refused([](time::Checkpoint& c) { c.state.u.front().x() = std::nan(""); });
+    refused([](time::Checkpoint& c) { c.state.u.values().pop_back(); });
+    refused([](time::Checkpoint& c) { c.state.u[0].x() = std::nan(""); });
     refused([](time::Checkpoint& c) { c.state.contact.pop_back(); });
     refused([](time::Checkpoint& c) { c.state.contact[0].facet[0] = 1 << 30; });
     refused([](time::Checkpoint& c) { c.state.contact[0].status[0] = static_cast<contact::Status>(9); });

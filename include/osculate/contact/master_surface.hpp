@@ -4,6 +4,7 @@
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/radial_basis.hpp"
 #include "osculate/contact/search.hpp"
+#include "osculate/core/choices.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <memory>
@@ -11,11 +12,6 @@
 #include <vector>
 
 namespace osculate::contact {
-
-enum class PatchCoordinates {
-    tangential,  ///< orthogonal projection on the reference plane                     [Qian 2014, eq (21)]
-    equal_length ///< the same directions, true lengths
-};
 
 struct RpimOptions {
     int ring = 2; ///< rings of facets around the temporary facet that make its domain of influence

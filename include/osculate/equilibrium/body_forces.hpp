@@ -26,13 +26,14 @@ struct FollowerLoad {
 struct Stabilisation {
     const std::vector<double>* share = nullptr; ///< s_i, see model::volume_shares
     double stiffness = 0;                       ///< k, of all springs of one body together, N/m
-    std::vector<Vec3> anchor{};                 ///< a_i, (nodes) m
+    Field anchor{};                 ///< a_i, (nodes) m
 };
 
-/// In statics f(u) = f_int(u) - f_p(u), f_p those of follower pressures. In dynamics the mean over the step that the integrator asks for,
+/// In statics f(u) = f_int(u) - f_p(u), f_p those of follower pressures, f_int at the end of the step, see
+/// fe::ElementKernel::update. In dynamics the mean over the step that the integrator asks for,
 ///     f(u) = (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + K u - f_p) + alpha_f (C v_n + K u_n - f_p,n),
-/// v and a affine in u by its kinematics, C = mass_damping M + stiffness_damping K. Bodies at finite strain have in place
-/// of K u and stiffness damping the forces of fe::ElementKernel::step_force, with end_weight = 1-alpha_f: with alpha_f =
+/// v and a affine in u by its kinematics, C = mass_damping M + stiffness_damping K. Nonlinear elements have in place of K u
+/// and stiffness damping the forces that fe::ElementKernel::update has with a mean, with end_weight = 1-alpha_f: with alpha_f =
 /// alpha_m = 1/2 they conserve energy and momenta for every dt, where the mean of the forces at the two ends, under large
 /// rotations, feeds energy into a body out of nowhere.
 class BodyForces {
@@ -49,12 +50,12 @@ public:
     void release();
     [[nodiscard]] bool stabilised() const { return springs_.share != nullptr; }
     /// f (nodes) N at u (nodes) m; not to be used where an element is not admissible.
-    model::WorstElement evaluate(const std::vector<Vec3>& u, std::vector<Vec3>& f) const;
+    model::WorstElement evaluate(const Field& u, Field& f) const;
     /// Adds to `terms`, (nodes) N, the absolute values of what f(u) is summed up from: its round-off is some last digits of
     /// that. By the tangent as it is.
-    void add_terms(const std::vector<Vec3>& u, std::vector<Vec3>& terms) const;
+    void add_terms(const Field& u, Field& terms) const;
     /// Takes the tangent to u. False where it does not depend on u, and nothing is done.
-    bool linearise(const std::vector<Vec3>& u);
+    bool linearise(const Field& u);
     /// df/du, at the last linearise(): the effective stiffness.
     [[nodiscard]] const linear::BlockMatrix& tangent() const {
         return dynamics_ || varies() || stabilised() ? tangent_ : model_.K;
@@ -62,7 +63,8 @@ public:
     [[nodiscard]] bool dynamic() const { return dynamics_ != nullptr; }
     [[nodiscard]] bool symmetric() const { return !follower_pressure_ && (dynamics_ == nullptr || !nonlinear()); }
 
-    /// Velocities and accelerations at the end of the step from the displacements there; empty in statics.
+    /// Velocities, accelerations and what elements carry on at the end of the step from the displacements there; without
+    /// velocities in statics.
     void complete(model::State& state) const;
     /// Share of the inertia in the tangent, d/du of one direction's force summed over the row of a node, N/m.
     [[nodiscard]] double inertia(Index node) const;
@@ -70,13 +72,13 @@ public:
     [[nodiscard]] BodyWork work(const model::State& state) const;
     /// What acts from outside of the bodies over that step but for dead loads: follower pressures, less inertia and damping
     /// by mass. (nodes) N; empty where there is neither
-    [[nodiscard]] std::vector<Vec3> outer_forces(const model::State& state) const;
+    [[nodiscard]] Field outer_forces(const model::State& state) const;
 
 private:
-    using Field = std::vector<Vec3>;
-    [[nodiscard]] bool nonlinear() const { return model_.finite_strain != nullptr; }
+    [[nodiscard]] bool nonlinear() const { return model_.nonlinear != nullptr; }
     /// Whether the tangent depends on u.
     [[nodiscard]] bool varies() const { return nonlinear() || follower_pressure_; }
+    [[nodiscard]] model::BodyStep step_to(const Field& u) const { return {u_start_, u, history_start_, mean_}; }
     /// f += factor times the pressures' forces, each pressure that of the step's start or end.
     void add_pressures(double factor, bool end, const Field& u, Field& f) const;
     void add_springs(linear::BlockMatrix& tangent) const;
@@ -89,20 +91,22 @@ private:
     std::vector<FollowerLoad> pressures_;
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;
-    fe::StepMean mean_;                 ///< of finite strain, for the current dt
+    std::optional<fe::StepMean> mean_;  ///< of nonlinear elements, for the current dt; none in statics
+    model::MaterialHistory history_start_;
     Stabilisation springs_;             ///< without share: none
     linear::BlockMatrix tangent_;       ///< dynamics, where it varies, or with springs
     linear::BlockMatrix constant_;      ///< where it varies: the part of the tangent that does not depend on u
-    Field u_start_, v_start_, a_start_; ///< dynamics only
-    Field force_start_;                 ///< f at u_start but for finite strain, N; dynamics only
+    Field u_start_;                     ///< in statics where elements have a past
+    Field v_start_, a_start_;           ///< dynamics only
+    Field force_start_;                 ///< f at u_start but for nonlinear elements, N; dynamics only
 };
 
 /// Adds the forces of follower pressures at u, (nodes) N, with their pressures at the start of the step.
 void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model,
-                         const std::vector<Vec3>& u, std::vector<Vec3>& f);
+                         const Field& u, Field& f);
 
 /// f_int(u) + C v of a state in dynamics, finite strain without stiffness damping, (nodes) N.
-[[nodiscard]] std::vector<Vec3> body_forces(const model::Model& model, const Dynamics& dynamics,
+[[nodiscard]] Field body_forces(const model::Model& model, const Dynamics& dynamics,
                                             const model::State& state, int threads);
 
 } // namespace osculate::equilibrium

@@ -13,14 +13,14 @@ public:
     BodyTerm(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, Timings& timings,
              int threads);
 
-    /// The next evaluate() is linear in the displacements about u, (nodes) m. Of no concern without finite strain.
-    void linearise_next_about(const std::vector<Vec3>& u) {
-        if (finite_strain_) linear_about_ = u;
+    /// The next evaluate() is linear in the displacements about u, (nodes) m. Of no concern without nonlinear elements.
+    void linearise_next_about(const Field& u) {
+        if (nonlinear_) linear_about_ = u;
     }
     [[nodiscard]] BodyForces& bodies() { return bodies_; }
     [[nodiscard]] const BodyForces& bodies() const { return bodies_; }
     /// At the last evaluate(), (nodes) N.
-    [[nodiscard]] const std::vector<Vec3>& internal_force() const { return internal_; }
+    [[nodiscard]] const Field& internal_force() const { return internal_; }
     /// Element with the least volume left there; where it has none evaluate() was false.
     [[nodiscard]] const model::WorstElement& worst_element() const { return worst_element_; }
     /// Takes the stiffness to the last evaluate(); true where it has other values than before.
@@ -29,19 +29,19 @@ public:
     [[nodiscard]] std::string_view name() const override { return "bodies"; }
     bool begin(const model::State& state, const Iterate& at, const StepLoad& load, double dt) override;
     [[nodiscard]] bool evaluate(const Iterate& at) override;
-    void add_forces(std::vector<Vec3>& f) const override;
-    void add_magnitudes(const Iterate& at, std::vector<Vec3>& sums) const override { bodies_.add_terms(at.u, sums); }
+    void add_forces(Field& f) const override;
+    void add_magnitudes(const Iterate& at, Field& sums) const override { bodies_.add_terms(at.u, sums); }
     void linearise(const Iterate& at) override { (void)update_stiffness(at); }
-    void add_product(const Direction& d, std::vector<Vec3>& f, double* y) override;
-    void complete(const double* z, model::State& state) const override;
+    void add_product(const Direction& d, Field& f, VectorRef y) override;
+    void complete(const ConstVectorRef& z, model::State& state) const override;
 
 private:
     BodyForces bodies_;
     Timings& timings_;
     int threads_;
-    bool finite_strain_;
-    std::vector<Vec3> internal_;
-    std::vector<Vec3> linear_about_; ///< of the next evaluate(); empty: exact
+    bool nonlinear_;
+    Field internal_;
+    Field linear_about_; ///< of the next evaluate(); empty: exact
     bool linearised_ = false;        ///< the last evaluate() was, and the stiffness belongs to it
     model::WorstElement worst_element_;
 };
@@ -50,18 +50,18 @@ private:
 class LoadTerm final : public Term {
 public:
     /// In dynamics their mean over the step, (nodes) N.
-    [[nodiscard]] const std::vector<Vec3>& force() const { return force_; }
+    [[nodiscard]] const Field& force() const { return force_; }
 
     [[nodiscard]] std::string_view name() const override { return "loads"; }
     bool begin(const model::State& state, const Iterate& at, const StepLoad& load, double dt) override;
     [[nodiscard]] bool evaluate(const Iterate&) override { return true; }
-    void add_forces(std::vector<Vec3>& f) const override;
-    void add_magnitudes(const Iterate& at, std::vector<Vec3>& sums) const override;
+    void add_forces(Field& f) const override;
+    void add_magnitudes(const Iterate& at, Field& sums) const override;
     void linearise(const Iterate&) override {}
-    void add_product(const Direction&, std::vector<Vec3>&, double*) override {}
+    void add_product(const Direction&, Field&, VectorRef) override {}
 
 private:
-    std::vector<Vec3> force_;
+    Field force_;
 };
 
 } // namespace osculate::equilibrium

@@ -40,7 +40,7 @@ public:
     /// Smallest gap, m; infinite where nothing faces anything.
     [[nodiscard]] double least_gap() const;
     /// Contact forces of a state, into z.
-    void pack(const std::vector<model::ContactHistory>& contact, double* z) const;
+    void pack(const std::vector<model::ContactHistory>& contact, VectorRef z) const;
     /// At the last linearise(): slave nodes that bear on a master, by coupling, and derivatives of the law by the force of
     /// the others, (couplings).
     [[nodiscard]] const std::vector<linear::BearingContact>& bearing() const { return bearing_; }
@@ -49,19 +49,19 @@ public:
     [[nodiscard]] std::string_view name() const override { return "contact"; }
     bool begin(const model::State& state, const Iterate& at, const StepLoad& load, double dt) override;
     [[nodiscard]] bool evaluate(const Iterate& at) override;
-    void add_forces(std::vector<Vec3>& f) const override;
-    [[nodiscard]] Index write_rows(double* F) const override;
-    void add_magnitudes(const Iterate& at, std::vector<Vec3>& sums) const override;
-    [[nodiscard]] bool rows_within(const Iterate& at, const double* F, double share) const override;
+    void add_forces(Field& f) const override;
+    [[nodiscard]] Index write_rows(VectorRef F) const override;
+    void add_magnitudes(const Iterate& at, Field& sums) const override;
+    [[nodiscard]] bool rows_within(const Iterate& at, const ConstVectorRef& F, double share) const override;
     void linearise(const Iterate& at) override;
-    void add_product(const Direction& d, std::vector<Vec3>& f, double* y) override;
+    void add_product(const Direction& d, Field& f, VectorRef y) override;
     [[nodiscard]] bool add_pattern(std::vector<linear::Coupling>& couplings) const override;
     void add_derivatives(linear::SystemMatrix& matrix) override;
     void add_soft(std::vector<linear::SoftContact>& soft) const override;
-    void complete(const double* z, model::State& state) const override;
+    void complete(const ConstVectorRef& z, model::State& state) const override;
 
 private:
-    [[nodiscard]] Vec3 force(const double* z, Index coupling) const;
+    [[nodiscard]] Vec3 force(const ConstVectorRef& z, Index coupling) const;
     /// What the contact law's row of slave j of pair p is the sum of, N, local axes.
     [[nodiscard]] Vec3 law_magnitudes(const Iterate& at, std::size_t p, Index j) const;
     [[nodiscard]] contact::ContactResidual law(std::size_t p, Index j) const;

@@ -29,8 +29,7 @@ class Equilibrium final : public solve::NonlinearProblem {
 public:
     /// @param dynamics  null in statics; must outlive this object
     Equilibrium(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics,
-                Timings& timings, int threads, bool follower_pressure = false,
-                linear::LinearSolver linear = linear::LinearSolver::automatic);
+                const TangentChoice& choice, Timings& timings, int threads, bool follower_pressure = false);
 
     /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
     /// their weighted mean over the step.
@@ -44,15 +43,15 @@ public:
     /// Statuses for the next solve, see ContactTerm.
     void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
     /// The next residual is linear in the displacements about u, (nodes) m, where elements bear a driven motion that has
-    /// not spread into the body yet. Of no concern, and not kept, without finite strain.
-    void linearise_first_about(const std::vector<Vec3>& u) { bodies_.linearise_next_about(u); }
+    /// not spread into the body yet. Of no concern, and not kept, without nonlinear elements.
+    void linearise_first_about(const Field& u) { bodies_.linearise_next_about(u); }
     /// Springs in place from the next residual on, see BodyForces; release() takes them away.
     void stabilise(Stabilisation springs);
     void release();
     void set_reference_force(double force) { reference_force_ = force; }
 
     [[nodiscard]] Index size() const override { return unknowns_.size(); }
-    [[nodiscard]] Verdict residual(const double* z, double* F) override;
+    [[nodiscard]] Verdict residual(const ConstVectorRef& z, VectorRef F) override;
     [[nodiscard]] const solve::SparseMatrix& jacobian() override { return tangent_.jacobian(); }
     [[nodiscard]] solve::Preconditioner* preconditioner() override {
         return tangent_.preconditions() ? &tangent_ : nullptr;
@@ -61,10 +60,10 @@ public:
     [[nodiscard]] solve::Tangent* tangent() override { return tangent_.by_products() ? &tangent_ : nullptr; }
 
     /// z from displacements and contact forces, and the state (time apart) from z.
-    [[nodiscard]] Vector unknowns(const std::vector<Vec3>& u, const std::vector<model::ContactHistory>& contact) const;
+    [[nodiscard]] Vector unknowns(const Field& u, const std::vector<model::ContactHistory>& contact) const;
     [[nodiscard]] model::State state(const Vector& z) const;
     /// Displacements of z, (nodes) m.
-    [[nodiscard]] std::vector<Vec3> displacements(const Vector& z) const;
+    [[nodiscard]] Field displacements(const Vector& z) const;
 
     /// Midway between the last two points at which the residual was evaluated: out of a cycle of two.
     [[nodiscard]] Vector midpoint() const { return 0.5 * (last_z_ + before_z_); }
@@ -83,10 +82,10 @@ public:
     /// The last different sets of statuses since begin_attempt, the latest last: a few, for a post-mortem.
     [[nodiscard]] const std::vector<Statuses>& recent_statuses() const { return cycles_.recent(); }
     /// f_int - f_ext - f_contact at the last residual: what the supports carry, and round-off elsewhere. (nodes) N
-    [[nodiscard]] const std::vector<Vec3>& unbalanced() const { return unbalanced_; }
-    [[nodiscard]] const std::vector<Vec3>& internal_force() const { return bodies_.internal_force(); }
+    [[nodiscard]] const Field& unbalanced() const { return unbalanced_; }
+    [[nodiscard]] const Field& internal_force() const { return bodies_.internal_force(); }
     /// Dead loads of the attempt, in dynamics their mean over the step. (nodes) N
-    [[nodiscard]] const std::vector<Vec3>& external_force() const { return loads_.force(); }
+    [[nodiscard]] const Field& external_force() const { return loads_.force(); }
     /// What residuals are measured against, N.
     [[nodiscard]] double reference_force() const { return reference_force_; }
     /// Node whose row holds the largest residual.
@@ -103,13 +102,13 @@ public:
     [[nodiscard]] const linear::Constraints& constraints() const { return constraints_; }
 
 private:
-    void unpack(const double* z);
-    void fill(double* F);
-    void record(const double* F);
+    void unpack();
+    void fill(VectorRef F);
+    void record(const ConstVectorRef& F);
     /// u to positions x and what their rounding takes off.
     void place();
     /// Whether no component of F, the last residual, is more than round-off of the terms its row is the sum of.
-    [[nodiscard]] bool at_round_off(const double* F) const;
+    [[nodiscard]] bool at_round_off(const ConstVectorRef& F) const;
 
     const model::Model& model_;
     const linear::Constraints& constraints_;
@@ -122,9 +121,9 @@ private:
     Iterate at_; ///< of the last residual
     EquilibriumTangent tangent_;
     bool factorisable_;
-    std::vector<Vec3> prescribed_; ///< StepLoad::prescribed of the attempt
+    Field prescribed_; ///< StepLoad::prescribed of the attempt
     double reference_force_ = 1;
-    std::vector<Vec3> unbalanced_;
+    Field unbalanced_;
     CycleWatch cycles_;
     std::vector<IterationRecord> records_;
     bool rests_ = false;       ///< see rests()

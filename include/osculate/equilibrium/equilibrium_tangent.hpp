@@ -16,12 +16,6 @@
 
 namespace osculate::equilibrium {
 
-/// How the tangent of a stage is solved with, see linear_solver.hpp.
-struct TangentChoice {
-    linear::LinearSolver linear = linear::LinearSolver::automatic;
-    bool dynamic = false, follower_pressure = false;
-};
-
 class EquilibriumTangent final : public solve::Preconditioner, public solve::Tangent {
 public:
     /// @param terms  of the residual, `bodies` and `contact` among them; all of it must outlive this object
@@ -48,12 +42,12 @@ public:
     [[nodiscard]] const solve::SparseMatrix& jacobian();
 
     [[nodiscard]] solve::FactorStatus factorise() override;
-    void precondition(const double* r, double* z) override;
+    void precondition(const ConstVectorRef& r, VectorRef z) override;
     [[nodiscard]] solve::SparseIndex failing_equation() const override { return preconditioner_->failing_equation(); }
     void linearise() override;
-    void multiply(const double* x, double* y) override;
+    void multiply(const ConstVectorRef& x, VectorRef y) override;
     [[nodiscard]] bool solves() const override { return condensed_ && !bodies_.bodies().stabilised(); }
-    [[nodiscard]] bool solve(const double* b, double* x, double allowed) override;
+    [[nodiscard]] bool solve(const ConstVectorRef& b, VectorRef x, double allowed) override;
     [[nodiscard]] int factorisations() const override { return condensed_ ? condensed_->factorisations() : 0; }
 
 private:
@@ -69,14 +63,14 @@ private:
     ContactTerm& contact_;
     const Iterate& at_;
     Timings& timings_;
-    bool may_buckle_, products_;                               ///< products_: the tangent goes by what it does
+    bool may_buckle_, products_;                               ///< products_: see TangentChoice
     std::vector<linear::Coupling> couplings_, kept_couplings_; ///< pattern of the matrix; at the last commit
     long patterns_built_ = 0, kept_patterns_ = 0;
     std::unique_ptr<linear::SystemMatrix> matrix_;                  ///< null: not asked for yet
     std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< none where the tangent is symmetric
     std::unique_ptr<linear::CondensedTangent> condensed_;           ///< where bodies are linear
     bool stale_preconditioner_ = false, stale_matrix_ = false;      ///< the stiffness of the bodies has moved on
-    std::vector<Vec3> product_u_, product_f_;                       ///< scratch of multiply()
+    Field product_u_, product_f_;                       ///< scratch of multiply()
 };
 
 } // namespace osculate::equilibrium

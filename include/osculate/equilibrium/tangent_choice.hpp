@@ -1,7 +1,7 @@
 #pragma once
 /// How Newton's linear systems are solved, and when by which way.
 
-#include "osculate/linear/linear_solver.hpp"
+#include "osculate/core/choices.hpp"
 #include "osculate/model/model.hpp"
 
 namespace osculate::equilibrium {
@@ -16,14 +16,19 @@ struct CondensationCost {
 };
 [[nodiscard]] CondensationCost condensation_cost(const model::Model& model);
 
-/// Whether the preconditioner is multigrid.
-[[nodiscard]] bool goes_by_multigrid(const model::Model& model, linear::LinearSolver solver);
-/// Whether the tangent goes by what it does to a vector, without a matrix: not where LU wants one, nor, without
-/// multigrid, with so many slave nodes that their derivatives, held one by one, would take more memory.
-[[nodiscard]] bool goes_by_products(const model::Model& model, linear::LinearSolver solver);
-/// Whether the whole tangent may be factorised where GMRES gets nowhere: it fits into memory, or multigrid is not in use.
-[[nodiscard]] bool may_factorise(const model::Model& model, linear::LinearSolver solver);
-/// Whether contact is condensed. @param follows  whether a pressure follows its facets
-[[nodiscard]] bool condenses(const model::Model& model, linear::LinearSolver solver, bool follows);
+/// How the tangent of a stage is solved with.
+struct TangentChoice {
+    bool products = false;       ///< it goes by what it does to a vector, without a matrix
+    bool preconditioned = false; ///< GMRES with linear::ContactPreconditioner
+    bool multigrid = false;      ///< whose inverse is by multigrid
+    bool condensed = false;      ///< linear::CondensedTangent first
+    bool factorisable = true;    ///< the whole tangent may be factorised where GMRES gets nowhere
+
+    [[nodiscard]] bool operator==(const TangentChoice&) const = default;
+};
+
+/// Made once for a stage, from what there is and what is asked for.
+/// @param follows  whether a pressure follows its facets
+[[nodiscard]] TangentChoice choose_tangent(const model::Model& model, LinearSolver asked, bool dynamic, bool follows);
 
 } // namespace osculate::equilibrium

@@ -1,6 +1,7 @@
 #pragma once
 /// Kernels of one block of equal volume elements, behind one virtual interface per block.
 
+#include "osculate/core/choices.hpp"
 #include "osculate/core/types.hpp"
 #include "osculate/material/linear_elastic.hpp"
 #include "osculate/material/neo_hookean.hpp"
@@ -8,14 +9,11 @@
 #include "osculate/mesh/mesh.hpp"
 
 #include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace osculate::fe {
-
-/// How a hexahedron keeps from locking. `full`: not at all. `b_bar`: a mean dilatation, against near incompressibility;
-/// too soft in bending with a single element through the thickness; F-bar at finite strain. `incompatible_modes`:
-/// internal bending modes, against locking in bending, and in near incompressibility too as long as elements are not badly
-/// distorted; small strain only.
-enum class HexFormulation { full, b_bar, incompatible_modes };
 
 /// What an element says of its deformation. Where it is not admissible, results are zero, never NaN: the step is too
 /// large. Small strain does not know of volumes and calls every deformation admissible.
@@ -33,8 +31,22 @@ struct StepMean {
     double viscosity = 0;    ///< stiffness damping over dt: adds viscosity D : (E1 - E0) to the stress
 };
 
-/// Kernels of one block of equal elements; strain, material and formulation are chosen once, at construction.
-/// X holds the reference positions (3 x n, metres), u the displacements (3 x n, metres), n = nodes(), node order VTK's.
+/// A state of one element: reference positions X and displacements u, 3 x n, m, node order VTK's, and what it carries from
+/// earlier steps, history_size() numbers.
+struct ElementState {
+    Eigen::Ref<const Eigen::Matrix3Xd> X, u;
+    std::span<const double> history{};
+};
+
+/// A step of one element, by displacements at its two ends and what the element carried at its start. An element without a
+/// history may be left without `u_start` where no mean is asked for.
+struct ElementStep {
+    Eigen::Ref<const Eigen::Matrix3Xd> X, u_start, u;
+    std::span<const double> history_start{};
+    std::optional<StepMean> mean{}; ///< dynamics; none: forces at the end of the step
+};
+
+/// Kernels of one block of equal elements; strain, material and formulation are chosen once, at construction. n = nodes().
 /// Every kernel throws std::runtime_error where the Jacobian of the reference map is not positive. No allocation.
 class ElementKernel {
 public:
@@ -42,43 +54,39 @@ public:
 
     [[nodiscard]] virtual int nodes() const = 0;
 
-    /// Whether the tangent is the stiffness whatever u.
+    /// Whether the tangent is the stiffness whatever u. Such an element has no history.
     [[nodiscard]] virtual bool linear() const = 0;
+    /// Whether strains are those of F, so that a turn of the element strains nothing.
+    [[nodiscard]] virtual bool finite_strain() const = 0;
+    /// Numbers that an element carries from step to step, zeros before anything has happened to it.
+    [[nodiscard]] virtual std::size_t history_size() const { return 0; }
 
-    /// Stiffness (3n x 3n) of the undeformed element, N/m, exactly symmetric; degrees of freedom node by node, x y z.
+    /// Stiffness (3n x 3n) of the undeformed element without a past, N/m, exactly symmetric; degrees of freedom node by
+    /// node, x y z.
     virtual void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const = 0;
 
-    /// Strain energy W, J.
-    [[nodiscard]] virtual Deformation energy(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
-                                             const Eigen::Ref<const Eigen::Matrix3Xd>& u, double& W) const = 0;
+    /// Energy stored, J: of an element with a potential W(u) that potential, of others what can be got back.
+    [[nodiscard]] virtual Deformation energy(const ElementState& state, double& W) const = 0;
 
-    /// Internal forces f = dW/du (3 x n), N.
-    [[nodiscard]] virtual Deformation internal_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
-                                                     const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                                                     Eigen::Ref<Eigen::Matrix3Xd> f) const = 0;
+    /// Takes a step: internal forces f (3 x n), N, and the history at its end. Without a mean f = dW/du at the end where
+    /// there is a potential. With a mean the work of f over u - u_start is then the difference of the energies, with
+    /// end_weight 1/2, without viscosity and without mean dilatation; and a rigid motion by any angle does not call it up.
+    /// The step may be taken again and again, from the same start.
+    ///                                 [Simo, Tarnow 1992, Z. angew. Math. Phys. 43, 757; Gonzalez 2000]
+    [[nodiscard]] virtual Deformation update(const ElementStep& step, std::span<double> history,
+                                             Eigen::Ref<Eigen::Matrix3Xd> f) const = 0;
 
-    /// Tangent df/du (3n x 3n), N/m, exactly symmetric.
-    [[nodiscard]] virtual Deformation tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
-                                              const Eigen::Ref<const Eigen::Matrix3Xd>& u,
-                                              Eigen::Ref<Matrix> Ke) const = 0;
+    /// df/du (3n x 3n) of update(), N/m; exactly symmetric without a mean. Apart from f, as most residuals do not need it.
+    [[nodiscard]] virtual Deformation tangent(const ElementStep& step, Eigen::Ref<Matrix> Ke) const = 0;
 
-    /// Internal forces of a step from u0 to u1, f (3 x n), N, whose work over u1 - u0 is the difference of the energies,
-    /// with end_weight 1/2, without viscosity and without mean dilatation; and which a rigid motion by any angle does not
-    /// call up. Admissible where u1 is.            [Simo, Tarnow 1992, Z. angew. Math. Phys. 43, 757; Gonzalez 2000]
-    [[nodiscard]] virtual Deformation step_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
-                                                 const Eigen::Ref<const Eigen::Matrix3Xd>& u0,
-                                                 const Eigen::Ref<const Eigen::Matrix3Xd>& u1, const StepMean& mean,
-                                                 Eigen::Ref<Eigen::Matrix3Xd> f) const = 0;
-
-    /// df/du1 (3n x 3n) of step_force, N/m, not symmetric.
-    [[nodiscard]] virtual Deformation step_tangent(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
-                                                   const Eigen::Ref<const Eigen::Matrix3Xd>& u0,
-                                                   const Eigen::Ref<const Eigen::Matrix3Xd>& u1, const StepMean& mean,
-                                                   Eigen::Ref<Matrix> Ke) const = 0;
+    /// Internal forces f (3 x n), N, of a state: those of a step of no length.
+    [[nodiscard]] Deformation internal_force(const ElementState& state, Eigen::Ref<Eigen::Matrix3Xd> f) const {
+        std::vector<double> unchanged(state.history.size());
+        return update({state.X, state.u, state.u, state.history}, unchanged, f);
+    }
 
     /// Cauchy stress (6 x n), Pa, Voigt xx yy zz xy yz zx, carried from the quadrature points to the nodes.
-    virtual Deformation nodal_stress(const Eigen::Ref<const Eigen::Matrix3Xd>& X,
-                                     const Eigen::Ref<const Eigen::Matrix3Xd>& u, Eigen::Ref<Matrix> stress) const = 0;
+    virtual Deformation nodal_stress(const ElementState& state, Eigen::Ref<Matrix> stress) const = 0;
 
     /// Consistent nodal forces (3 x n), N, of a constant body force b, N/m^3.
     virtual void body_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Vec3& b,

@@ -1,7 +1,7 @@
 #pragma once
 /// Sparse matrix of 3 x 3 blocks over the nodes of all bodies.
 
-#include "osculate/core/types.hpp"
+#include "osculate/core/field.hpp"
 
 #include <vector>
 
@@ -29,10 +29,10 @@ public:
     void set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B);
     [[nodiscard]] bool empty() const { return block_.empty(); }
     /// y += A x over 3-vectors per node.
-    void multiply_add(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const;
+    void multiply_add(const Field& x, Field& y, int threads) const;
     /// y_i += A_ij (x_j - x_i), which is A x where the blocks of a row add up to nothing, as in a stiffness: a translation of
     /// all nodes changes no digit but those that x itself lost to it.
-    void multiply_add_relative(const std::vector<Vec3>& x, std::vector<Vec3>& y, int threads) const;
+    void multiply_add_relative(const Field& x, Field& y, int threads) const;
 
 private:
     std::vector<Index> row_start_{0};

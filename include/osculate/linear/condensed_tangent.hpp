@@ -36,7 +36,7 @@ public:
     /// @param X        (nodes) reference positions, m
     /// @param contact  nodes that contact may reach, global, ascending
     /// @param slaves   (couplings) global nodes
-    CondensedTangent(const Constraints& constraints, const BlockMatrix& K, const std::vector<Vec3>& X,
+    CondensedTangent(const Constraints& constraints, const BlockMatrix& K, const Field& X,
                      const std::vector<CondensedBody>& bodies, std::vector<Index> contact, std::vector<Index> slaves,
                      int threads);
     /// Opens an attempt: K belongs to dt (0 in statics), and has changed since the last.
@@ -57,7 +57,7 @@ public:
     [[nodiscard]] int factorisations() const { return factorisations_; }
     /// x with |b - J x| <= allowed. False where K or T is singular, or GMRES gets nowhere.
     /// @param D  (couplings) by lambda, of those that bear on nothing
-    [[nodiscard]] bool solve(const Unknowns& rows, std::span<const Mat3> D, const double* b, double* x, double allowed,
+    [[nodiscard]] bool solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x, double allowed,
                              Timings& timings);
 
 private:

@@ -1,7 +1,7 @@
 #pragma once
 /// Which displacement components are free, and the values of those that are not.
 
-#include "osculate/core/types.hpp"
+#include "osculate/core/field.hpp"
 
 #include <string>
 #include <vector>
@@ -40,10 +40,10 @@ public:
     /// The constraint on local component k, or nullptr.
     [[nodiscard]] const NodeConstraint* constraint(Index node, int k) const;
 
-    /// Writes displacements: free components from `unknowns`, held ones from `prescribed` (local, same layout as u).
-    void scatter(const double* unknowns, const std::vector<Vec3>& prescribed, std::vector<Vec3>& u) const;
-    /// Free local components of u, into `unknowns`.
-    void gather(const std::vector<Vec3>& u, double* unknowns) const;
+    /// Writes displacements: free components from the first of `unknowns`, held ones from `prescribed` (local, same layout as u).
+    void scatter(const ConstVectorRef& unknowns, const Field& prescribed, Field& u) const;
+    /// Free local components of u, into the first of `unknowns`.
+    void gather(const Field& u, VectorRef unknowns) const;
     /// Local components of a global vector at a node, and back.
     [[nodiscard]] Vec3 to_local(Index node, const Vec3& v) const;
     [[nodiscard]] Vec3 to_global(Index node, const Vec3& v) const;

@@ -37,7 +37,7 @@ public:
     /// Factorises for the contacts given, every coupling of the pairs among them.
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
     /// z = P^-1 r; `rows` says where the rows of the residual are.
-    void apply(const Unknowns& rows, const double* r, double* z) const;
+    void apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const;
     [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
 
 private:

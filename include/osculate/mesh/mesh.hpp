@@ -2,6 +2,7 @@
 /// The volume mesh of one body: nodes, element blocks, named node sets and named surfaces.
 
 #include "osculate/core/types.hpp"
+#include "osculate/mesh/cell_type.hpp"
 
 #include <array>
 #include <map>
@@ -9,21 +10,6 @@
 #include <vector>
 
 namespace osculate::mesh {
-
-/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA). Mind the
-/// wedge: its triangle (0, 1, 2) has its right-handed normal out of the element, away from (3, 4, 5). Nodes 4 to 9 of a
-/// tet10 stand midway on the edges 01, 12, 20, 03, 13, 23.
-enum class CellType { tet4, wedge6, hex8, tet10 };
-
-[[nodiscard]] constexpr int nodes_per_cell(CellType type) {
-    switch (type) {
-    case CellType::tet4: return 4;
-    case CellType::wedge6: return 6;
-    case CellType::hex8: return 8;
-    case CellType::tet10: return 10;
-    }
-    return 0;
-}
 
 /// Elements of one shape, stored contiguously.
 struct ElementBlock {

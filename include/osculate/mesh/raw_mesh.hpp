@@ -14,11 +14,18 @@ namespace osculate::mesh {
 struct RawCell {
     std::int64_t id = 0; ///< the file's
     CellType type = CellType::hex8;
-    std::array<Index, 10> nodes{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    std::array<Index, most_nodes_per_cell> nodes = none();
 
     [[nodiscard]] int count() const { return nodes_per_cell(type); }
     [[nodiscard]] auto begin() const { return nodes.begin(); }
     [[nodiscard]] auto end() const { return nodes.begin() + count(); }
+
+private:
+    static constexpr std::array<Index, most_nodes_per_cell> none() {
+        std::array<Index, most_nodes_per_cell> all{};
+        all.fill(-1);
+        return all;
+    }
 };
 
 /// A face of a cell by its points, in any orientation: 3 or 4 corners, or those of a six-node triangle with the points

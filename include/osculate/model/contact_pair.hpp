@@ -7,6 +7,7 @@
 #include "osculate/contact/mirror.hpp"
 #include "osculate/contact/mortar.hpp"
 #include "osculate/contact/search.hpp"
+#include "osculate/core/choices.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <memory>
@@ -39,8 +40,6 @@ struct MasterNodes {
     std::vector<contact::Image> images{contact::Image{}};
     std::vector<double> thickness{}; ///< (vertices) of the body behind, m; empty: not asked for
 };
-
-enum class Discretisation { node, mortar };
 
 struct ContactOptions {
     double friction = 0;      ///< Coulomb's mu

@@ -5,7 +5,7 @@
 #include "osculate/linear/block_matrix.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/model/contact_pair.hpp"
-#include "osculate/model/finite_strain.hpp"
+#include "osculate/model/nonlinear_elements.hpp"
 
 #include <memory>
 #include <string>
@@ -34,16 +34,16 @@ struct Set {
 struct Model {
     std::vector<Body> bodies;
     Vec3 origin = Vec3::Zero(); ///< where the scene's coordinates have X = 0, m: far from it digits would be lost
-    std::vector<Vec3> X;        ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
+    Field X;        ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
     std::vector<Set> sets;
     std::vector<std::unique_ptr<const ContactPair>> pairs;
-    linear::BlockMatrix K;                       ///< constant stiffness of the linear bodies, in the pattern of all
-    std::unique_ptr<FiniteStrain> finite_strain; ///< the other bodies; null where there are none
+    linear::BlockMatrix K; ///< constant stiffness of the linear elements, in the pattern of all
+    std::unique_ptr<NonlinearElements> nonlinear; ///< the other elements; null where there are none
     linear::BlockMatrix consistent_mass,
         lumped_mass;                      ///< of all bodies, kg, pattern of K; empty where no stage asks for it
     std::vector<Index> kept_contact_mass; ///< bodies whose contact nodes were to have no mass and keep it, ascending
 
-    std::vector<Vec3> initial_velocity; ///< (nodes) m/s; empty where no stage is dynamic
+    Field initial_velocity; ///< (nodes) m/s; empty where no stage is dynamic
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
@@ -52,10 +52,12 @@ struct Model {
 /// Number of the body of a global node, and the body; -1 and null for no node.
 [[nodiscard]] Index body_index(const Model& model, Index node);
 [[nodiscard]] const Body* body_of(const Model& model, Index node);
-/// f_int(u) of all bodies, (nodes) N.
-[[nodiscard]] std::vector<Vec3> internal_force(const Model& model, const std::vector<Vec3>& u, int threads);
-/// Strain energy of all bodies, J.
-[[nodiscard]] double strain_energy(const Model& model, const std::vector<Vec3>& u, int threads);
+/// Internal forces of all bodies at the end of a step, or of a state, (nodes) N.
+[[nodiscard]] Field internal_force(const Model& model, const BodyStep& step, int threads);
+/// Energy stored in all bodies, J.
+[[nodiscard]] double strain_energy(const Model& model, const Field& u, const MaterialHistory& history, int threads);
+/// Before anything has happened.
+[[nodiscard]] MaterialHistory initial_history(const Model& model);
 /// Largest diagonal entry of the stiffness of all undeformed bodies, N/m.
 [[nodiscard]] double largest_stiffness(const Model& model);
 /// Stiffness of all undeformed bodies, in the pattern of K.
@@ -77,16 +79,21 @@ struct AssembledMass {
 /// Centre of mass of a body of uniform density in its reference configuration, m.
 [[nodiscard]] Vec3 centre_of_mass(const Body& body);
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).
-void add_body_force(const Body& body, const Vec3& b, std::vector<Vec3>& f);
-/// Nodal stress of one body (nodes x 6, Pa, Voigt): element values averaged with the element volumes as weights.
-[[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Body& body, const std::vector<Vec3>& u);
+void add_body_force(const Body& body, const Vec3& b, Field& f);
 
 /// What an accepted step leaves behind, and a rejected one restores: plain values.
 struct State {
     double time = 0;
-    std::vector<Vec3> u;    ///< displacements, m
-    std::vector<Vec3> v, a; ///< velocities, m/s, and accelerations, m/s^2; empty before the first dynamic stage
+    Field u;    ///< displacements, m
+    Field v, a; ///< velocities, m/s, and accelerations, m/s^2; empty before the first dynamic stage
     std::vector<ContactHistory> contact;
+    MaterialHistory material{};
+
+    /// The step of no length from here to here, whose forces are those of the state.
+    [[nodiscard]] BodyStep at_rest() const { return {u, u, material}; }
 };
+
+/// Nodal stress of one body (nodes x 6, Pa, Voigt): element values averaged with the element volumes as weights.
+[[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index body, const State& state);
 
 } // namespace osculate::model

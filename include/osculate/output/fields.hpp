@@ -12,7 +12,7 @@ namespace osculate::output {
 
 enum class FieldPlace { body, slave, master };
 
-struct Field {
+struct OutputField {
     const char* name; ///< in scenes and in files
     FieldPlace where;
     int components;
@@ -23,12 +23,12 @@ struct Field {
 };
 
 /// Every field, in the order of the reference.
-[[nodiscard]] std::span<const Field> all_fields();
+[[nodiscard]] std::span<const OutputField> all_fields();
 
 /// The field of that name. @throws InternalError when there is none
-[[nodiscard]] const Field& field(FieldPlace where, const std::string& name);
+[[nodiscard]] const OutputField& field(FieldPlace where, const std::string& name);
 
 /// Its values as an array of a VTK file.
-[[nodiscard]] Array evaluate(const Field& field, const Snapshot& snapshot, Index body_or_pair);
+[[nodiscard]] Array evaluate(const OutputField& field, const Snapshot& snapshot, Index body_or_pair);
 
 } // namespace osculate::output

@@ -47,7 +47,7 @@ private:
         std::vector<Index> nodes;        ///< global node of every point
         std::vector<Vec3> points;        ///< reference positions, m
         std::vector<mesh::Facet> facets; ///< nodes index points
-        std::vector<const Field*> fields;
+        std::vector<const OutputField*> fields;
     };
     struct File {
         const Surface* surface = nullptr; ///< null: of a body
@@ -57,11 +57,11 @@ private:
     };
     void write_files(const std::vector<File>& files, const Vec3& origin, double time);
     void add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
-                     const std::vector<mesh::Facet>& facets, std::vector<const Field*> fields);
+                     const std::vector<mesh::Facet>& facets, std::vector<const OutputField*> fields);
     [[nodiscard]] static std::string file(const std::string& part, long number, const char* extension);
 
     std::filesystem::path directory_;
-    std::vector<const Field*> body_fields_;
+    std::vector<const OutputField*> body_fields_;
     std::vector<std::string> bodies_; ///< that have files
     std::vector<Surface> surfaces_;
     Series series_;

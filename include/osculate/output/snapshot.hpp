@@ -32,7 +32,7 @@ public:
     [[nodiscard]] double dt() const { return dt_; }
     [[nodiscard]] const contact::AuditResult* audit() const { return audit_; }
     /// Current positions x = X + u of all nodes, m; computed when first asked for.
-    [[nodiscard]] const std::vector<Vec3>& x() const;
+    [[nodiscard]] const Field& x() const;
     /// Nodal stress of a body (nodes x 6), Pa; computed when first asked for.
     [[nodiscard]] const Stress& stress(Index body) const;
     /// What contact found for a pair.
@@ -51,7 +51,7 @@ private:
     std::vector<Vec3> reactions_, out_of_balance_;
     double dt_;
     const contact::AuditResult* audit_;
-    mutable std::vector<Vec3> x_;
+    mutable Field x_;
     mutable std::map<Index, Stress> stress_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// A validated scene in SI units: what the user asked for, every default filled in, nothing else.
 
+#include "osculate/core/choices.hpp"
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/focus.hpp"
@@ -139,8 +140,6 @@ using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean>;
     return std::visit([](const auto& m) -> const ElasticConstants& { return m; }, material);
 }
 
-enum class HexFormulation { full, b_bar, incompatible_modes };
-
 struct Body {
     MeshSpec mesh;
     Material material;
@@ -198,7 +197,6 @@ struct FacetsSurface {
     bool operator==(const FacetsSurface&) const = default;
 };
 
-enum class PatchCoordinates { tangential, equal_length };
 enum class RadialBasis { multiquadric, r3, r5 };
 
 struct RpimSurface {
@@ -225,8 +223,6 @@ struct MasterSpec {
     std::variant<FacetsSurface, RpimSurface, BlendSurface> surface = BlendSurface{};
     bool operator==(const MasterSpec&) const = default;
 };
-
-enum class Discretisation { node, mortar };
 
 struct Pair {
     std::string slave; ///< set
@@ -309,8 +305,6 @@ struct Stage {
     Named<std::array<Course, 3>> body_force; ///< body -> N/m^3
     bool operator==(const Stage&) const = default;
 };
-
-enum class LinearSolver { automatic, condensed, iterative, multigrid, direct };
 
 struct Solver {
     double tolerance = 1e-9;     ///< largest residual over the step's reference force

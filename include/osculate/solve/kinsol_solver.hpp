@@ -20,7 +20,7 @@ public:
     /// Factorises P at the z of the last residual.
     [[nodiscard]] virtual FactorStatus factorise() = 0;
     /// z = P^-1 r
-    virtual void precondition(const double* r, double* z) = 0;
+    virtual void precondition(const ConstVectorRef& r, VectorRef z) = 0;
     /// Equation where factorise() failed, -1 unknown.
     [[nodiscard]] virtual SparseIndex failing_equation() const = 0;
 };
@@ -32,11 +32,11 @@ public:
     /// Takes J at the z of the last residual.
     virtual void linearise() = 0;
     /// y = J x
-    virtual void multiply(const double* x, double* y) = 0;
+    virtual void multiply(const ConstVectorRef& x, VectorRef y) = 0;
     /// Whether it knows a way of its own to solve with J.
     [[nodiscard]] virtual bool solves() const { return false; }
     /// x with |b - J x| <= allowed. False where it cannot: it is then solved as any other. @pre solves()
-    [[nodiscard]] virtual bool solve(const double* b, double* x, double allowed) {
+    [[nodiscard]] virtual bool solve(const ConstVectorRef& b, VectorRef x, double allowed) {
         (void)b, (void)x, (void)allowed;
         return false;
     }
@@ -55,7 +55,7 @@ public:
     virtual ~NonlinearProblem() = default;
     [[nodiscard]] virtual Index size() const = 0;
     /// F (n) at z (n). KINSOL calls it once per Newton iterate, and more often within a line search.
-    [[nodiscard]] virtual Verdict residual(const double* z, double* F) = 0;
+    [[nodiscard]] virtual Verdict residual(const ConstVectorRef& z, VectorRef F) = 0;
     /// J = dF/dz at the z of the last residual.
     [[nodiscard]] virtual const SparseMatrix& jacobian() = 0;
     /// How to invert about J, where the problem knows better than to factorise it.

@@ -18,7 +18,7 @@ public:
     explicit Audit(const model::Model& model);
 
     /// Of the state with displacements u, all nodes, m. Kept until the next one.
-    const contact::AuditResult& examine(const std::vector<Vec3>& u);
+    const contact::AuditResult& examine(const Field& u);
     /// The deepest place of the last examination beyond what was drawn, its excess reduced by that; nothing where there is
     /// none.
     [[nodiscard]] std::optional<contact::Intrusion> deepest() const;
@@ -26,7 +26,7 @@ public:
 private:
     const model::Model& model_;
     contact::SurfaceAudit surfaces_;
-    std::vector<Vec3> x_;
+    Field x_;
     contact::AuditResult result_;
     std::map<std::pair<Index, Index>, double> drawn_; ///< excess in the reference configuration, m
 };

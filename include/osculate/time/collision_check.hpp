@@ -37,9 +37,9 @@ public:
     /// Locates every slave node at the accepted state a step starts from.
     void begin_step(const model::State& state);
     /// Adds what there is to say of a trial that leads to displacements u, at which contact has been evaluated last.
-    void add_trial(const std::vector<Vec3>& u, StepEvidence& evidence);
+    void add_trial(const Field& u, StepEvidence& evidence);
     /// The same for a solution with contact, whose gaps need no proof.
-    void add_solution(const std::vector<Vec3>& u, StepEvidence& evidence);
+    void add_solution(const Field& u, StepEvidence& evidence);
     /// Paths followed since it was asked last.
     [[nodiscard]] long take_paths_followed() { return std::exchange(followed_, 0); }
 
@@ -58,9 +58,9 @@ private:
     /// GapEvidence::length at a facet, and what it allows, m.
     [[nodiscard]] double length(std::size_t p, Index facet) const;
     [[nodiscard]] double allowed(std::size_t p, Index facet) const;
-    void add_normal_motions(const std::vector<Vec3>& u, StepEvidence& evidence) const;
-    void add_paths(const std::vector<Vec3>& u, StepEvidence& evidence);
-    void follow(std::size_t p, const std::vector<Index>& slaves, const std::vector<Vec3>& x, StepEvidence& evidence);
+    void add_normal_motions(const Field& u, StepEvidence& evidence) const;
+    void add_paths(const Field& u, StepEvidence& evidence);
+    void follow(std::size_t p, const std::vector<Index>& slaves, const Field& x, StepEvidence& evidence);
 
     const model::Model& model_;
     model::ContactEvaluations& contact_;
@@ -68,7 +68,7 @@ private:
     bool paths_;
     Timings& timings_;
     int threads_;
-    std::vector<Vec3> x_; ///< positions at the start
+    Field x_; ///< positions at the start
     std::vector<std::vector<Start>> starts_;
     long followed_ = 0;
 };

@@ -32,6 +32,6 @@ struct Ledger {
 /// @param force        (nodes) external forces of the step's equations, N
 [[nodiscard]] Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
                               const equilibrium::Equilibrium& equilibrium, const model::State& from,
-                              const model::State& to, const std::vector<Vec3>& force);
+                              const model::State& to, const Field& force);
 
 } // namespace osculate::time

@@ -23,7 +23,7 @@ struct RunCounts {
 struct Progress {
     std::size_t stage = 0;
     double stage_start = 0;                 ///< time, s
-    std::vector<Vec3> displacement_start{}; ///< (nodes) at the stage's start, local axes, m
+    Field displacement_start{}; ///< (nodes) at the stage's start, local axes, m
     std::size_t reached = 0;                ///< times to hit of the stage that lie behind
     double dt = 0;                          ///< of the next attempt, s
     model::State state;

@@ -27,8 +27,8 @@ struct LadderOptions {
     double round_off = 0;
     double farthest = 0; ///< m, displacements beyond which an iterate is not taken seriously there
     /// (nodes) displacements behind the start values, driven nodes where they were: what first residuals are linear about
-    /// at finite strain (Equilibrium::linearise_first_about); empty: exact from the start.
-    std::vector<Vec3> predicted{}, unpredicted{};
+    /// with nonlinear elements (Equilibrium::linearise_first_about); empty: exact from the start.
+    Field predicted{}, unpredicted{};
     bool last_chance = false; ///< the step cannot be cut: rung 3 may take long, and any failure leads to rung 4
     StabilisationOptions stabilisation{};
 };

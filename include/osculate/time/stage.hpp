@@ -2,6 +2,7 @@
 /// One stage as the stepper sees it.
 
 #include "osculate/equilibrium/dynamics.hpp"
+#include "osculate/equilibrium/tangent_choice.hpp"
 #include "osculate/linear/constraints.hpp"
 #include "osculate/mesh/surface_faces.hpp"
 #include "osculate/time/step_control.hpp"
@@ -23,7 +24,7 @@ struct Course {
 /// External forces that follow a course.
 struct CourseForce {
     Index course = -1;         ///< of the stage
-    std::vector<Vec3> pattern; ///< (nodes) forces where the course is 1, N
+    Field pattern; ///< (nodes) forces where the course is 1, N
 };
 
 /// A pressure on the current area, along the current normal.
@@ -38,11 +39,12 @@ struct Stage {
     double duration = 1; ///< s
     int steps = 1;
     std::optional<equilibrium::Dynamics> dynamics;   ///< absent: static
+    equilibrium::TangentChoice tangent;              ///< how its linear systems are solved
     StepLimits limits;                               ///< g_p in facet sizes; dt_max is the stage's step
     bool follow_paths = false;                       ///< of slave nodes, see CollisionCheck
     bool ramp = true;                                ///< linear from the last value; false: full value at once
     std::vector<linear::NodeConstraint> constraints; ///< every direction held during this stage
-    std::vector<Vec3> force_start, force_end;        ///< (nodes) external forces at its two ends, N
+    Field force_start, force_end;        ///< (nodes) external forces at its two ends, N
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< on top of these
     std::vector<FollowerPressure> follower_pressures;

@@ -26,7 +26,6 @@ struct StepperOptions {
     bool predictor = true;
     bool stabilisation = true; ///< see StabilisationOptions
     int threads = 1;
-    linear::LinearSolver linear_solver = linear::LinearSolver::automatic;
     bool audit = false; ///< of every solved step, see Audit
 };
 

@@ -56,7 +56,7 @@ double stiffness_ratio(const LoadedScene& loaded, const model::ContactPair& pair
 /// pair_warnings() say so.
 void advise_on_stiffness(double ratio, const Pairing& found, PairCheck& check) {
     constexpr double stiffer = 3;
-    if (found.near == 0 || found.discretisation == model::Discretisation::mortar) return;
+    if (found.near == 0 || found.discretisation == Discretisation::mortar) return;
     if (ratio < stiffer || ratio >= much_stiffer) return;
     if (found.slave_spacing < 0.9 * found.master_spacing) return; // the finer side is the slave: that weighs more
     check.advice.push_back(fmt::format(
@@ -64,8 +64,8 @@ void advise_on_stiffness(double ratio, const Pairing& found, PairCheck& check) {
 }
 
 bool finite_strain(const LoadedScene& loaded, Index node) {
-    return !std::holds_alternative<scene::LinearElastic>(
-        scene::find(loaded.scene.bodies, owner(loaded.plan.model, node).name)->material);
+    return std::ranges::any_of(owner(loaded.plan.model, node).kernels,
+                               [](const auto& kernel) { return kernel->finite_strain(); });
 }
 
 /// Bodies at small strain do not turn, and without inertia bodies turn as they are driven.

@@ -14,7 +14,7 @@ struct Pairing {
     bool matching = true;      ///< each of them lies over a master node
     double slave_spacing = 0;  ///< mean distance of neighbouring nodes there, m
     double master_spacing = 0; ///< the same of the master
-    model::Discretisation discretisation = model::Discretisation::node;
+    Discretisation discretisation = Discretisation::node;
 };
 
 /// @pre the pair has been evaluated at the positions X of all nodes

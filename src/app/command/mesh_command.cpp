@@ -11,16 +11,6 @@
 namespace osculate::app {
 namespace {
 
-const char* name_of(mesh::CellType type) {
-    switch (type) {
-    case mesh::CellType::tet4: return "tet4";
-    case mesh::CellType::wedge6: return "wedge6";
-    case mesh::CellType::hex8: return "hex8";
-    case mesh::CellType::tet10: return "tet10";
-    }
-    return "";
-}
-
 } // namespace
 
 std::string describe_mesh(const MeshCommand& command) {
@@ -32,7 +22,7 @@ std::string describe_mesh(const MeshCommand& command) {
         const auto out = std::back_inserter(text);
         fmt::format_to(out, "{} nodes, {} elements:", m.node_count(), m.element_count());
         for (const mesh::ElementBlock& block : m.blocks)
-            fmt::format_to(out, " {} {}", block.size(), name_of(block.type));
+            fmt::format_to(out, " {} {}", block.size(), mesh::cell_info(block.type).name);
         Eigen::AlignedBox3d box;
         for (const Vec3& x : m.nodes) box.extend(x);
         const auto vector = [](const Vec3& x) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x[0], x[1], x[2]); };

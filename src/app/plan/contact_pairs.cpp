@@ -67,10 +67,6 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
         default: return {s.R, s.q};
         }
     };
-    const auto coordinates = [](scene::PatchCoordinates c) {
-        return c == scene::PatchCoordinates::tangential ? contact::PatchCoordinates::tangential
-                                                        : contact::PatchCoordinates::equal_length;
-    };
     return std::visit(Overloaded{
                           [&](const scene::FacetsSurface& s) {
                               options.hysteresis = s.hysteresis;
@@ -79,12 +75,12 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
                           [&](const scene::RpimSurface& s) {
                               options.hysteresis = s.hysteresis;
                               return contact::make_rpim_surface(
-                                  surface, vertices, {s.ring, radial_basis(s), s.m, coordinates(s.coordinates)});
+                                  surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
                           },
                           [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
                               options.hysteresis = 0;
                               return contact::make_blend_surface(
-                                  surface, vertices, {s.ring, radial_basis(s), s.m, coordinates(s.coordinates)});
+                                  surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
                           },
                       },
                       spec.surface);
@@ -161,7 +157,7 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
         slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
     }
 
-    if (spec.discretisation == scene::Discretisation::mortar)
+    if (spec.discretisation == Discretisation::mortar)
         slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
 
     model::MasterNodes master_nodes;
@@ -176,13 +172,12 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     }
     master_nodes.images = mirrored.images;
     model::ContactOptions options;
-    options.discretisation = spec.discretisation == scene::Discretisation::mortar ? model::Discretisation::mortar
-                                                                                  : model::Discretisation::node;
+    options.discretisation = spec.discretisation;
     options.friction = spec.friction;
     options.closing_tolerance = spec.closing_tolerance;
     auto shape = make_master(spec.master, *surface, vertices, options);
     std::optional<contact::SmoothSlave> smooth;
-    if (spec.discretisation == scene::Discretisation::mortar)
+    if (spec.discretisation == Discretisation::mortar)
         smooth = smooth_slave(scene, spec.master, model, slave, slaves.node);
     return std::make_unique<model::ContactPair>(name, X, std::move(slaves), std::move(surface), std::move(master_nodes),
                                                 std::move(shape), options, smooth ? &*smooth : nullptr);

@@ -19,7 +19,7 @@ struct Habits {
 };
 
 double iterations(const Plan& plan) {
-    const bool linear = plan.model.pairs.empty() && plan.model.finite_strain == nullptr;
+    const bool linear = plan.model.pairs.empty() && plan.model.nonlinear == nullptr;
     double sum = 0;
     for (const time::Stage& stage : plan.stages)
         sum += linear ? Habits::alone * stage.steps
@@ -44,7 +44,7 @@ Slaves slaves(const scene::Scene& scene, const Plan& plan) {
     Slaves sum;
     for (const auto& pair : plan.model.pairs) {
         const scene::Pair& spec = *scene::find(scene.contact, pair->name());
-        const double n = pair->size() * (spec.discretisation == scene::Discretisation::mortar ? mortar : 1.0);
+        const double n = pair->size() * (spec.discretisation == Discretisation::mortar ? mortar : 1.0);
         if (const auto* rpim = std::get_if<scene::RpimSurface>(&spec.master.surface))
             sum.rpim += n * patch(rpim->ring);
         else if (const auto* blend = std::get_if<scene::BlendSurface>(&spec.master.surface))
@@ -56,7 +56,7 @@ Slaves slaves(const scene::Scene& scene, const Plan& plan) {
     return sum;
 }
 
-double finite_elements(const Plan& plan) {
+double nonlinear_elements(const Plan& plan) {
     double sum = 0;
     for (const model::Body& body : plan.model.bodies)
         if (std::ranges::any_of(body.kernels, [](const auto& kernel) { return !kernel->linear(); }))
@@ -87,11 +87,9 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
 } // namespace
 
 std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
-    const bool follows =
-        std::ranges::any_of(plan.stages, [](const time::Stage& s) { return !s.follower_pressures.empty(); });
-    const bool multigrid = equilibrium::goes_by_multigrid(plan.model, plan.stepper.linear_solver);
-    const bool condensed = equilibrium::condenses(plan.model, plan.stepper.linear_solver, follows);
-    const bool changing = plan.model.finite_strain != nullptr || !plan.model.pairs.empty();
+    const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
+    const bool condensed = std::ranges::all_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
+    const bool changing = plan.model.nonlinear != nullptr || !plan.model.pairs.empty();
     const auto cost = equilibrium::condensation_cost(plan.model);
     const double all = steps(plan, false) + steps(plan, true), solves = iterations(plan);
     const double nodes = plan.model.nodes(), blocks = plan.model.K.row_end(plan.model.K.rows() - 1);
@@ -116,17 +114,17 @@ std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
         {"operations of condensation", condensed ? cost.condensed : 0, 7.2e-10},
         {"3x3 blocks, Newton", solves * blocks, 5e-8},
         {"3x3 blocks, dynamic steps", steps(plan, true) * blocks, 1e-7},
-        {"elements at finite strain", solves * finite_elements(plan), 1.7e-5}};
+        {"elements at finite strain", solves * nonlinear_elements(plan), 1.7e-5}};
 }
 
 Estimate estimate(const scene::Scene& scene, const Plan& plan) {
-    const bool follows =
-        std::ranges::any_of(plan.stages, [](const time::Stage& s) { return !s.follower_pressures.empty(); });
+    const auto any = [&](bool equilibrium::TangentChoice::*what) {
+        return std::ranges::any_of(plan.stages, [&](const time::Stage& s) { return s.tangent.*what; });
+    };
     Estimate result;
     result.steps = steps(plan, false) + steps(plan, true);
     for (const CostTerm& term : cost_terms(scene, plan)) result.seconds += term.count * term.seconds;
-    result.bytes = bytes(plan, equilibrium::goes_by_multigrid(plan.model, plan.stepper.linear_solver),
-                         equilibrium::condenses(plan.model, plan.stepper.linear_solver, follows));
+    result.bytes = bytes(plan, any(&equilibrium::TangentChoice::multigrid), any(&equilibrium::TangentChoice::condensed));
     return result;
 }
 

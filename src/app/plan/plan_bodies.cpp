@@ -11,15 +11,15 @@ namespace {
 
 constexpr const char* every_static = "every stage is static";
 
-bool at_finite_strain(const model::Body& body) {
+bool is_nonlinear(const model::Body& body) {
     return std::ranges::any_of(body.kernels, [](const auto& kernel) { return !kernel->linear(); });
 }
 
-/// Elements at finite strain, with their places in the stiffness.
-PlanCost finite_strain_cost(const model::Model& model) {
+/// Nonlinear elements, with their places in the stiffness.
+PlanCost nonlinear_cost(const model::Model& model) {
     PlanCost cost{2 * bytes_of(model.K), 0, "elements an iteration"}; // the tangent and what of it is constant
     for (const model::Body& body : model.bodies) {
-        if (!at_finite_strain(body)) continue;
+        if (!is_nonlinear(body)) continue;
         for (std::size_t b = 0; b < body.kernels.size(); ++b) {
             const double n = body.kernels[b]->nodes(), elements = body.mesh.blocks[b].size();
             cost.count += elements;
@@ -46,11 +46,12 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
     const model::Model& model = plan.model;
     const double blocks = model.K.row_end(model.K.rows() - 1),
                  vectors = sizeof(Vec3) * static_cast<double>(model.nodes());
-    const bool finite = model.finite_strain != nullptr;
-    list.say("stiffness", true, finite ? "of the bodies at small strain, assembled once" : "assembled once: constant",
+    const bool nonlinear = model.nonlinear != nullptr;
+    list.say("stiffness", true, nonlinear ? "of the linear elements, assembled once" : "assembled once: constant",
              {bytes_of(model.K), blocks, "3x3 blocks an iteration"});
-    list.say("finite strain", finite, finite ? "forces and tangent anew at every iterate" : "every body is linear",
-             finite ? finite_strain_cost(model) : PlanCost{});
+    list.say("nonlinear elements", nonlinear,
+             nonlinear ? "forces and tangent anew at every iterate" : "every body is linear",
+             nonlinear ? nonlinear_cost(model) : PlanCost{});
 
     const std::size_t dynamic = dynamic_stages(plan);
     constexpr double states = 10; // u, v, a: of the state, of the start of the step and after it; force at the start

@@ -64,7 +64,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
         const scene::Pair& spec = *scene::find(scene.contact, pair->name());
         for (Index v = 0; v < pair->surface().vertex_count() && pair->mirrored(); ++v)
             images += pair->own_vertex(v) != v ? 1 : 0;
-        if (spec.discretisation == scene::Discretisation::mortar)
+        if (spec.discretisation == Discretisation::mortar)
             slave_facets += static_cast<double>(pair->slaves().facets.size());
         if (std::holds_alternative<scene::FacetsSurface>(spec.master.surface)) continue;
         add_patches(spec.master, pair->surface(), patches);

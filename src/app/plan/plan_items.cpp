@@ -35,25 +35,25 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     add_body_items(scene, plan, list);
     add_contact_items(scene, plan, list);
 
-    const bool contact = !plan.model.pairs.empty(), finite = plan.model.finite_strain != nullptr;
+    const bool contact = !plan.model.pairs.empty(), nonlinear = plan.model.nonlinear != nullptr;
     const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
                                      [](const time::Stage& s) { return !s.follower_pressures.empty(); });
-    const bool unsymmetric = contact || follows || (finite && dynamic_stages(plan) > 0);
-    const linear::LinearSolver asked = plan.stepper.linear_solver;
+    const bool unsymmetric = contact || follows || (nonlinear && dynamic_stages(plan) > 0);
+    const LinearSolver asked = scene.solver.linear_solver;
     const auto cost = equilibrium::condensation_cost(plan.model);
-    const bool condensed = equilibrium::condenses(plan.model, asked, follows);
-    const bool multigrid = equilibrium::goes_by_multigrid(plan.model, asked);
-    const bool direct = unsymmetric && asked == linear::LinearSolver::direct;
+    const bool condensed = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
+    const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
+    const bool direct = unsymmetric && asked == LinearSolver::direct;
     say("multigrid", multigrid,
         multigrid ? fmt::format("cycles over {} nodes in place of factors", plan.model.nodes())
                   : "fewer nodes than cycles pay for, or another solver is asked for");
     say("condensation", condensed,
-        !contact            ? "the scene has no pair"
-        : multigrid         ? "multigrid is used"
-        : finite || follows ? "the tangent of the bodies is not constant"
-        : condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
-                                  cost.condensed, cost.factorising)
-        : asked == linear::LinearSolver::automatic
+        condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
+                                cost.condensed, cost.factorising)
+        : !contact             ? "the scene has no pair"
+        : multigrid            ? "multigrid is used"
+        : nonlinear || follows ? "the tangent of the bodies is not constant"
+        : asked == LinearSolver::automatic
             ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
                           "{:.2g} operations",
                           cost.condensed, 1e-9 * cost.bytes, cost.factorising)

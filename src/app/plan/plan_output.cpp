@@ -43,7 +43,7 @@ double add_fields(const scene::Output& out, const model::Model& model, PlanList&
     const std::string not_asked = not_named(out);
     double all = 0;
     for (const Place& place : places(out, model))
-        for (const output::Field& field : output::all_fields()) {
+        for (const output::OutputField& field : output::all_fields()) {
             if (field.where != place.where) continue;
             const bool asked = names(place.asked, field.name), somewhere = place.points > 0;
             const bool present = asked && somewhere && out.frame_every > 0;

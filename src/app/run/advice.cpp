@@ -271,8 +271,8 @@ private:
     /// Least det F at the last accepted state.
     [[nodiscard]] double volume_left() const {
         const model::Model& model = failed_.model;
-        std::vector<Vec3> f(model.X.size(), Vec3::Zero());
-        return model.finite_strain ? model.finite_strain->add_internal_force(model.X, failed_.last.u, f, 1).J : 1;
+        Field f(model.X.size());
+        return model.nonlinear ? model.nonlinear->add_force(model.X, failed_.last.at_rest(), f, 1).J : 1;
     }
 
     void too_deep() {
@@ -351,7 +351,7 @@ private:
             const model::ContactPair& one = **pair;
             const std::vector<Index>& slaves = one.slaves().node;
             const bool known = std::ranges::count(slaves, intrusion.node) > 0;
-            if (one.options().discretisation == model::Discretisation::mortar) by_nodes(one);
+            if (one.options().discretisation == Discretisation::mortar) by_nodes(one);
             if (intrusion.edge)
                 edges_cross(one, intrusion);
             else if (!known)

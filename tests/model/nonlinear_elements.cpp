@@ -22,24 +22,18 @@ Body hybrid_block(Index first_node, const Vec3& origin, const std::array<int, 3>
               0};
     for (const mesh::ElementBlock& block : body.mesh.blocks)
         body.kernels.push_back(
-            linear ? fe::make_kernel(block.type, fe::HexFormulation::full, hooke)
-                   : fe::make_kernel(block.type, fe::HexFormulation::full, material::NeoHookean(hooke)));
+            linear ? fe::make_kernel(block.type, HexFormulation::full, hooke)
+                   : fe::make_kernel(block.type, HexFormulation::full, material::NeoHookean(hooke)));
     return body;
 }
 
 Model model_of(std::vector<Body> bodies) {
     Model model;
     model.bodies = std::move(bodies);
-    for (const Body& body : model.bodies) model.X.insert(model.X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
+    for (const Body& body : model.bodies) model.X.values().insert(model.X.values().end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
     model.K = assemble_stiffness(model.bodies, model.nodes());
-    model.finite_strain = std::make_unique<FiniteStrain>(model.bodies, model.K);
+    model.nonlinear = std::make_unique<NonlinearElements>(model.bodies, model.K);
     return model;
-}
-
-double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-    return sum;
 }
 
 /// Hundreds of elements a block: several batches. One linear body behind another at finite strain.
@@ -51,35 +45,35 @@ struct TwoKinds : ::testing::Test {
         return model_of(std::move(bodies));
     }();
     Random random{61};
-    const std::vector<Vec3> u = scattered(), way = scattered();
+    const MaterialHistory nothing;
+    const Field u = scattered(), way = scattered();
     const double step = 1e-4; // differences: round-off 1e-15 / step, step^2 over the strain
 
-    std::vector<Vec3> scattered() {
+    Field scattered() {
         std::vector<Vec3> result;
         for (Index i = 0; i < model.nodes(); ++i) result.push_back(random.vector(0.01));
         return result;
     }
-    [[nodiscard]] std::vector<Vec3> along(double t) const {
-        std::vector<Vec3> moved = u;
-        for (std::size_t i = 0; i < u.size(); ++i) moved[i] += t * way[i];
-        return moved;
+    [[nodiscard]] Field along(double t) const { return weighted(1, u, t, way); }
+    [[nodiscard]] Field forces(const Field& at, int threads) const {
+        return internal_force(model, {at, at, nothing}, threads);
     }
 };
 
 TEST_F(TwoKinds, ForcesAreTheDerivativeOfTheEnergy) {
     ASSERT_GT(model.bodies[0].mesh.blocks[0].size(), 256) << "one batch only";
-    const double slope = (strain_energy(model, along(step), 1) - strain_energy(model, along(-step), 1)) / (2 * step);
-    const double work = dot(internal_force(model, u, 1), way);
+    const double slope = (strain_energy(model, along(step), nothing, 1) - strain_energy(model, along(-step), nothing, 1)) /
+                         (2 * step);
+    const double work = dot(forces(u, 1), way);
     EXPECT_NEAR(slope, work, 1e-6 * std::abs(work));
 }
 
 TEST_F(TwoKinds, TangentIsTheDerivativeOfTheForces) {
     linear::BlockMatrix K = model.K;
-    model.finite_strain->add_tangent(model.X, u, K, 2);
-    std::vector<Vec3> change(u.size(), Vec3::Zero());
+    model.nonlinear->add_tangent(model.X, {u, u, nothing}, K, 2);
+    Field change(u.size());
     K.multiply_add(way, change, 1);
-    const std::vector<Vec3> ahead = internal_force(model, along(step), 1),
-                            behind = internal_force(model, along(-step), 2);
+    const Field ahead = forces(along(step), 1), behind = forces(along(-step), 2);
     double worst = 0, largest = 0;
     for (std::size_t i = 0; i < u.size(); ++i) {
         worst = std::max(worst, ((ahead[i] - behind[i]) / (2 * step) - change[i]).norm());
@@ -99,14 +93,14 @@ TEST(FiniteStrainModel, NamesTheWorstElementByItsNumberInItsBody) {
     const auto& wedges = body.mesh.blocks[1];
     for (Index e = 0; e < wedges.size(); ++e) {
         // shear leaves volumes alone; one of the element's nodes is pushed through its opposite face
-        std::vector<Vec3> u(model.X.size(), Vec3::Zero()), f(u);
+        Field u(model.X.size()), f(u);
         Vec3 centre = Vec3::Zero();
         for (Index i = 0; i < 6; ++i) centre += body.mesh.nodes[wedges.connectivity[6 * e + i]] / 6;
         for (Index i = 0; i < 6; ++i) { // turned inside out as a whole: neighbours suffer less
             const Index local = wedges.connectivity[6 * e + i];
             u[body.first_node + local] = -1.5 * (body.mesh.nodes[local] - centre);
         }
-        const WorstElement worst = model.finite_strain->add_internal_force(model.X, u, f, 1);
+        const WorstElement worst = model.nonlinear->add_force(model.X, {u, u, MaterialHistory{}}, f, 1);
         EXPECT_FALSE(worst.admissible());
         EXPECT_EQ(worst.body, 1);
         double least = 1; // as the kernel has it, element by element
@@ -120,7 +114,7 @@ TEST(FiniteStrainModel, NamesTheWorstElementByItsNumberInItsBody) {
                     X.col(i) = body.mesh.nodes[block.connectivity[n * k + i]];
                     ue.col(i) = u[body.first_node + block.connectivity[n * k + i]];
                 }
-                const double J = body.kernels[b]->internal_force(X, ue, fe).smallest_J;
+                const double J = body.kernels[b]->internal_force({X, ue}, fe).smallest_J;
                 if (J < least) least = J, expected = number;
             }
         }
@@ -139,7 +133,7 @@ TEST(NodalStress, IsTheMeanOverTheElementsByTheirVolume) {
         if (X.z() == 2) X.z() = low + high;
         u.emplace_back(0, 0, X.z() <= low ? 0.01 * X.z() : 0.01 * low + 0.05 * (X.z() - low));
     }
-    body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, fe::HexFormulation::full, hooke));
+    body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, HexFormulation::full, hooke));
     const auto stress = nodal_stress(body, u);
     const double modulus = hooke.lambda() + 2 * hooke.mu(), round_off = 1e-14;
     for (Index i = 0; i < body.nodes(); ++i) {

@@ -1,0 +1,30 @@
+#pragma once
+/// Choices that a scene names and numerics make, spelled as in the scene.
+
+namespace osculate {
+
+/// How a hexahedron keeps from locking. `full`: not at all. `b_bar`: a mean dilatation, against near incompressibility;
+/// too soft in bending with a single element through the thickness; F-bar at finite strain. `incompatible_modes`:
+/// internal bending modes, against locking in bending, and in near incompressibility too as long as elements are not badly
+/// distorted; small strain only.
+enum class HexFormulation { full, b_bar, incompatible_modes };
+
+/// Where contact acts: at the slave nodes, or spread over the slave facets.
+enum class Discretisation { node, mortar };
+
+/// Coordinates of a patch's nodes in its reference plane.
+enum class PatchCoordinates {
+    tangential,  ///< orthogonal projection on the reference plane                     [Qian 2014, eq (21)]
+    equal_length ///< the same directions, true lengths
+};
+
+/// How Newton's linear systems are solved.
+enum class LinearSolver {
+    automatic, ///< multigrid for many nodes, else condensed where that costs less, else iterative
+    condensed, ///< linear::CondensedTangent, where bodies are linear and nothing follows; else iterative
+    iterative, ///< GMRES with the whole tangent and linear::ContactPreconditioner, factorised
+    multigrid, ///< the same, the preconditioner by multigrid
+    direct     ///< the tangent factorised in every iteration
+};
+
+} // namespace osculate

@@ -1,0 +1,191 @@
+#pragma once
+/// The list of cell types: all that is to be known of one stands in its row, and readers, writers, surfaces and repairs
+/// follow from it. What elements compute stands in fe::with_element's list.
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace osculate::mesh {
+
+/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA). Mind the
+/// wedge: its triangle (0, 1, 2) has its right-handed normal out of the element, away from (3, 4, 5). Nodes 4 to 9 of a
+/// tet10 stand midway on the edges 01, 12, 20, 03, 13, 23.
+enum class CellType { tet4, wedge6, hex8, tet10 };
+
+inline constexpr int most_nodes_per_cell = 10;
+using NodeOrder = std::array<int, most_nodes_per_cell>; ///< entry i: another's number of node i of ours
+
+/// Local node numbers of a triangle or quadrilateral, counter-clockwise seen from outside; nodes[3] is -1 for a triangle.
+struct LocalFace {
+    std::array<int, 4> nodes;
+    int count;
+};
+
+struct CellInfo {
+    CellType type;
+    std::string_view name;   ///< in scenes and messages
+    std::string_view meshio; ///< in Python
+    int nodes;
+    int vtk;  ///< VTK's number
+    int gmsh; ///< Gmsh's, and its order
+    NodeOrder from_gmsh;
+    std::array<std::string_view, 3> deck; ///< names in Abaqus' and CalculiX' decks, and their order
+    NodeOrder from_deck;
+    NodeOrder mirrored;                        ///< the same cell seen in a mirror
+    std::span<const LocalFace> faces;          ///< by their corners
+    std::span<const LocalFace> facets;         ///< what surfaces are made of: a six-node face is four triangles
+    std::span<const LocalFace> deck_faces;     ///< S1, S2, ... by their corners, in local nodes of ours
+    std::span<const std::array<int, 2>> edges; ///< that the nodes behind the corners stand midway on
+    std::span<const std::array<int, 3>>
+        corner_neighbours; ///< of every corner, ordered so that the triple product of the
+                           ///< edges to them is positive in a well-shaped element. One
+                           ///< corner of a tetrahedron stands for all. None where edges
+                           ///< are curved
+
+    [[nodiscard]] constexpr int corners() const { return nodes - static_cast<int>(edges.size()); }
+    /// Node midway between two corners; -1 where there is none.
+    [[nodiscard]] constexpr int midway(int a, int b) const;
+};
+
+namespace cells {
+
+inline constexpr LocalFace tet_faces[] = {
+    {{0, 1, 3, -1}, 3}, {{1, 2, 3, -1}, 3}, {{2, 0, 3, -1}, 3}, {{0, 2, 1, -1}, 3}};
+inline constexpr LocalFace tet_deck_faces[] = {
+    {{0, 1, 2, -1}, 3}, {{0, 3, 1, -1}, 3}, {{1, 3, 2, -1}, 3}, {{2, 3, 0, -1}, 3}};
+inline constexpr std::array<int, 3> tet_corners[] = {{1, 2, 3}};
+inline constexpr std::array<int, 2> tet_edges[] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+
+inline constexpr LocalFace wedge_faces[] = {
+    {{0, 1, 2, -1}, 3}, {{3, 5, 4, -1}, 3}, {{0, 3, 4, 1}, 4}, {{1, 4, 5, 2}, 4}, {{2, 5, 3, 0}, 4}};
+inline constexpr LocalFace wedge_deck_faces[] = {
+    {{0, 1, 2, -1}, 3}, {{3, 4, 5, -1}, 3}, {{0, 2, 5, 3}, 4}, {{2, 1, 4, 5}, 4}, {{1, 0, 3, 4}, 4}};
+inline constexpr std::array<int, 3> wedge_corners[] = {{2, 1, 3}, {0, 2, 4}, {1, 0, 5},
+                                                       {4, 5, 0}, {5, 3, 1}, {3, 4, 2}};
+
+inline constexpr LocalFace hex_faces[] = {{{0, 4, 7, 3}, 4}, {{1, 2, 6, 5}, 4}, {{0, 1, 5, 4}, 4},
+                                          {{3, 7, 6, 2}, 4}, {{0, 3, 2, 1}, 4}, {{4, 5, 6, 7}, 4}};
+inline constexpr LocalFace hex_deck_faces[] = {{{0, 1, 2, 3}, 4}, {{4, 7, 6, 5}, 4}, {{0, 4, 5, 1}, 4},
+                                               {{1, 5, 6, 2}, 4}, {{2, 6, 7, 3}, 4}, {{3, 7, 4, 0}, 4}};
+inline constexpr std::array<int, 3> hex_corners[] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
+                                                     {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+
+constexpr int midway(std::span<const std::array<int, 2>> edges, int corners, int a, int b) {
+    for (std::size_t e = 0; e < edges.size(); ++e)
+        if ((edges[e][0] == a && edges[e][1] == b) || (edges[e][0] == b && edges[e][1] == a))
+            return corners + static_cast<int>(e);
+    return -1;
+}
+
+/// Every triangle with midside nodes as its three corner triangles and the middle one.
+template <std::size_t n>
+constexpr std::array<LocalFace, 4 * n> quarters(const LocalFace (&faces)[n], std::span<const std::array<int, 2>> edges,
+                                                int corners) {
+    std::array<LocalFace, 4 * n> result{};
+    for (std::size_t f = 0; f < n; ++f) {
+        const auto [a, b, c, none] = faces[f].nodes;
+        const int ab = midway(edges, corners, a, b), bc = midway(edges, corners, b, c),
+                  ca = midway(edges, corners, c, a);
+        result[4 * f] = {{a, ab, ca, none}, 3};
+        result[4 * f + 1] = {{ab, b, bc, none}, 3};
+        result[4 * f + 2] = {{ca, bc, c, none}, 3};
+        result[4 * f + 3] = {{ab, bc, ca, none}, 3};
+    }
+    return result;
+}
+inline constexpr auto tet10_facets = quarters(tet_faces, tet_edges, 4);
+
+// A wedge of a deck and of Gmsh has its first triangle facing inward, ours outward.
+inline constexpr CellInfo list[] = {
+    {CellType::hex8,
+     "hex8",
+     "hexahedron",
+     8,
+     12,
+     5,
+     {0, 1, 2, 3, 4, 5, 6, 7},
+     {"C3D8", "C3D8R", "C3D8I"},
+     {0, 1, 2, 3, 4, 5, 6, 7},
+     {4, 5, 6, 7, 0, 1, 2, 3},
+     hex_faces,
+     hex_faces,
+     hex_deck_faces,
+     {},
+     hex_corners},
+    {CellType::wedge6,
+     "wedge6",
+     "wedge",
+     6,
+     13,
+     6,
+     {0, 2, 1, 3, 5, 4},
+     {"C3D6"},
+     {0, 2, 1, 3, 5, 4},
+     {0, 2, 1, 3, 5, 4},
+     wedge_faces,
+     wedge_faces,
+     wedge_deck_faces,
+     {},
+     wedge_corners},
+    {CellType::tet4,
+     "tet4",
+     "tetra",
+     4,
+     10,
+     4,
+     {0, 1, 2, 3},
+     {"C3D4"},
+     {0, 1, 2, 3},
+     {1, 0, 2, 3},
+     tet_faces,
+     tet_faces,
+     tet_deck_faces,
+     {},
+     tet_corners},
+    {CellType::tet10,
+     "tet10",
+     "tetra10",
+     10,
+     24,
+     11,
+     {0, 1, 2, 3, 4, 5, 6, 7, 9, 8},
+     {"C3D10"},
+     {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
+     {1, 0, 2, 3, 4, 6, 5, 8, 7, 9},
+     tet_faces,
+     tet10_facets,
+     tet_deck_faces,
+     tet_edges,
+     {}},
+};
+
+} // namespace cells
+
+constexpr int CellInfo::midway(int a, int b) const {
+    return cells::midway(edges, corners(), a, b);
+}
+
+/// All types, in the order in which a mesh has its blocks.
+[[nodiscard]] constexpr std::span<const CellInfo> cell_types() {
+    return cells::list;
+}
+
+[[nodiscard]] constexpr const CellInfo& cell_info(CellType type) {
+    std::size_t row = 0;
+    while (cells::list[row].type != type) ++row;
+    return cells::list[row];
+}
+
+[[nodiscard]] constexpr int nodes_per_cell(CellType type) {
+    return cell_info(type).nodes;
+}
+
+/// The row that f says is the one, null where there is none.
+template <class F> [[nodiscard]] constexpr const CellInfo* find_cell_type(F&& f) {
+    for (const CellInfo& info : cell_types())
+        if (f(info)) return &info;
+    return nullptr;
+}
+
+} // namespace osculate::mesh

@@ -1,0 +1,46 @@
+#pragma once
+/// A plan that is being made of a scene, part by part, in the order of compile().
+
+#include "osculate/app/compile.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/mesh/surface_faces.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace osculate::app {
+
+struct Draft {
+    const scene::Scene& scene;
+    int threads;
+    Timings& timings;
+    Plan plan{};
+    std::vector<std::vector<mesh::Facet>> exterior{}; ///< by body
+    std::vector<Fault> faults{};
+
+    [[nodiscard]] Index body_index(const std::string& name) const;
+    [[nodiscard]] const model::Set& set(const std::string& name) const;
+    /// Faces of a set, global nodes.
+    [[nodiscard]] std::vector<mesh::SurfaceFace> faces(const model::Set& set) const;
+    template <class Is> [[nodiscard]] bool any_kernel(Is&& is) const {
+        return std::ranges::any_of(plan.model.bodies, [&](const model::Body& body) {
+            return std::ranges::any_of(body.kernels, [&](const auto& kernel) { return is(*kernel); });
+        });
+    }
+    /// Whether accepted steps are audited: a body alone that is deformed little meets nothing, not even itself.
+    [[nodiscard]] bool audited() const;
+};
+
+/// Bodies with their kernels, far from the scene's origin moved near to zero.
+void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes);
+void add_sets(Draft& draft);
+/// Held directions of every stage, and external forces at its ends but for gravity.
+void add_stages(Draft& draft);
+/// Contact pairs of the scene.
+void add_pairs(Draft& draft);
+void check_gaps(Draft& draft);
+/// Stiffness, mass and initial velocities as far as a stage needs them, and weight.
+void add_matrices(Draft& draft);
+
+} // namespace osculate::app

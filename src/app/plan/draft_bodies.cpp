@@ -1,0 +1,132 @@
+/// Bodies and sets of a plan.
+
+#include "app/fault.hpp"
+#include "app/overloaded.hpp"
+#include "app/plan/draft.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/mesh/quality.hpp"
+#include "osculate/mesh/select.hpp"
+#include "osculate/scene/nearest.hpp"
+
+namespace osculate::app {
+
+namespace {
+
+/// Far from the scene's origin positions have few digits left for gaps: they are taken from the middle of all bodies.
+void move_origin(Draft& draft, std::vector<mesh::Mesh>& meshes) {
+    constexpr double far = 8; // half diagonals: three of 53 bits
+    Eigen::AlignedBox3d box;
+    for (const mesh::Mesh& m : meshes)
+        for (const Vec3& X : m.nodes) box.extend(X);
+    if (!(box.center().norm() > far * 0.5 * box.diagonal().norm())) return;
+    draft.plan.model.origin = box.center();
+    for (mesh::Mesh& m : meshes)
+        for (Vec3& X : m.nodes) X -= draft.plan.model.origin;
+}
+
+std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation formulation,
+                                          const scene::Material& spec) {
+    const material::LinearElastic elastic{scene::elastic(spec).E, scene::elastic(spec).nu};
+    return std::visit(
+        Overloaded{
+            [&](const scene::LinearElastic&) { return fe::make_kernel(type, formulation, elastic); },
+            [&](const scene::SaintVenantKirchhoff&) {
+                return fe::make_kernel(type, formulation, material::SaintVenantKirchhoff(elastic));
+            },
+            [&](const scene::NeoHookean&) { return fe::make_kernel(type, formulation, material::NeoHookean(elastic)); },
+        },
+        spec);
+}
+
+/// A part that the mesh names; one fault when it does not.
+mesh::Region select(Draft& draft, const std::string& set_name, const std::string& body, const scene::SelectNamed& s,
+                    const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
+    if (auto named = mesh::select_named(m, exterior, s.name)) return *named;
+    std::vector<std::string> known;
+    for (const auto& [surface, facets] : m.surfaces) known.push_back(surface);
+    for (const auto& [nodes, list] : m.node_sets)
+        if (!m.surfaces.contains(nodes)) known.push_back(nodes);
+    std::string names;
+    for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+    draft.faults.push_back(fault("sets." + set_name + (s.nodes ? ".nodes" : ".surface"),
+                                 "a surface or node set of body '" + body + "' (it has " + names + ")",
+                                 "'" + s.name + "'"));
+    draft.faults.back().nearest = scene::nearest(s.name, known);
+    return {};
+}
+
+} // namespace
+
+Index Draft::body_index(const std::string& name) const {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+        if (scene.bodies[b].first == name) return static_cast<Index>(b);
+    throw InternalError("the scene names a body it does not have");
+}
+
+const model::Set& Draft::set(const std::string& name) const {
+    for (const model::Set& s : plan.model.sets)
+        if (s.name == name) return s;
+    throw InternalError("the scene names a set it does not have");
+}
+
+std::vector<mesh::SurfaceFace> Draft::faces(const model::Set& set) const {
+    const model::Body& body = plan.model.bodies[static_cast<std::size_t>(set.body)];
+    return mesh::surface_faces(body.mesh, set.facets, body.first_node);
+}
+
+bool Draft::audited() const {
+    return scene.solver.audit && (scene.bodies.size() > 1 ||
+                                  any_kernel([](const fe::ElementKernel& kernel) { return kernel.finite_strain(); }));
+}
+
+void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
+    move_origin(draft, meshes);
+    for (std::size_t b = 0; b < meshes.size(); ++b) {
+        const auto& [name, spec] = draft.scene.bodies[b];
+        for (const std::string& what : mesh::faults(meshes[b]))
+            draft.faults.push_back(fault("bodies." + name + ".mesh", "a sound mesh", what));
+        model::Body body;
+        body.name = name;
+        body.density = scene::elastic(spec.material).density;
+        body.mesh = std::move(meshes[b]);
+        body.first_node = draft.plan.model.nodes();
+        for (const mesh::ElementBlock& block : body.mesh.blocks)
+            body.kernels.push_back(kernel(block.type, spec.hex_formulation, spec.material));
+        auto& X = draft.plan.model.X.values();
+        X.insert(X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
+        draft.exterior.push_back(mesh::exterior_facets(body.mesh));
+        draft.plan.model.bodies.push_back(std::move(body));
+    }
+}
+
+void add_sets(Draft& draft) {
+    for (const auto& [name, spec] : draft.scene.sets) {
+        const Index b = draft.body_index(spec.body);
+        const mesh::Mesh& m = draft.plan.model.bodies[b].mesh;
+        const auto& exterior = draft.exterior[b];
+        const std::size_t before = draft.faults.size();
+        const Vec3& o = draft.plan.model.origin;
+        const mesh::Region region = std::visit(
+            Overloaded{
+                [&](const scene::SelectNamed& s) { return select(draft, name, spec.body, s, m, exterior); },
+                [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point - o, s.normal); },
+                [&](const scene::SelectCylinder& s) {
+                    return mesh::select_cylinder(m, exterior, s.point - o, s.axis, s.radius);
+                },
+                [&](const scene::SelectBox& s) { return mesh::select_box(m, exterior, s.min - o, s.max - o); },
+                [&](const scene::SelectNormal& s) { return mesh::select_normal(m, exterior, s.direction, s.angle); },
+            },
+            spec.select);
+        if (region.nodes.empty() && draft.faults.size() == before)
+            draft.faults.push_back(fault("sets." + name, "at least one node of body '" + spec.body + "'",
+                                         "an empty set: nothing lies there"));
+        model::Set global{name, b, region.nodes, region.facets};
+        const Index shift = draft.plan.model.bodies[b].first_node;
+        for (Index& node : global.nodes) node += shift;
+        for (mesh::Facet& facet : global.facets)
+            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += shift;
+        draft.plan.model.sets.push_back(std::move(global));
+    }
+}
+
+} // namespace osculate::app

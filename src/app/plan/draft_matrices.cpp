@@ -1,0 +1,98 @@
+/// Matrices of a plan, and weight, which acts on masses.
+
+#include "app/plan/draft.hpp"
+
+#include <iterator>
+#include <limits>
+
+namespace osculate::app {
+
+namespace {
+
+/// Nodes without mass of their own: slave nodes, where the scene asks for it.
+std::vector<char> massless_nodes(const Draft& draft) {
+    std::vector<char> massless;
+    for (const auto& [name, stage] : draft.scene.stages) {
+        const auto* dynamic = std::get_if<scene::DynamicAnalysis>(&stage.analysis);
+        if (dynamic == nullptr || dynamic->contact_mass == scene::ContactMass::kept) continue;
+        massless.assign(draft.plan.model.X.size(), 0);
+        for (const auto& pair : draft.plan.model.pairs)
+            for (const Index node : pair->slaves().node) massless[static_cast<std::size_t>(node)] = 1;
+        break;
+    }
+    return massless;
+}
+
+/// Masses and velocities, where a stage is dynamic.
+void add_mass(Draft& draft) {
+    model::Model& m = draft.plan.model;
+    const std::vector<char> massless = massless_nodes(draft);
+    for (const time::Stage& stage : draft.plan.stages) {
+        if (!stage.dynamics) continue;
+        linear::BlockMatrix& mass = stage.dynamics->lumped_mass ? m.lumped_mass : m.consistent_mass;
+        if (mass.empty()) {
+            model::AssembledMass assembled =
+                model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass, massless);
+            mass = std::move(assembled.M);
+            std::vector<Index> kept;
+            std::ranges::set_union(m.kept_contact_mass, assembled.kept, std::back_inserter(kept));
+            m.kept_contact_mass = std::move(kept);
+        }
+        if (!m.initial_velocity.empty()) continue;
+        for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+            const model::Body& body = m.bodies[b];
+            const scene::Body& spec = draft.scene.bodies[b].second;
+            const Vec3 centre = model::centre_of_mass(body);
+            for (const Vec3& X : body.mesh.nodes)
+                m.initial_velocity.values().push_back(spec.initial_velocity + spec.initial_spin.cross(X - centre));
+        }
+    }
+}
+
+/// A node with mass loses its speed in the step in which it lands, however short that is, and rings the faster the
+/// shorter steps are: cuts for what landing costs would make it worse.
+void leave_steps_where_mass_lands(Draft& draft) {
+    if (draft.plan.model.kept_contact_mass.empty()) return;
+    for (time::Stage& stage : draft.plan.stages)
+        stage.limits.velocity_error = stage.limits.closing_energy = std::numeric_limits<double>::infinity();
+}
+
+/// Whose mass a stage weighs: its own, in statics that of the dynamic stage it leads to, or else comes from.
+const equilibrium::Dynamics* weighed(const Draft& draft, std::size_t s) {
+    for (std::size_t k = s; k < draft.plan.stages.size(); ++k)
+        if (draft.plan.stages[k].dynamics) return &*draft.plan.stages[k].dynamics;
+    for (std::size_t k = s; k-- > 0;)
+        if (draft.plan.stages[k].dynamics) return &*draft.plan.stages[k].dynamics;
+    return nullptr;
+}
+
+/// In full from the start. It acts on mass where the mass is, so that bodies fall without strain, and in statics on the
+/// same mass, so that what rests goes on resting when inertia sets in.
+void add_gravity(Draft& draft) {
+    if (draft.scene.gravity.isZero(0)) return;
+    const model::Model& m = draft.plan.model;
+    for (std::size_t s = 0; s < draft.plan.stages.size(); ++s) {
+        Field weight(m.X.size());
+        if (const equilibrium::Dynamics* dynamics = weighed(draft, s))
+            m.mass(dynamics->lumped_mass).multiply_add(Field(m.X.size(), draft.scene.gravity), weight, draft.threads);
+        else
+            for (const model::Body& body : m.bodies)
+                if (body.density > 0) model::add_body_force(body, body.density * draft.scene.gravity, weight);
+        for (Field* force : {&draft.plan.stages[s].force_start, &draft.plan.stages[s].force_end}) force->add(1, weight);
+    }
+}
+
+} // namespace
+
+void add_matrices(Draft& draft) {
+    const ScopedTimer timer(draft.timings, Part::assembly);
+    model::Model& model = draft.plan.model;
+    model.K = model::assemble_stiffness(model.bodies, model.nodes());
+    if (draft.any_kernel([](const fe::ElementKernel& kernel) { return !kernel.linear(); }))
+        model.nonlinear = std::make_unique<model::NonlinearElements>(model.bodies, model.K);
+    add_mass(draft);
+    leave_steps_where_mass_lands(draft);
+    add_gravity(draft);
+}
+
+} // namespace osculate::app

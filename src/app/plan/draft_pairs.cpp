@@ -1,0 +1,72 @@
+/// Contact pairs of a plan.
+
+#include "app/fault.hpp"
+#include "app/plan/contact_pairs.hpp"
+#include "app/plan/draft.hpp"
+#include "app/plan/gaps.hpp"
+
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace osculate::app {
+
+namespace {
+
+/// How many facets of a set belong to six-node faces.
+Index facets_of_six_node_faces(const Draft& draft, const model::Set& set) {
+    const auto& blocks = draft.plan.model.bodies[static_cast<std::size_t>(set.body)].mesh.blocks;
+    return static_cast<Index>(std::ranges::count_if(set.facets, [&](const mesh::Facet& facet) {
+        return !mesh::cell_info(blocks[static_cast<std::size_t>(facet.block)].type).edges.empty();
+    }));
+}
+
+} // namespace
+
+void add_pairs(Draft& draft) {
+    const bool paths = std::ranges::any_of(draft.plan.stages, &time::Stage::follow_paths);
+    for (const auto& [name, spec] : draft.scene.contact) {
+        const model::Set& slave = draft.set(spec.slave);
+        const model::Set& master = draft.set(spec.master.set);
+        const std::string key = "contact." + name;
+        bool broken = false;
+        for (const auto& [part, group] : {std::pair{".slave", &slave}, std::pair{".master.set", &master}})
+            if (group->facets.empty()) {
+                draft.faults.push_back(fault(key + part, "a set with facets", "a set of nodes that cover no facet"));
+                broken = true;
+            } else if (const Index six = facets_of_six_node_faces(draft, *group); six > 0) {
+                // Their corners carry nothing under a uniform pressure, but contact has one law and one share of the
+                // area per node: linear shares on them would press with 0.8 to 1.7 times the pressure.
+                draft.faults.push_back(
+                    fault(key + part,
+                          "facets of hex8, wedge6 or tet4 elements (tet10 carries loads, but no contact: mesh this "
+                          "body with `element: hex8` or `tet4`, `cad: {quadratic: false}` or C3D4)",
+                          fmt::format("{} of its {} facets are parts of faces of tet10 elements of body '{}'", six,
+                                      group->facets.size(), draft.plan.model.bodies[group->body].name)));
+                broken = true;
+            }
+        if (broken) continue;
+        const ScopedTimer timer(draft.timings, Part::patches);
+        try {
+            draft.plan.model.pairs.push_back(make_contact_pair(draft.scene, name, spec, draft.plan.model, slave, master,
+                                                               paths ? &draft.exterior[master.body] : nullptr));
+        } catch (const std::runtime_error& error) {
+            draft.faults.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
+        }
+    }
+}
+
+void check_gaps(Draft& draft) {
+    for (std::size_t p = 0; p < draft.plan.model.pairs.size(); ++p) {
+        model::ContactEvaluation evaluation(*draft.plan.model.pairs[p]);
+        const PairGaps gaps = initial_gaps(evaluation, draft.plan.model.X, draft.timings, draft.threads);
+        const double limit = draft.scene.contact[p].second.initial_overlap_limit;
+        if (gaps.largest_overlap > limit)
+            draft.faults.push_back(
+                fault("contact." + draft.scene.contact[p].first,
+                      fmt::format("bodies that overlap by less than {:.3g} of the facet size at the start", limit),
+                      fmt::format("an overlap of {:.4g} m at slave {}, {:.3g} of the facet size", -gaps.least,
+                                  node_name(draft.plan.model, gaps.worst_node), gaps.largest_overlap)));
+    }
+}
+
+} // namespace osculate::app

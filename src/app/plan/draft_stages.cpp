@@ -1,0 +1,163 @@
+/// Stages of a plan: limits, supports, motions and loads.
+
+#include "app/fault.hpp"
+#include "app/overloaded.hpp"
+#include "app/plan/courses.hpp"
+#include "app/plan/draft.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
+
+#include <stdexcept>
+
+namespace osculate::app {
+
+namespace {
+
+time::StepLimits step_limits(const Draft& draft, const scene::Stage& spec, bool dynamic) {
+    time::StepLimits limits;
+    constexpr double in_dynamics = 0.05, in_statics = 0.5; // of the facet size
+    const scene::RelativeLength g_p = spec.control.allowed_interpenetration.value_or(
+        scene::RelativeLength{dynamic ? in_dynamics : in_statics, false});
+    limits.allowed_interpenetration = g_p.value;
+    limits.in_metres = g_p.metres;
+    limits.usual_bound = !dynamic && !spec.control.allowed_interpenetration;
+    if (spec.control.error_tolerance) limits.error_tolerance = *spec.control.error_tolerance;
+    if (dynamic) limits.energy_tolerance = spec.control.energy_tolerance;
+    if (dynamic && spec.control.step_size == scene::StepSize::controlled) {
+        if (!spec.control.error_tolerance) limits.velocity_error = spec.control.velocity_error;
+        limits.closing_energy = spec.control.closing_energy;
+    }
+    if (draft.audited()) limits.audited_depth = draft.scene.solver.audited_depth;
+    limits.dt_max = spec.duration / spec.steps;
+    limits.dt_min = draft.scene.solver.smallest_step * limits.dt_max;
+    limits.growth = spec.control.growth;
+    limits.easy_iterations = draft.scene.solver.max_iterations;
+    return limits;
+}
+
+equilibrium::Integrator integrator(const scene::DynamicAnalysis& analysis) {
+    return std::visit(Overloaded{
+                          [](const scene::GeneralisedAlpha& s) { return equilibrium::generalised_alpha(s.rho_inf); },
+                          [](const scene::Newmark& s) { return equilibrium::newmark(s.beta, s.gamma); },
+                          [](const scene::Hht& s) { return equilibrium::hht(s.alpha); },
+                          [](const scene::BackwardEuler&) { return equilibrium::backward_euler(); },
+                      },
+                      analysis.integrator);
+}
+
+void add_pressure(const Draft& draft, const std::string& set_name, double pressure, Field& force) {
+    for (const mesh::SurfaceFace& face : draft.faces(draft.set(set_name)))
+        fe::add_pressure_forces(face, draft.plan.model.X, pressure, force.values());
+}
+
+/// Loads that follow no course.
+Field ramped_forces(const Draft& draft, const Driving& driving) {
+    Field force(draft.plan.model.X.size());
+    for (const auto& [set_name, value] : driving.pressure) add_pressure(draft, set_name, ramped(value), force);
+    for (const auto& [body, b] : driving.body_force)
+        model::add_body_force(draft.plan.model.bodies[draft.body_index(body)],
+                              {ramped(b[0]), ramped(b[1]), ramped(b[2])}, force);
+    return force;
+}
+
+void add_course_forces(const Draft& draft, const Driving& driving, CourseList& courses,
+                       std::vector<time::CourseForce>& forces) {
+    const auto pattern = [&](const std::string& name, const scene::Course& course) -> Field& {
+        forces.push_back({courses.index(name, course), Field(draft.plan.model.X.size())});
+        return forces.back().pattern;
+    };
+    for (const auto& [set_name, value] : driving.pressure)
+        if (!value.is_value()) add_pressure(draft, set_name, 1, pattern("pressure." + set_name, value));
+    for (const auto& [body, components] : driving.body_force)
+        for (int k = 0; k < 3; ++k)
+            if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value())
+                model::add_body_force(draft.plan.model.bodies[draft.body_index(body)], Vec3::Unit(k),
+                                      pattern("body_force." + body + "." + std::string(1, "xyz"[k]), course));
+}
+
+void add_constraints(const Draft& draft, const Driving& driving, CourseList& courses,
+                     std::vector<linear::NodeConstraint>& constraints) {
+    for (std::size_t s = 0; s < draft.plan.model.sets.size(); ++s) {
+        const model::Set& group = draft.plan.model.sets[s];
+        const scene::Support* support = scene::find(draft.scene.supports, group.name);
+        const auto motion = driving.displacement.find(group.name);
+        const Mat3 axes = support != nullptr ? support->axes : Mat3::Identity();
+        for (int k = 0; k < 3; ++k) {
+            const bool moved = motion != driving.displacement.end() && motion->second[static_cast<std::size_t>(k)];
+            const bool fixed =
+                support != nullptr && (support->fixed[static_cast<std::size_t>(k)] || (support->symmetry && k == 0));
+            if (!moved && !fixed) continue;
+            double target = 0;
+            Index course = -1;
+            if (moved) {
+                const scene::Course& value = *motion->second[static_cast<std::size_t>(k)];
+                if (!value.is_value())
+                    course = courses.index("displacement." + group.name + "." + std::string(1, "xyz"[k]), value);
+                target = value.is_value() ? value.value() : 1;
+            }
+            for (const Index node : group.nodes)
+                constraints.push_back({node, axes.col(k), target, moved, support != nullptr && support->symmetry,
+                                       static_cast<Index>(s), course});
+        }
+    }
+}
+
+} // namespace
+
+/// Held directions of every stage and external forces at its ends.
+void add_stages(Draft& draft) {
+    Driving now;          // keeps its values in later stages
+    bool settled = false; // courses of the stage before have become values
+    for (const auto& [name, spec] : draft.scene.stages) {
+        time::Stage stage;
+        stage.name = name;
+        stage.duration = spec.duration;
+        stage.steps = spec.steps;
+        stage.ramp = spec.ramp;
+        if (const auto* analysis = std::get_if<scene::DynamicAnalysis>(&spec.analysis)) {
+            stage.dynamics = equilibrium::Dynamics{integrator(*analysis), analysis->mass == scene::MassMatrix::lumped,
+                                                   analysis->mass_damping, analysis->stiffness_damping};
+        }
+        const bool dynamic = stage.dynamics.has_value();
+        stage.limits = step_limits(draft, spec, dynamic);
+        stage.follow_paths = dynamic && !draft.scene.contact.empty();
+        const Driving before = now;
+        now.update(spec);
+        CourseList courses(stage.courses);
+        add_constraints(draft, now, courses, stage.constraints);
+        const bool varying = now.has_load_courses();
+        if (draft.plan.stages.empty() || settled || varying)
+            stage.force_start = ramped_forces(draft, before.without_courses_of(now));
+        else
+            stage.force_start = draft.plan.stages.back().force_end;
+        stage.force_end = ramped_forces(draft, now);
+        if (varying) add_course_forces(draft, now, courses, stage.course_forces);
+        for (const auto& [set_name, value] : now.follower_pressure) {
+            const auto was = before.follower_pressure.find(set_name);
+            const bool known = was != before.follower_pressure.end();
+            stage.follower_pressures.push_back(
+                {draft.faces(draft.set(set_name)), known ? ramped(was->second) : 0, ramped(value),
+                 value.is_value() ? -1 : courses.index("follower_pressure." + set_name, value)});
+        }
+        for (const auto& [key, loaded] :
+             {std::pair{"pressure", &now.pressure}, std::pair{"follower_pressure", &now.follower_pressure}})
+            for (const auto& [set_name, value] : *loaded)
+                if (draft.set(set_name).facets.empty())
+                    draft.faults.push_back(fault("stages." + name + "." + key + "." + set_name, "a set with facets",
+                                                 "a set of nodes that cover no facet"));
+        now.settle(spec.duration);
+        settled = varying;
+        try {
+            (void)linear::Constraints(draft.plan.model.nodes(), stage.constraints);
+        } catch (const std::invalid_argument& error) {
+            draft.faults.push_back(fault("supports", "compatible directions at every node", error.what()));
+        }
+        draft.plan.stages.push_back(std::move(stage));
+    }
+    for (std::size_t s = 0; s < draft.plan.model.sets.size(); ++s) {
+        const std::string& name = draft.plan.model.sets[s].name;
+        if (scene::find(draft.scene.supports, name) != nullptr || now.displacement.contains(name))
+            draft.plan.constrained_sets.push_back(static_cast<Index>(s));
+    }
+}
+
+} // namespace osculate::app

@@ -1,0 +1,48 @@
+#pragma once
+/// Stages of a model put together by hand, and what a run of them leaves behind.
+
+#include "osculate/time/stepper.hpp"
+#include "support/small_model.hpp"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace osculate::support {
+
+/// A static stage of a finished model, with its constraints as they are now and no loads.
+[[nodiscard]] inline time::Stage small_stage(const SmallModel& small, const std::string& name, int steps,
+                                             LinearSolver solver = LinearSolver::automatic) {
+    time::Stage stage;
+    stage.name = name;
+    stage.steps = steps;
+    stage.constraints = small.constraints;
+    stage.force_start = stage.force_end = Field(small.model.X.size());
+    stage.limits.dt_max = stage.duration / steps;
+    stage.limits.dt_min = 1e-6 * stage.limits.dt_max;
+    stage.tangent = equilibrium::choose_tangent(small.model, solver, false, false);
+    return stage;
+}
+
+/// The state after every accepted step, and forces on supports.
+class Record final : public time::StepObserver {
+public:
+    struct Step {
+        model::State state;
+        Field unbalanced; ///< what supports carry, N
+        int iterations = 0;
+    };
+    void attempted(const time::Attempt&, const std::vector<equilibrium::IterationRecord>&) override {}
+    void accepted(const time::AcceptedStep& step) override {
+        steps.push_back({step.state, step.equilibrium.unbalanced(), step.iterations});
+    }
+    void between_steps(const std::function<time::Checkpoint()>& checkpoint) override {
+        if (steps.size() == keep_after) kept = checkpoint();
+    }
+
+    std::vector<Step> steps;
+    std::size_t keep_after = 0; ///< steps; a checkpoint is kept
+    std::optional<time::Checkpoint> kept;
+};
+
+} // namespace osculate::support

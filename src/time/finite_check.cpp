@@ -52,6 +52,8 @@ std::optional<NotFinite> find_not_finite(const model::ContactEvaluations& contac
         if (auto found = first_in(what, *field)) return found;
     for (std::size_t p = 0; p < contact.size(); ++p)
         if (auto found = first_in(contact[p], state.contact[p])) return found;
+    for (const double value : state.material)
+        if (!std::isfinite(value)) return NotFinite{"what a material remembers", -1, value};
     return ledger != nullptr ? first_in(*ledger) : std::nullopt;
 }
 

@@ -34,7 +34,7 @@ constexpr const char* scenes[] = {
 /// A row per part; x where it is in the plan of a scene, in the order above.
 const std::string expected = R"(
 stiffness                    x x x x x x x x x x x x x x
-finite strain                . . . x . . . . . . . . . .
+nonlinear elements           . . . x . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .

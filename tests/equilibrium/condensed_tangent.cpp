@@ -28,8 +28,8 @@ TEST(CondensedTangent, SolvesForABodyThatContactAloneHolds) {
         Vector x(b.size()), Jx(b.size());
         constexpr double allowed = 1e-6;
         tangent.linearise();
-        ASSERT_TRUE(tangent.solve(b.data(), x.data(), allowed));
-        tangent.multiply(x.data(), Jx.data());
+        ASSERT_TRUE(tangent.solve(b, x, allowed));
+        tangent.multiply(x, Jx);
         EXPECT_LT((Jx - b).norm(), 2 * allowed);
     }
 }
@@ -44,7 +44,7 @@ struct Apart {
     [[nodiscard]] bool solves() {
         const Vector b = Vector::Ones(rows.size());
         Vector x(b.size());
-        return tangent.solve(rows, D, b.data(), x.data(), 1, press.timings);
+        return tangent.solve(rows, D, b, x, 1, press.timings);
     }
 
     [[nodiscard]] std::vector<linear::CondensedBody> bodies() const {

@@ -50,16 +50,16 @@ TEST(BlockMatrix, MultipliesLikeItsDenseTwinOnAnyNumberOfThreads) {
     Random random(62);
     BlockMatrix K(nodes, elements);
     for (const auto& element : elements) K.add(element, random_matrix(12, random));
-    std::vector<Vec3> x(nodes), start(nodes);
+    Field x(nodes), start(nodes);
     Vector flat(3 * nodes), expected(3 * nodes);
     for (Index i = 0; i < nodes; ++i) {
         flat.segment<3>(3 * i) = x[i] = random.vector();
         expected.segment<3>(3 * i) = start[i] = random.vector();
     }
     expected += dense_of(K) * flat; // y += A x
-    std::vector<Vec3> first;
+    Field first;
     for (const int threads : {1, 2, 5}) {
-        std::vector<Vec3> y = start;
+        Field y = start;
         K.multiply_add(x, y, threads);
         const double round_off = 1e-14; // of sums of about thirty products
         for (Index i = 0; i < nodes; ++i) EXPECT_LT((y[i] - expected.segment<3>(3 * i)).norm(), 100 * round_off);
@@ -78,7 +78,7 @@ TEST(BlockMatrix, TakesNoNoticeOfATranslationInRelativeProducts) {
         Ke.rightCols<3>() = -Ke.leftCols<3>() - Ke.middleCols<3>(3); // blocks of a row add up to nothing
         K.add(element, Ke);
     }
-    std::vector<Vec3> x(nodes), far(nodes), y(nodes, Vec3::Zero()), product = y, y_far = y;
+    Field x(nodes), far(nodes), y(nodes), product = y, y_far = y;
     for (Index i = 0; i < nodes; ++i) {
         for (int k = 0; k < 3; ++k) x[i](k) = std::round(1e3 * random.vector()(k)) / 1024; // shifts are exact
         far[i] = x[i] + Vec3(1 << 20, -(1 << 20), 1 << 20);

@@ -128,11 +128,11 @@ TEST(Constraints, ScatterWhatTheyGather) {
     Random random(51);
     Vector unknowns(constraints.equations());
     for (double& v : unknowns) v = random.uniform();
-    std::vector<Vec3> prescribed(6), u(6);
+    Field prescribed(6), u(6);
     for (Vec3& v : prescribed) v = random.vector();
-    constraints.scatter(unknowns.data(), prescribed, u);
+    constraints.scatter(unknowns, prescribed, u);
     Vector back = Vector::Zero(unknowns.size());
-    constraints.gather(u, back.data());
+    constraints.gather(u, back);
     EXPECT_LT((back - unknowns).cwiseAbs().maxCoeff(), round_off);
     for (Index node = 0; node < 6; ++node)
         for (int k = 0; k < 3; ++k)

@@ -35,11 +35,10 @@ struct TwoBodies : ::testing::Test {
     }
     /// u^T A u from its definition.
     double energy(const Vector& free, const std::vector<Spring>& springs) const {
-        std::vector<Vec3> u(8), f(8, Vec3::Zero());
-        constraints.scatter(free.data(), std::vector<Vec3>(8, Vec3::Zero()), u);
+        Field u(8), f(8);
+        constraints.scatter(free, Field(8), u);
         K.multiply_add(u, f, 1);
-        double sum = 0;
-        for (std::size_t i = 0; i < 8; ++i) sum += u[i].dot(f[i]);
+        double sum = dot(u, f);
         for (const Spring& s : springs) {
             Vec3 w = u[s.slave];
             for (std::size_t i = 0; i < s.masters.size(); ++i) w -= s.follow[i] * u[s.masters[i]];

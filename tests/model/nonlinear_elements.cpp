@@ -127,14 +127,16 @@ TEST(FiniteStrainModel, NamesTheWorstElementByItsNumberInItsBody) {
 /// Two bricks of unlike height under unlike stretch: where they meet, the larger one counts for more.
 TEST(NodalStress, IsTheMeanOverTheElementsByTheirVolume) {
     const double low = 1, high = 3;
-    Body body{"pile", mesh::make_block(Vec3::Zero(), {1, 1, 2}, {1, 1, 2}), 0, {}, 0};
-    std::vector<Vec3> u;
+    Model model;
+    Body& body = model.bodies.emplace_back();
+    body = Body{"pile", mesh::make_block(Vec3::Zero(), {1, 1, 2}, {1, 1, 2}), 0, {}, 0};
+    State state;
     for (Vec3& X : body.mesh.nodes) {
         if (X.z() == 2) X.z() = low + high;
-        u.emplace_back(0, 0, X.z() <= low ? 0.01 * X.z() : 0.01 * low + 0.05 * (X.z() - low));
+        state.u.values().emplace_back(0, 0, X.z() <= low ? 0.01 * X.z() : 0.01 * low + 0.05 * (X.z() - low));
     }
     body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, HexFormulation::full, hooke));
-    const auto stress = nodal_stress(body, u);
+    const auto stress = nodal_stress(model, 0, state);
     const double modulus = hooke.lambda() + 2 * hooke.mu(), round_off = 1e-14;
     for (Index i = 0; i < body.nodes(); ++i) {
         const double z = body.mesh.nodes[i].z();

@@ -14,7 +14,7 @@ TEST(Fingerprint, IsThatOfNodesAndElements) {
     EXPECT_EQ(fingerprint(TwoBlocks().model), known);
 
     TwoBlocks moved; // by one digit of one coordinate
-    double& z = moved.model.X.back().z();
+    double& z = moved.model.X.values().back().z();
     z = std::nextafter(z, 2 * z);
     EXPECT_NE(fingerprint(moved.model), known);
 

@@ -51,7 +51,7 @@ TEST(KinsolSolver, SaysWhenTheResidualIsNotANumber) {
         for (const std::size_t evaluation : {0u, 1u}) {
             const int n = 3;
             Problem p = linear(n, Vector::Ones(n * n * n));
-            p.evaluate = [&, good = p.evaluate](const Vector& u, Eigen::Map<Vector>& F) {
+            p.evaluate = [&, good = p.evaluate](const Vector& u, VectorRef& F) {
                 const Verdict verdict = good(u, F);
                 if (p.residuals.size() == evaluation) F(5) = bad;
                 return verdict;
@@ -64,7 +64,7 @@ TEST(KinsolSolver, SaysWhenTheResidualIsNotANumber) {
 TEST(KinsolSolver, StopsWhenTheProblemSaysSo) {
     const int n = 5;
     Problem p = cubic(n, Vector::Constant(n * n * n, 1e3));
-    p.evaluate = [&, good = p.evaluate](const Vector& u, Eigen::Map<Vector>& F) {
+    p.evaluate = [&, good = p.evaluate](const Vector& u, VectorRef& F) {
         good(u, F);
         return p.residuals.size() == 2 ? Verdict::stop : Verdict::proceed;
     };
@@ -134,7 +134,7 @@ TEST(KinsolSolver, RethrowsWhatTheProblemThrows) {
     KinsolSolver solver(n * n * n, timings);
     Vector u = Vector::Zero(n * n * n);
     Problem in_residual = linear(n, Vector::Ones(n * n * n));
-    in_residual.evaluate = [](const Vector&, Eigen::Map<Vector>&) -> Verdict { throw Mishap("residual"); };
+    in_residual.evaluate = [](const Vector&, VectorRef&) -> Verdict { throw Mishap("residual"); };
     EXPECT_THROW((void)solver.solve(in_residual, u, options_for(in_residual)), Mishap);
     Problem in_tangent = linear(n, Vector::Ones(n * n * n));
     in_tangent.linearise = [](const Vector&, SparseMatrix&) { throw Mishap("tangent"); };

@@ -14,11 +14,10 @@ using Verdict = NonlinearProblem::Verdict;
 /// A problem from two functions, with a diary of its residuals.
 struct Problem : NonlinearProblem {
     [[nodiscard]] Index size() const override { return static_cast<Index>(J.rows()); }
-    Verdict residual(const double* z, double* F) override {
-        at = Eigen::Map<const Vector>(z, size());
-        Eigen::Map<Vector> f(F, size());
-        const Verdict verdict = evaluate(at, f);
-        residuals.push_back(f.cwiseAbs().maxCoeff());
+    Verdict residual(const ConstVectorRef& z, VectorRef F) override {
+        at = z;
+        const Verdict verdict = evaluate(at, F);
+        residuals.push_back(F.cwiseAbs().maxCoeff());
         return verdict;
     }
     const SparseMatrix& jacobian() override {
@@ -30,7 +29,7 @@ struct Problem : NonlinearProblem {
     }
 
     SparseMatrix J;
-    std::function<Verdict(const Vector& z, Eigen::Map<Vector>& F)> evaluate;
+    std::function<Verdict(const Vector& z, VectorRef& F)> evaluate;
     std::function<void(const Vector& z, SparseMatrix& J)> linearise; ///< absent: J never changes
     Vector at;
     std::vector<double> residuals;
@@ -55,7 +54,7 @@ inline KinsolResult run(Problem& problem, Vector& z) {
 inline Problem linear(int n, const Vector& f) {
     Problem p;
     p.J = laplacian(n);
-    p.evaluate = [K = p.J, f](const Vector& u, Eigen::Map<Vector>& F) {
+    p.evaluate = [K = p.J, f](const Vector& u, VectorRef& F) {
         K.multiply(u.data(), F.data());
         F -= f;
         return Verdict::proceed;
@@ -68,7 +67,7 @@ inline Problem cubic(int n, const Vector& f) {
     Problem p;
     p.J = laplacian(n);
     const SparseMatrix K = p.J;
-    p.evaluate = [K, f](const Vector& u, Eigen::Map<Vector>& F) {
+    p.evaluate = [K, f](const Vector& u, VectorRef& F) {
         K.multiply(u.data(), F.data());
         F += u.cwiseProduct(u).cwiseProduct(u) - f;
         return Verdict::proceed;
@@ -84,7 +83,7 @@ inline Problem cubic(int n, const Vector& f) {
 inline Problem scalar(std::function<double(double)> f, std::function<double(double)> df) {
     Problem p;
     p.J = sparse(Matrix::Ones(1, 1), false);
-    p.evaluate = [f](const Vector& z, Eigen::Map<Vector>& F) {
+    p.evaluate = [f](const Vector& z, VectorRef& F) {
         F(0) = f(z(0));
         return std::isnan(F(0)) ? Verdict::shorten : Verdict::proceed;
     };

@@ -32,7 +32,7 @@ TEST(KinsolSolver, ConvergesQuadratically) {
     for (std::size_t k = p.residuals.size() - 3; k < p.residuals.size(); ++k)
         EXPECT_LT(p.residuals[k], p.residuals[k - 1] * p.residuals[k - 1] + round_off);
     Vector F(p.size());
-    Eigen::Map<Vector> map(F.data(), F.size());
+    VectorRef map = F;
     p.evaluate(u, map);
     EXPECT_LE(F.cwiseAbs().maxCoeff(), options.tolerance) << "u is not the iterate that was judged";
 }
@@ -91,7 +91,7 @@ TEST(KinsolSolver, SolvesAnObstacleProblem) {
         K.multiply(u.data(), r.data());
         return Vector(r - f);
     };
-    p.evaluate = [&](const Vector& u, Eigen::Map<Vector>& F) {
+    p.evaluate = [&](const Vector& u, VectorRef& F) {
         F = force(u).cwiseMin(u - psi);
         return Verdict::proceed;
     };
@@ -131,7 +131,7 @@ TEST(KinsolSolver, KeepsTheFactorOfATangentThatHasNotChanged) {
     // new values under the same revision are not looked at: with half the tangent Newton goes to and fro
     Problem scaled = linear(n, Vector::Constant(n * n * n, 1));
     for (double& v : scaled.J.value) v *= 2;
-    scaled.evaluate = [A = scaled.J](const Vector& at, Eigen::Map<Vector>& F) {
+    scaled.evaluate = [A = scaled.J](const Vector& at, VectorRef& F) {
         A.multiply(at.data(), F.data());
         F.array() -= 1;
         return Verdict::proceed;
@@ -192,13 +192,13 @@ struct Condensed : Problem, Tangent {
     explicit Condensed(Problem problem) : Problem(std::move(problem)) {}
     Tangent* tangent() override { return this; }
     void linearise() override { (void)jacobian(); }
-    void multiply(const double* x, double* y) override { J.multiply(x, y); }
+    void multiply(const ConstVectorRef& x, VectorRef y) override { J.multiply(x.data(), y.data()); }
     [[nodiscard]] bool solves() const override { return true; }
-    bool solve(const double* b, double* x, double allowed) override {
-        asked.push_back(Eigen::Map<const Vector>(b, size()).norm());
+    bool solve(const ConstVectorRef& b, VectorRef x, double allowed) override {
+        asked.push_back(b.norm());
         allowances.push_back(allowed);
         if (inverse->factorise(J) != FactorStatus::ok) return false;
-        inverse->solve(b, x);
+        inverse->solve(b.data(), x.data());
         return true;
     }
 
@@ -230,7 +230,7 @@ struct Preconditioned : Problem, Preconditioner {
     }
     Preconditioner* preconditioner() override { return this; }
     FactorStatus factorise() override { return inverse->factorise(P); }
-    void precondition(const double* r, double* z) override { inverse->solve(r, z); }
+    void precondition(const ConstVectorRef& r, VectorRef z) override { inverse->solve(r.data(), z.data()); }
     [[nodiscard]] SparseIndex failing_equation() const override { return inverse->failing_equation(); }
 
     SparseMatrix P;
@@ -242,9 +242,9 @@ struct Hopeless : Preconditioned, Tangent {
     using Preconditioned::Preconditioned;
     Tangent* tangent() override { return this; }
     void linearise() override { (void)jacobian(); }
-    void multiply(const double* x, double* y) override { J.multiply(x, y); }
+    void multiply(const ConstVectorRef& x, VectorRef y) override { J.multiply(x.data(), y.data()); }
     [[nodiscard]] bool solves() const override { return true; }
-    bool solve(const double*, double*, double) override {
+    bool solve(const ConstVectorRef&, VectorRef, double) override {
         ++tries;
         return false;
     }

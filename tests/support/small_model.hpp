@@ -37,9 +37,8 @@ public:
         return add_body(
             name, std::move(mesh),
             [&](mesh::CellType type) {
-                return finite_strain
-                           ? fe::make_kernel(type, HexFormulation::full, material::NeoHookean(elastic))
-                           : fe::make_kernel(type, HexFormulation::full, elastic);
+                return finite_strain ? fe::make_kernel(type, HexFormulation::full, material::NeoHookean(elastic))
+                                     : fe::make_kernel(type, HexFormulation::full, elastic);
             },
             density);
     }
@@ -62,9 +61,9 @@ public:
         return list;
     }
 
-    /// A pair on facets. @param E  of the softer body, Pa
+    /// A pair on facets. @param E  of the softer body, Pa  @param thickness  of the master's body, m; 0: not known
     void add_pair(const std::string& name, std::pair<Index, const char*> slave, std::pair<Index, const char*> master,
-                  double E, const model::ContactOptions& options) {
+                  double E, double friction = 0, double thickness = 0) {
         model::SlaveNodes slaves;
         slaves.facets = facets(slave.first, slave.second);
         std::map<Index, std::pair<double, double>> area_and_size; // tributary area, largest facet size at the node
@@ -85,9 +84,11 @@ public:
         auto surface = std::make_unique<mesh::HalfEdgeSurface>(facets(master.first, master.second), model.X);
         std::shared_ptr<const contact::MasterSurface> shape = contact::make_facets_surface(*surface);
         model::MasterNodes vertices{surface->vertex_nodes()};
-        model.pairs.push_back(std::make_unique<const model::ContactPair>(name, model.X, std::move(slaves),
-                                                                         std::move(surface), std::move(vertices),
-                                                                         std::move(shape), options));
+        if (thickness > 0) vertices.thickness.assign(vertices.node.size(), thickness);
+        model::ContactOptions options;
+        options.friction = friction;
+        model.pairs.push_back(std::make_unique<const model::ContactPair>(
+            name, model.X, std::move(slaves), std::move(surface), std::move(vertices), std::move(shape), options));
     }
 
     /// Holds the nodes of a surface along x, y, z as `axes` has them, for example "xz".
@@ -99,6 +100,21 @@ public:
     void drive(Index body, const std::string& surface, char axis, double target) {
         for (const Index node : nodes(body, surface))
             constraints.push_back({node, Vec3::Unit(axis - 'x'), target, true});
+    }
+
+    /// Undeformed, without a past.
+    [[nodiscard]] model::State at_rest() const {
+        model::State state;
+        state.u.reset(model.X.size());
+        for (const auto& pair : model.pairs) state.contact.push_back(pair->initial_history());
+        state.material = model::initial_history(model);
+        return state;
+    }
+    /// Nodal forces of a constant acceleration of all masses, N.
+    [[nodiscard]] Field weight(const Vec3& acceleration) const {
+        Field force(model.X.size());
+        model.consistent_mass.multiply_add(Field(model.X.size(), acceleration), force, 1);
+        return force;
     }
 
     /// Matrices, and masses where bodies are to move.

@@ -2,56 +2,42 @@
 
 #include "osculate/time/audit.hpp"
 
-#include "osculate/app/compile.hpp"
-#include "osculate/scene/reader.hpp"
+#include "support/small_model.hpp"
 
 #include <gtest/gtest.h>
 
 namespace osculate::time {
 namespace {
 
-/// Three blocks on top of one another, each 2 cm inside the next one. The upper two are a contact pair.
-const char* const overlapping = R"(
-bodies:
-  low:
-    mesh: {block: {origin: [0 m, 0 m, 0 m], size: [1 m, 1 m, 0.5 m], divisions: [2, 2, 2]}}
-    material: {linear_elastic: {E: 1 MPa, nu: 0.3}}
-  middle:
-    mesh: {block: {origin: [0.1 m, 0.1 m, 0.48 m], size: [0.8 m, 0.8 m, 0.5 m], divisions: [2, 2, 2]}}
-    material: {linear_elastic: {E: 1 MPa, nu: 0.3}}
-  high:
-    mesh: {block: {origin: [0.2 m, 0.2 m, 0.96 m], size: [0.6 m, 0.6 m, 0.5 m], divisions: [2, 2, 2]}}
-    material: {linear_elastic: {E: 1 MPa, nu: 0.3}}
-sets:
-  bed: {body: low, surface: z_min}
-  ground: {body: middle, surface: z_max}
-  sole: {body: high, surface: z_min}
-supports: {bed: {fix: [x, y, z]}}
-contact: {joint: {slave: sole, master: {set: ground, surface: facets}}}
-stages: {rest: {steps: 1}}
-)";
 constexpr double drawn = 0.02, round_off = 1e-12; // m
 
+/// Three blocks on top of one another, each 2 cm inside the next one. The upper two are a contact pair.
 class DrawnOverlaps : public ::testing::Test {
 protected:
     DrawnOverlaps() {
-        const scene::Scene scene = scene::parse_scene(overlapping, "overlapping.yaml");
-        plan = app::compile(scene, app::build_meshes(scene), 1, timings);
-        u.assign(plan.model.X.size(), Vec3::Zero());
+        const material::LinearElastic elastic{1e6, 0.3};
+        const auto block = [](double corner, double bottom, double width) {
+            return mesh::make_block({corner, corner, bottom}, {width, width, 0.5}, {2, 2, 2});
+        };
+        small.add_body("low", block(0, 0, 1), elastic);
+        small.add_body("middle", block(0.1, 0.5 - drawn, 0.8), elastic);
+        small.add_body("high", block(0.2, 1 - 2 * drawn, 0.6), elastic);
+        small.add_pair("joint", {2, "z_min"}, {1, "z_max"}, elastic.E);
+        u.reset(model.X.size());
     }
     /// Moves a body up.
     void lift(std::size_t body, double by) {
-        const model::Body& one = plan.model.bodies[body];
+        const model::Body& one = model.bodies[body];
         for (Index i = one.first_node; i < one.first_node + one.nodes(); ++i) u[i].z() += by;
     }
 
-    Timings timings;
-    app::Plan plan;
-    std::vector<Vec3> u;
+    support::SmallModel small;
+    const model::Model& model = small.model;
+    Field u;
 };
 
 TEST_F(DrawnOverlaps, AreForgivenBetweenBodiesThatNothingParts) {
-    Audit audit(plan.model);
+    Audit audit(model);
     lift(2, 2 * drawn); // out of the one below it
     (void)audit.examine(u);
     ASSERT_TRUE(audit.deepest());
@@ -62,7 +48,7 @@ TEST_F(DrawnOverlaps, AreForgivenBetweenBodiesThatNothingParts) {
 }
 
 TEST_F(DrawnOverlaps, OfAContactPairCountInFull) {
-    Audit audit(plan.model);
+    Audit audit(model);
     (void)audit.examine(u);
     ASSERT_TRUE(audit.deepest());
     EXPECT_NEAR(audit.deepest()->excess, drawn, round_off);

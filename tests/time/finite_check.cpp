@@ -6,8 +6,7 @@
 #include "osculate/time/post_mortem.hpp"
 #include "osculate/time/stepper.hpp"
 #include "support/floating_point_traps.hpp"
-#include "support/scene_file.hpp"
-#include "support/scene_runner.hpp"
+#include "support/small_run.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>
@@ -19,28 +18,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
-
-/// A cube above a plate, moving down; nothing touches within the stage.
-const char* const flight = R"(
-bodies:
-  plate:
-    mesh: {block: {origin: [0 m, 0 m, -1 m], size: [1 m, 1 m, 1 m], divisions: [1, 1, 1]}}
-    material: {linear_elastic: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}
-  cube:
-    mesh: {block: {origin: [0.25 m, 0.25 m, 0.5 m], size: [0.5 m, 0.5 m, 0.5 m], divisions: [1, 1, 1]}}
-    material: {linear_elastic: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}
-    initial_velocity: [0 m/s, 0 m/s, -1 m/s]
-sets:
-  bed: {body: plate, surface: z_min}
-  ground: {body: plate, surface: z_max}
-  sole: {body: cube, surface: z_min}
-supports:
-  bed: {fix: [x, y, z]}
-contact:
-  joint: {slave: sole, master: {set: ground, surface: facets}}
-stages:
-  fly: {analysis: dynamic, steps: 2, duration: 0.1 s}
-)";
 
 /// The facets, but for the gap, or the normal, of what lies over them.
 class FaultySurface final : public contact::MasterSurface {
@@ -62,25 +39,33 @@ private:
     double gap_, normal_;
 };
 
+/// A cube above a plate, moving down; nothing touches within the stage.
 class Flight : public ::testing::Test, public StepObserver {
 protected:
-    void SetUp() override { compile({}); }
-    void compile(const std::vector<scene::Override>& changes) {
-        const scene::Scene scene = scene::read_scene(support::scene_file("flight.yaml", flight), changes);
-        plan = app::compile(scene, app::build_meshes(scene), 1, timings);
+    void SetUp() override {
+        small = std::make_unique<support::SmallModel>();
+        const material::LinearElastic elastic{1e6, 0.3};
+        small->add_body("plate", mesh::make_block({0, 0, -1}, {1, 1, 1}, {1, 1, 1}), elastic, 1000);
+        small->add_body("cube", mesh::make_block({0.25, 0.25, 0.5}, {0.5, 0.5, 0.5}, {1, 1, 1}), elastic, 1000);
+        small->add_pair("joint", {1, "z_min"}, {0, "z_max"}, elastic.E);
+        small->fix(0, "z_min", "xyz");
+        small->finish(true);
+        for (Index i = 0; i < model().bodies[1].nodes(); ++i)
+            small->model.initial_velocity[model().bodies[1].first_node + i] = -Vec3::UnitZ();
+        stage = support::small_motion(*small, "fly", 0.1, 2, 0.8);
     }
     void plant(double gap, double normal) {
-        const model::ContactPair& sound = *plan.model.pairs[0];
-        auto surface = std::make_unique<mesh::HalfEdgeSurface>(sound.surface().facets(), plan.model.X);
+        const model::ContactPair& sound = *model().pairs[0];
+        auto surface = std::make_unique<mesh::HalfEdgeSurface>(sound.surface().facets(), model().X);
         auto master = std::make_unique<FaultySurface>(contact::make_facets_surface(*surface), gap, normal);
         model::MasterNodes nodes{surface->vertex_nodes()};
-        plan.model.pairs[0] =
-            std::make_unique<const model::ContactPair>("joint", plan.model.X, sound.slaves(), std::move(surface),
+        small->model.pairs[0] =
+            std::make_unique<const model::ContactPair>("joint", model().X, sound.slaves(), std::move(surface),
                                                        std::move(nodes), std::move(master), sound.options());
     }
     /// What the run failed by; empty: it did not.
     std::string run() {
-        Stepper stepper(plan.model, plan.stages, plan.stepper, timings);
+        Stepper stepper(model(), {stage}, {}, timings);
         try {
             stepper.run(*this);
         } catch (const RunFailure& failure) {
@@ -96,7 +81,10 @@ protected:
     }
     void gave_up(const PostMortem& post_mortem, const FailedIterate*) override { found = post_mortem; }
 
-    app::Plan plan;
+    [[nodiscard]] const model::Model& model() const { return small->model; }
+
+    std::unique_ptr<support::SmallModel> small;
+    Stage stage;
     Timings timings;
     std::vector<model::State> states;
     model::ContactEvaluations contact; ///< at the last of them
@@ -121,18 +109,17 @@ TEST_F(Flight, IsGivenUpWhereTheGapOfAnOpenNodeIsNoNumber) {
         EXPECT_THAT(failure, HasSubstr("not finite"));
         EXPECT_EQ(found.cause, Cause::not_finite);
         EXPECT_EQ(found.body, "cube");
-        EXPECT_EQ(plan.model.X[plan.model.bodies[1].first_node + found.node].z(), 0.5) << "no node of its sole";
+        EXPECT_EQ(model().X[model().bodies[1].first_node + found.node].z(), 0.5) << "no node of its sole";
     }
 }
 
 TEST_F(Flight, IsGivenUpWhereAVelocityOverflowsThoughForcesBalance) {
     const support::FloatingPointTraps suspended(false); // numbers that are none are what it is about
     // velocities are made from the displacements afterwards, and nothing in these equations of motion needs them
-    compile({{"gravity", "[0 m/s^2, 0 m/s^2, 10 m/s^2]"},
-             {"stages.fly.duration", "100"},
-             {"stages.fly.steps", "1"},
-             {"solver.smallest_step", "1"}});
-    plan.stages[0].dynamics->integrator = {.beta = 1, .gamma = std::numeric_limits<double>::max() / 2};
+    stage = support::small_motion(*small, "fly", 100, 1, 0.8);
+    stage.force_start = stage.force_end = small->weight({0, 0, 10});
+    stage.limits.dt_min = stage.limits.dt_max;
+    stage.dynamics->integrator = {.beta = 1, .gamma = std::numeric_limits<double>::max() / 2};
     const std::string failure = run();
     EXPECT_TRUE(states.empty()) << "accepted";
     EXPECT_EQ(found.cause, Cause::not_finite) << failure;
@@ -144,7 +131,7 @@ TEST_F(Flight, EveryPartOfAStateIsLookedAt) {
     plant(0, 0);
     ASSERT_EQ(run(), "");
     const model::State sound = states.back();
-    const Index node = plan.model.bodies[1].first_node + 2, slave = 1;
+    const Index node = model().bodies[1].first_node + 2, slave = 1;
     for (const double bad : {nan, infinite, -infinite}) {
         const auto expect = [&](const model::State& state, const Ledger& books, const std::string& what, Index where) {
             const auto flaw = find_not_finite(contact, state, &books);
@@ -162,7 +149,7 @@ TEST_F(Flight, EveryPartOfAStateIsLookedAt) {
         }
         model::State state = sound;
         state.contact[0].lambda[slave].z() = bad;
-        expect(state, ledger, "contact force", plan.model.pairs[0]->slaves().node[slave]);
+        expect(state, ledger, "contact force", model().pairs[0]->slaves().node[slave]);
         for (const auto& [what, term] :
              {std::pair{"energy.kinetic", &Ledger::kinetic}, std::pair{"energy.strain", &Ledger::strain},
               std::pair{"energy.external", &Ledger::external}, std::pair{"energy.friction", &Ledger::friction},

@@ -1,5 +1,6 @@
 /// Elements with a past, in runs: what they remember is part of the state.
 
+#include "osculate/core/error.hpp"
 #include "support/small_run.hpp"
 
 #include <cmath>

@@ -2,8 +2,7 @@
 
 #include "osculate/time/solve_ladder.hpp"
 
-#include "osculate/app/compile.hpp"
-#include "osculate/scene/reader.hpp"
+#include "support/small_model.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,27 +14,6 @@ namespace {
 using contact::Status;
 using solve::KinsolOutcome;
 using ::testing::Contains;
-
-/// A cap that nothing but contact holds, pressed down at one edge: with all nodes of its sole closed, those at the other end
-/// are pulled.
-const char* const tilted = R"(
-bodies:
-  base:
-    mesh: {block: {origin: [0 m, 0 m, 0 m], size: [2 m, 2 m, 1 m], divisions: [2, 2, 1]}}
-    material: {linear_elastic: {E: 30 MPa, nu: 0}}
-  cap:
-    mesh: {block: {origin: [0.3 m, 0.4 m, 1 m], size: [1 m, 1 m, 0.5 m], divisions: [3, 3, 1]}}
-    material: {linear_elastic: {E: 10 MPa, nu: 0}}
-sets:
-  bed: {body: base, surface: z_min}
-  ground: {body: base, surface: z_max}
-  under: {body: cap, surface: z_min}
-supports: {bed: {fix: [x, y, z]}}
-contact:
-  joint: {slave: under, master: {set: ground, surface: facets}, friction: 0.3}
-stages:
-  rest: {steps: 1}
-)";
 
 /// Facets that nothing is above where their vertices come near a certain place.
 class Trap final : public contact::MasterSurface {
@@ -65,25 +43,28 @@ private:
     const Place& place_;
 };
 
+/// A cap that nothing but contact holds, pressed down at one edge: with all nodes of its sole closed, those at the other end
+/// are pulled.
 class Ladder : public ::testing::Test {
 protected:
     Ladder() {
-        const scene::Scene scene = scene::parse_scene(tilted, "tilted.yaml");
-        plan = app::compile(scene, app::build_meshes(scene), 1, timings);
-        model::Model& model = plan.model;
+        small.add_body("base", mesh::make_block({0, 0, 0}, {2, 2, 1}, {2, 2, 1}), {30e6, 0});
+        small.add_body("cap", mesh::make_block({0.3, 0.4, 1}, {1, 1, 0.5}, {3, 3, 1}), {10e6, 0});
+        small.add_pair("joint", {1, "z_min"}, {0, "z_max"}, 10e6, 0.3);
+        small.fix(0, "z_min", "xyz");
+        small.finish();
         auto surface = std::make_unique<mesh::HalfEdgeSurface>(pair().surface().facets(), model.X);
         auto facets = std::make_unique<Trap>(contact::make_facets_surface(*surface), trap);
         model::MasterNodes nodes{surface->vertex_nodes()};
         model.pairs[0] =
             std::make_unique<const model::ContactPair>("joint", model.X, pair().slaves(), std::move(surface),
                                                        std::move(nodes), std::move(facets), pair().options());
-        constraints = std::make_unique<linear::Constraints>(model.nodes(), plan.stages[0].constraints);
+        constraints = std::make_unique<linear::Constraints>(model.nodes(), small.constraints);
         // an LU factorisation tells at once that nothing holds the cap
         equilibrium = std::make_unique<equilibrium::Equilibrium>(model, *constraints, nullptr,
                                                                  equilibrium::TangentChoice{}, timings, 1);
         solver = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
-        state.u.assign(model.X.size(), Vec3::Zero());
-        state.contact.push_back(pair().initial_history());
+        state = small.at_rest();
         load = {state.u, state.u, {}};
         const Vec3 edge(0, 0, -1e4); // N, on each node of the upper edge at x_max
         for (Index i = model.bodies[1].first_node; i < model.nodes(); ++i)
@@ -97,18 +78,17 @@ protected:
     }
     /// An attempt, with nothing remembered of the one before.
     void begin() { equilibrium->begin_attempt(state, load, 1); }
-    [[nodiscard]] const model::ContactPair& pair() const { return *plan.model.pairs[0]; }
+    [[nodiscard]] const model::ContactPair& pair() const { return *model.pairs[0]; }
     /// Where the master's vertices are with statuses as given, and the statuses that the solution calls for.
     std::pair<std::vector<Vec3>, equilibrium::Statuses> solved_with(const equilibrium::Statuses& statuses) {
         Vector z = start;
         EXPECT_TRUE(solve_trial(*equilibrium, *solver, z, statuses, ladder).converged());
-        std::vector<Vec3> x = equilibrium->displacements(z);
-        for (std::size_t i = 0; i < x.size(); ++i) x[i] += plan.model.X[i];
-        return {pair().vertices(x), equilibrium->natural_statuses()};
+        return {pair().vertices(sum(equilibrium->displacements(z), model.X)), equilibrium->natural_statuses()};
     }
 
     Timings timings;
-    app::Plan plan;
+    support::SmallModel small;
+    model::Model& model = small.model;
     Trap::Place trap;
     std::unique_ptr<linear::Constraints> constraints;
     std::unique_ptr<equilibrium::Equilibrium> equilibrium;
@@ -142,14 +122,14 @@ TEST_F(Ladder, TakesBackHalfOfTheReleasedNodesAndStartsFromTheLastSolution) {
 }
 
 TEST_F(Ladder, TakesItsSecondRungFromTheStartWithoutPrediction) {
-    load.force.assign(load.force.size(), Vec3::Zero());
+    load.force.reset(load.force.size());
     const Vec3 down(0, 0, -1e3); // N, on each node of the cap: it is pressed all over
-    std::fill(load.force.begin() + plan.model.bodies[1].first_node, load.force.end(), down);
+    std::fill(load.force.begin() + model.bodies[1].first_node, load.force.end(), down);
     begin();
-    std::vector<Vec3> predicted = state.u;
+    Field predicted = state.u;
     const Vec3 ahead(0.05, 0, 0); // m
     for (Vec3& u : predicted) u += ahead;
-    std::vector<Vec3> x = plan.model.X;
+    Field x = model.X;
     for (Vec3& X : x) X += ahead;
     trap = {pair().vertices(x), 0.5 * ahead.norm()};
 
@@ -182,11 +162,11 @@ TEST_F(Ladder, HoldsWithinItsLastDigitsAlone) {
 
 /// A cap that is pulled off meets nothing: it is told so, and no springs are left for the next attempt to lean on.
 TEST_F(Ladder, TakesItsSpringsAwayFromABodyThatNothingHolds) {
-    load.force.assign(load.force.size(), Vec3::Zero());
+    load.force.reset(load.force.size());
     const Vec3 up(0, 0, 1e3); // N, on each node of the cap
-    std::fill(load.force.begin() + plan.model.bodies[1].first_node, load.force.end(), up);
+    std::fill(load.force.begin() + model.bodies[1].first_node, load.force.end(), up);
     begin();
-    const std::vector<double> shares = model::volume_shares(plan.model);
+    const std::vector<double> shares = model::volume_shares(model);
     ladder.stabilisation = {.share = [&]() -> const std::vector<double>& { return shares; },
                             .finest = 0.05,
                             .gap = [] { return 0.1; },
@@ -195,7 +175,7 @@ TEST_F(Ladder, TakesItsSpringsAwayFromABodyThatNothingHolds) {
     const LadderResult result = climb(*equilibrium, *solver, z, start, all, true, ladder);
     EXPECT_EQ(result.outcome, KinsolOutcome::singular);
     EXPECT_GT(result.stabilised_solves, 0);
-    EXPECT_GE(result.adrift, plan.model.bodies[1].first_node);
+    EXPECT_GE(result.adrift, model.bodies[1].first_node);
     EXPECT_FALSE(equilibrium->bodies().stabilised());
 }
 

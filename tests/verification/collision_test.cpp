@@ -164,7 +164,7 @@ TEST(PlateImpact, LeavesACubeAloneThatPassesBy) {
             Shot shot;
             shoot(shot, all);
             EXPECT_EQ(shot.cuts(), 0) << target;
-            EXPECT_LT(shot.states.back().u.back().z(), -9.9e-3);
+            EXPECT_LT(shot.states.back().u.values().back().z(), -9.9e-3);
         }
 }
 

@@ -104,13 +104,11 @@ TEST(FollowerPressure, WorksOverTheStepWithTheMeanOfItsForcesAtBothEnds) {
                                            "duration: 50 ms, steps: 100, ramp: step, "
                                            "follower_pressure: {right: 100 kPa}}"}});
     double swept = 0; // m^3
-    std::vector<Vec3> before(run.plan.model.X.size(), Vec3::Zero());
+    Field before(run.plan.model.X.size());
     for (const auto& step : run.steps) {
         for (const auto& face : run.plan.stages[0].follower_pressures[0].faces)
-            for (const std::vector<Vec3>* u : {&std::as_const(before), &step.state.u}) {
-                std::vector<Vec3> x = run.plan.model.X;
-                for (std::size_t i = 0; i < x.size(); ++i) x[i] += (*u)[i];
-                const auto f = fe::pressure_forces(face, x, 1);
+            for (const Field* u : {&std::as_const(before), &step.state.u}) {
+                const auto f = fe::pressure_forces(face, sum(run.plan.model.X, *u), 1);
                 for (int c = 0; c < face.count; ++c)
                     swept += 0.5 * f[c].dot(step.state.u[face.nodes[c]] - before[face.nodes[c]]);
             }

@@ -34,7 +34,7 @@ double mass(const support::SceneRun& run, std::size_t body) {
 
 Vec3 momentum(const support::SceneRun& run, std::size_t body, const support::RunStep& step) {
     const linear::BlockMatrix& M = run.plan.model.consistent_mass;
-    std::vector<Vec3> p(step.state.v.size(), Vec3::Zero());
+    Field p(step.state.v.size());
     M.multiply_add(step.state.v, p, 1);
     const model::Body& b = run.plan.model.bodies[body];
     Vec3 sum = Vec3::Zero();
@@ -249,9 +249,8 @@ TEST(ThrownBall, TurnsByFrictionWithoutGainingEnergy) {
     EXPECT_LT(friction, 0.3 * normal * (1 + solver)) << "Coulomb's law, summed over the impact";
     // the moment of that force about the centre, whose height lies between the free one and that of the deepest point
     const linear::BlockMatrix& M = run.plan.model.consistent_mass;
-    std::vector<Vec3> weighted(end.state.u.size(), Vec3::Zero()), x = run.plan.model.X;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += end.state.u[i];
-    M.multiply_add(x, weighted, 1);
+    Field weighted(end.state.u.size());
+    M.multiply_add(sum(run.plan.model.X, end.state.u), weighted, 1);
     Vec3 centre = Vec3::Zero();
     for (Index i = 0; i < run.plan.model.bodies[0].nodes(); ++i) centre += weighted[static_cast<std::size_t>(i)] / m;
     const double spin = -(end.ledger.angular - centre.cross(p)).x();

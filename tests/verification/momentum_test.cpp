@@ -53,8 +53,8 @@ constexpr double arm = 0.1; // m, from the line of the centres to that of the im
 
 /// Small strain takes moments about the reference positions X, where internal forces have none; about X + u they have one.
 Vec3 internal_impulse(const model::Model& model, const support::RunStep& from, const support::RunStep& to) {
-    std::vector<Vec3> u(from.state.u.size()), force(u.size(), Vec3::Zero());
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.5 * (from.state.u[i] + to.state.u[i]);
+    const Field u = weighted(0.5, from.state.u, 0.5, to.state.u);
+    Field force(u.size());
     model.K.multiply_add(u, force, 1);
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < u.size(); ++i) sum -= (to.time - from.time) * u[i].cross(force[i]);

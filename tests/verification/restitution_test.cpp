@@ -90,7 +90,7 @@ TEST(TwoBars, TouchForTwiceTheWaveTimeInStepsThatTheDefaultsChoose) {
     const support::RunStep& end = run.steps.back();
     double left = 0, right = 0;
     const linear::BlockMatrix& M = run.plan.model.consistent_mass;
-    std::vector<Vec3> p(end.state.v.size(), Vec3::Zero());
+    Field p(end.state.v.size());
     M.multiply_add(end.state.v, p, 1);
     for (Index i = 0; i < run.plan.model.nodes(); ++i)
         (i < run.plan.model.bodies[1].first_node ? left : right) += p[static_cast<std::size_t>(i)].x();

@@ -65,7 +65,7 @@ struct Outcome final : time::StepObserver {
     /// Equilibrium from internal forces, loads and contact forces alone, apart from what the solver made it of.
     void accepted(const time::AcceptedStep& step) override {
         const model::Model& model = plan.model;
-        std::vector<Vec3> f = model::internal_force(model, step.state.u, 1);
+        Field f = model::internal_force(model, step.state.at_rest(), 1);
         for (std::size_t i = 0; i < f.size(); ++i) f[i] -= step.equilibrium.external_force()[i];
         for (std::size_t p = 0; p < model.pairs.size(); ++p) {
             const model::ContactEvaluation& evaluation = step.equilibrium.contact()[p];

@@ -63,7 +63,8 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const linear::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
     const auto& dynamics = plan.stages[1].dynamics;
-    equilibrium::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr, timings, 1,
+    equilibrium::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr,
+                                         plan.stages[1].tangent, timings, 1,
                                          !plan.stages[1].follower_pressures.empty());
 
     std::mt19937 random(7);
@@ -90,8 +91,8 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero()), {}};
     if (c.dynamic) {
         for (std::size_t i = 0; i < u.size(); ++i) {
-            state.v.push_back(shake());
-            state.a.push_back(shake());
+            state.v.values().push_back(shake());
+            state.a.values().push_back(shake());
         }
     }
     constexpr double dt = 0.01; // s: inertia and stiffness weigh about the same
@@ -117,13 +118,13 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
         b(i) = force * uniform(random);
         x(i) = uniform(random) * (i < constraints.equations() ? 1 : force);
     }
-    tangent->multiply(x.data(), y.data());
+    tangent->multiply(x, y);
     constexpr double round_off = 1e-13;
     EXPECT_LT((dense * x - y).norm(), round_off * (dense.cwiseAbs() * x.cwiseAbs()).norm());
     EXPECT_EQ(tangent->solves(), !plan.model.nonlinear && plan.stages[1].follower_pressures.empty());
     if (tangent->solves()) {
         const double allowed = 1e-6 * b.norm();
-        ASSERT_TRUE(tangent->solve(b.data(), x.data(), allowed));
+        ASSERT_TRUE(tangent->solve(b, x, allowed));
         constexpr double condensed = 1e-9; // round-off of inverses, far below what is asked for
         EXPECT_LT((dense * x - b).norm(), allowed + condensed * b.norm());
     }

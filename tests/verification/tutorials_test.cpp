@@ -11,8 +11,8 @@ namespace {
 /// Velocity of a body's centre of mass along x.
 double velocity(const support::SceneRun& run, const char* name) {
     const model::Model& model = run.plan.model;
-    const std::vector<Vec3>& v = run.steps.back().state.v;
-    std::vector<Vec3> p(v.size(), Vec3::Zero()), ones(v.size(), Vec3::UnitX()), m(v.size(), Vec3::Zero());
+    const Field &v = run.steps.back().state.v, ones(v.size(), Vec3::UnitX());
+    Field p(v.size()), m(v.size());
     model.consistent_mass.multiply_add(v, p, 1);
     model.consistent_mass.multiply_add(ones, m, 1);
     double momentum = 0, mass = 0;

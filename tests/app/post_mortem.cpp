@@ -32,7 +32,8 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
     const Stage& stage = plan.stages.front();
     const linear::Constraints constraints(plan.model.nodes(), stage.constraints);
     equilibrium::Equilibrium equilibrium(plan.model, constraints, nullptr,
-                                    equilibrium::choose_tangent(plan.model, LinearSolver::automatic, false, false), timings, 1);
+                                         equilibrium::choose_tangent(plan.model, LinearSolver::automatic, false, false),
+                                         timings, 1);
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
     for (const auto& pair : plan.model.pairs) state.contact.push_back(pair->initial_history());

@@ -279,7 +279,8 @@ private:
 
     bool of_six_node_faces(std::size_t body, const std::string& key) const {
         return std::ranges::any_of(facets_of(body, key), [&](const mesh::Facet& facet) {
-            return !mesh::cell_info(bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)].type).edges.empty();
+            return !mesh::cell_info(bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)].type)
+                        .edges.empty();
         });
     }
 

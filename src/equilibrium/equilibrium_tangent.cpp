@@ -37,19 +37,20 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
                                        ContactTerm& contact, const Iterate& at, const TangentChoice& choice,
                                        Timings& timings, int threads)
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact), at_(at),
-      timings_(timings), may_buckle_(model.nonlinear != nullptr),
-      products_(choice.products) {
+      timings_(timings), may_buckle_(model.nonlinear != nullptr), products_(choice.products) {
     const linear::BlockMatrix& K = bodies_.bodies().tangent();
     for (Index j = 0; j < unknowns.couplings(); ++j) couplings_.push_back({unknowns.slave(j), {}});
     kept_couplings_ = couplings_;
     if (choice.preconditioned)
         preconditioner_ = std::make_unique<linear::ContactPreconditioner>(
-            constraints_, K, choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
+            constraints_, K,
+            choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
             [&model, threads] { return model::undeformed_stiffness(model, threads); });
     if (!choice.condensed) return;
     std::vector<linear::CondensedBody> condensed;
     for (const model::Body& body : model.bodies)
-        condensed.push_back({body.first_node, body.nodes(), !bodies_.bodies().dynamic() && loose(body, model.X, constraints_)});
+        condensed.push_back(
+            {body.first_node, body.nodes(), !bodies_.bodies().dynamic() && loose(body, model.X, constraints_)});
     std::vector<Index> slaves;
     for (const linear::Coupling& c : couplings_) slaves.push_back(c.slave);
     condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, contact_nodes(model),
@@ -133,7 +134,7 @@ void EquilibriumTangent::linearise() {
 }
 
 void EquilibriumTangent::multiply(const ConstVectorRef& x, VectorRef y) {
-    Field&u = product_u_, &f = product_f_;
+    Field &u = product_u_, &f = product_f_;
     u.reset(at_.u.size());
     f.reset(at_.u.size());
     for (Index node = 0; node < constraints_.nodes(); ++node) {
@@ -160,8 +161,7 @@ bool EquilibriumTangent::solve(const ConstVectorRef& b, VectorRef x, double allo
     Vector left = b, more(size), product(size);
     x.setZero();
     for (int k = 0; k <= most_corrections; ++k) {
-        if (!condensed_->solve(unknowns_, contact_.open_laws(), left, more, allowed, timings_))
-            return false;
+        if (!condensed_->solve(unknowns_, contact_.open_laws(), left, more, allowed, timings_)) return false;
         if (!more.allFinite()) return false;
         x += more;
         const ScopedTimer timer(timings_, Part::solve);

@@ -252,8 +252,9 @@ private:
                 cell.id = static_cast<std::int64_t>(some.tags[e]);
                 cell.type = to->type;
                 for (int i = 0; i < cell.count(); ++i)
-                    cell.nodes[i] = number(some.nodes[e * static_cast<std::size_t>(some.node_count) +
-                                                      static_cast<std::size_t>(to->from_gmsh[static_cast<std::size_t>(i)])]);
+                    cell.nodes[i] =
+                        number(some.nodes[e * static_cast<std::size_t>(some.node_count) +
+                                          static_cast<std::size_t>(to->from_gmsh[static_cast<std::size_t>(i)])]);
                 members.push_back(static_cast<Index>(raw_.cells.size()));
                 raw_.cells.push_back(cell);
             }

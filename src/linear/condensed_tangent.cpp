@@ -222,8 +222,8 @@ void CondensedTangent::apply_contact(const Vector& lambda, const Vector& u, doub
     collect(by, z);
 }
 
-bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x, double allowed,
-                             Timings& timings) {
+bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x,
+                             double allowed, Timings& timings) {
     {
         const ScopedTimer timer(timings, Part::factor);
         if (!factorised_) factorise_bodies();

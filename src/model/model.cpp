@@ -254,21 +254,20 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index 
     Eigen::Matrix<double, Eigen::Dynamic, 6> stress = decltype(stress)::Zero(body.nodes(), 6);
     Vector weight = Vector::Zero(body.nodes());
     Matrix element_stress;
-    for_each_element(
-        body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
-            Eigen::Matrix3Xd ue(3, kernel.nodes());
-            for (int i = 0; i < kernel.nodes(); ++i) ue.col(i) = state.u[element[static_cast<std::size_t>(i)]];
-            element_stress.resize(6, kernel.nodes());
-            kernel.nodal_stress({X, ue, std::span(state.material).subspan(history, kernel.history_size())},
-                                element_stress);
-            history += kernel.history_size();
-            const double volume = kernel.volume(X);
-            for (int i = 0; i < kernel.nodes(); ++i) {
-                const Index local = element[static_cast<std::size_t>(i)] - body.first_node;
-                stress.row(local) += volume * element_stress.col(i).transpose();
-                weight(local) += volume;
-            }
-        });
+    for_each_element(body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element,
+                               const Eigen::Matrix3Xd& X) {
+        Eigen::Matrix3Xd ue(3, kernel.nodes());
+        for (int i = 0; i < kernel.nodes(); ++i) ue.col(i) = state.u[element[static_cast<std::size_t>(i)]];
+        element_stress.resize(6, kernel.nodes());
+        kernel.nodal_stress({X, ue, std::span(state.material).subspan(history, kernel.history_size())}, element_stress);
+        history += kernel.history_size();
+        const double volume = kernel.volume(X);
+        for (int i = 0; i < kernel.nodes(); ++i) {
+            const Index local = element[static_cast<std::size_t>(i)] - body.first_node;
+            stress.row(local) += volume * element_stress.col(i).transpose();
+            weight(local) += volume;
+        }
+    });
     for (Index i = 0; i < body.nodes(); ++i)
         if (weight(i) > 0) stress.row(i) /= weight(i);
     return stress;

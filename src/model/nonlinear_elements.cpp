@@ -25,7 +25,8 @@ HistoryPlace history_place(const std::vector<Body>& bodies, std::size_t body) {
         place.first += place.size;
         place.size = 0;
         for (std::size_t k = 0; k < bodies[b].kernels.size(); ++k)
-            place.size += bodies[b].kernels[k]->history_size() * static_cast<std::size_t>(bodies[b].mesh.blocks[k].size());
+            place.size +=
+                bodies[b].kernels[k]->history_size() * static_cast<std::size_t>(bodies[b].mesh.blocks[k].size());
     }
     return place;
 }
@@ -145,9 +146,8 @@ MaterialHistory NonlinearElements::history(const Field& X, const BodyStep& step,
             for (Index e = begin; e < stop; ++e) {
                 const std::span own =
                     std::span(end).subspan(block.history_first + e * block.history_size, block.history_size);
-                (void)with_step(block, e, X, step, [&](const fe::ElementStep& element) {
-                    return block.kernel->update(element, own, f);
-                });
+                (void)with_step(block, e, X, step,
+                                [&](const fe::ElementStep& element) { return block.kernel->update(element, own, f); });
             }
         });
     }

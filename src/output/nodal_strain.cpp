@@ -72,7 +72,8 @@ std::vector<double> nodal_energy_density(const model::Model& model, Index b, con
         const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, state.u);
         const double volume = kernel.volume(X);
         double energy = 0;
-        (void)kernel.energy({X, ue, history_of(model, b, element, state)}, energy); // 0 where it is not admissible, as in an iterate that failed
+        (void)kernel.energy({X, ue, history_of(model, b, element, state)},
+                            energy); // 0 where it is not admissible, as in an iterate that failed
         for (const Index node : nodes) mean.add(node, Eigen::Matrix<double, 1, 1>(energy / volume), volume);
     });
     return mean.values();

@@ -30,8 +30,7 @@ public:
             const std::vector<Index> nodes = nodes_of(body, part.element);
             const Eigen::Matrix3Xd X = positions_of(body, nodes), u = displacements_of(body, nodes, snapshot.state().u);
             Eigen::Matrix3Xd f(3, kernel.nodes());
-            (void)kernel.internal_force({X, u, history_of(snapshot.model(), body_, part.element, snapshot.state())},
-                                        f);
+            (void)kernel.internal_force({X, u, history_of(snapshot.model(), body_, part.element, snapshot.state())}, f);
             for (const int i : part.shared) { // what the element holds of the node, it exerts on the rest the other way
                 force -= f.col(i);
                 moment -= (X.col(i) + u.col(i) - point_).cross(f.col(i));

@@ -132,8 +132,7 @@ void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
     }
 }
 
-void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, const Field& x,
-                            StepEvidence& evidence) {
+void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, const Field& x, StepEvidence& evidence) {
     const ScopedTimer timer(timings_, Part::search);
     const model::ContactPair& pair = *model_.pairs[p];
     const contact::MovingFacets facets(corners(pair.surface()), pair.vertices(x_), pair.vertices(x));

@@ -6,7 +6,6 @@ namespace osculate::time {
 
 namespace {
 
-
 Field times(const linear::BlockMatrix& A, const Field& x) {
     Field y(x.size());
     A.multiply_add(x, y, 1);

@@ -19,7 +19,7 @@ struct StepAttempt {
     double time = 0, dt = 0; ///< at its end, s
     double proposed = 0;     ///< dt where no time to hit were near
     bool on_target = false;
-    Field force;        ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
+    Field force;                    ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
     Vector z, unpredicted;          ///< start values, the last iterate afterwards; the same without prediction
     equilibrium::Statuses statuses; ///< to start from
     bool forced = false;            ///< contact made by hand, see starting_statuses()

@@ -68,7 +68,8 @@ double velocity_error(const model::Model& model, const equilibrium::Dynamics& dy
 }
 
 AtNode local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
-                   const linear::Constraints& constraints, const model::State& from, const model::State& to, double dt) {
+                   const linear::Constraints& constraints, const model::State& from, const model::State& to,
+                   double dt) {
     const linear::BlockMatrix& M = model.mass(dynamics.lumped_mass);
     // nothing ties down the acceleration of a node without mass; that of a held direction is given
     constexpr double nothing = -1;

@@ -58,8 +58,7 @@ equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, con
     return load;
 }
 
-void predict(const model::Model& model, const linear::Constraints& constraints, const Field& prescribed,
-             Field& u) {
+void predict(const model::Model& model, const linear::Constraints& constraints, const Field& prescribed, Field& u) {
     for (const model::Body& body : model.bodies) {
         Vec3 centre = Vec3::Zero();
         for (const Vec3& X : body.mesh.nodes) centre += X / static_cast<double>(body.nodes());
@@ -99,8 +98,7 @@ void predict(const model::Model& model, const linear::Constraints& constraints, 
 
 namespace {
 /// Contact of pair p at displacements u, in a step from a state.
-model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const model::State& state,
-                                   const Field& u) {
+model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const model::State& state, const Field& u) {
     const std::size_t n = u.size();
     Field x(n), tails(n);
     const auto place = [&](const Field& at) {
@@ -165,7 +163,7 @@ StabilisationOptions stabilisation_options(RunContext& context, const model::Sta
 
 namespace {
 Field initial_acceleration(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
-                                       const model::State& state, const Field& force) {
+                           const model::State& state, const Field& force) {
     const model::Model& model = context.model;
     const equilibrium::Dynamics& dynamics = *stage.dynamics;
     const linear::BlockMatrix& M = model.mass(dynamics.lumped_mass);

@@ -13,16 +13,14 @@ namespace osculate::time {
 [[nodiscard]] std::vector<double> times_to_hit(const Stage& stage, double t_start);
 /// Loads and motions at a time since the stage's start, s. @throws LoadNotFinite
 [[nodiscard]] equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage,
-                                            const linear::Constraints& constraints,
-                                            const Field& prescribed_start, double elapsed);
+                                            const linear::Constraints& constraints, const Field& prescribed_start,
+                                            double elapsed);
 /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
-void predict(const model::Model& model, const linear::Constraints& constraints, const Field& prescribed,
-             Field& u);
+void predict(const model::Model& model, const linear::Constraints& constraints, const Field& prescribed, Field& u);
 /// Statuses to start from at displacements u; true where a pair is brought into contact by hand because nothing of it is
 /// closed yet.
 [[nodiscard]] bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies,
-                                     const model::State& state, const Field& u,
-                                     equilibrium::Statuses& statuses);
+                                     const model::State& state, const Field& u, equilibrium::Statuses& statuses);
 /// What forces are measured by, N; 0 where nothing acts yet.
 [[nodiscard]] double reference_force(const RunContext& context, const Stage& stage,
                                      const linear::Constraints& constraints, const model::State& state,

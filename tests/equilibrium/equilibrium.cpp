@@ -88,12 +88,11 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Rollback,
-                         ::testing::Values(LinearSolver::condensed, LinearSolver::iterative,
-                                           LinearSolver::direct),
+                         ::testing::Values(LinearSolver::condensed, LinearSolver::iterative, LinearSolver::direct),
                          [](const auto& solver) {
                              return solver.param == LinearSolver::condensed   ? "condensed"
                                     : solver.param == LinearSolver::iterative ? "iterative"
-                                                                                      : "direct";
+                                                                              : "direct";
                          });
 
 } // namespace

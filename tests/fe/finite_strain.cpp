@@ -232,8 +232,8 @@ TEST_P(FiniteStrain, ReportsAnInvertedElementWithItsSmallestVolumeRatioAndZeros)
     Eigen::Matrix3Xd f = Eigen::Matrix3Xd::Constant(3, n, nan);
     Matrix K = Matrix::Constant(3 * n, 3 * n, nan), stress = Matrix::Constant(6, n, nan);
     const auto expect_zero = [&](const Eigen::Matrix3Xd& u, double smallest) {
-        for (const Deformation& d : {kernel->energy({X, u}, W), kernel->internal_force({X, u}, f), kernel->tangent({X, u, u}, K),
-                                     kernel->nodal_stress({X, u}, stress)}) {
+        for (const Deformation& d : {kernel->energy({X, u}, W), kernel->internal_force({X, u}, f),
+                                     kernel->tangent({X, u, u}, K), kernel->nodal_stress({X, u}, stress)}) {
             EXPECT_FALSE(d.admissible());
             const bool equal = d.smallest_J == smallest || std::abs(d.smallest_J - smallest) < round_off;
             EXPECT_TRUE(equal) << d.smallest_J << " instead of " << smallest;
@@ -250,8 +250,9 @@ TEST_P(FiniteStrain, ReportsAnInvertedElementWithItsSmallestVolumeRatioAndZeros)
     for (const double stretch : {1e-7, 1e-9, 1e-12, 1e-17, 1e80, 1e160}) {
         const Eigen::Matrix3Xd extreme = Vec3(stretch - 1, 0, 0).asDiagonal() * X;
         W = f(0, 0) = K(0, 0) = stress(0, 0) = nan;
-        for (const Deformation& d : {kernel->energy({X, extreme}, W), kernel->internal_force({X, extreme}, f),
-                                     kernel->tangent({X, extreme, extreme}, K), kernel->nodal_stress({X, extreme}, stress)})
+        for (const Deformation& d :
+             {kernel->energy({X, extreme}, W), kernel->internal_force({X, extreme}, f),
+              kernel->tangent({X, extreme, extreme}, K), kernel->nodal_stress({X, extreme}, stress)})
             EXPECT_TRUE(stretch > 1 || !d.admissible()) << stretch;
         EXPECT_TRUE(std::isfinite(W) && f.allFinite() && K.allFinite() && stress.allFinite()) << stretch;
     }

@@ -18,8 +18,7 @@ Body body_of(mesh::Mesh mesh) {
     body.density = 1000;
     body.mesh = std::move(mesh);
     for (const mesh::ElementBlock& block : body.mesh.blocks)
-        body.kernels.push_back(
-            fe::make_kernel(block.type, HexFormulation::full, material::LinearElastic{1e6, 0.3}));
+        body.kernels.push_back(fe::make_kernel(block.type, HexFormulation::full, material::LinearElastic{1e6, 0.3}));
     return body;
 }
 

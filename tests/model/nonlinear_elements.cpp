@@ -21,16 +21,16 @@ Body hybrid_block(Index first_node, const Vec3& origin, const std::array<int, 3>
               {},
               0};
     for (const mesh::ElementBlock& block : body.mesh.blocks)
-        body.kernels.push_back(
-            linear ? fe::make_kernel(block.type, HexFormulation::full, hooke)
-                   : fe::make_kernel(block.type, HexFormulation::full, material::NeoHookean(hooke)));
+        body.kernels.push_back(linear ? fe::make_kernel(block.type, HexFormulation::full, hooke)
+                                      : fe::make_kernel(block.type, HexFormulation::full, material::NeoHookean(hooke)));
     return body;
 }
 
 Model model_of(std::vector<Body> bodies) {
     Model model;
     model.bodies = std::move(bodies);
-    for (const Body& body : model.bodies) model.X.values().insert(model.X.values().end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
+    for (const Body& body : model.bodies)
+        model.X.values().insert(model.X.values().end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
     model.K = assemble_stiffness(model.bodies, model.nodes());
     model.nonlinear = std::make_unique<NonlinearElements>(model.bodies, model.K);
     return model;
@@ -62,8 +62,8 @@ struct TwoKinds : ::testing::Test {
 
 TEST_F(TwoKinds, ForcesAreTheDerivativeOfTheEnergy) {
     ASSERT_GT(model.bodies[0].mesh.blocks[0].size(), 256) << "one batch only";
-    const double slope = (strain_energy(model, along(step), nothing, 1) - strain_energy(model, along(-step), nothing, 1)) /
-                         (2 * step);
+    const double slope =
+        (strain_energy(model, along(step), nothing, 1) - strain_energy(model, along(-step), nothing, 1)) / (2 * step);
     const double work = dot(forces(u, 1), way);
     EXPECT_NEAR(slope, work, 1e-6 * std::abs(work));
 }

@@ -26,7 +26,7 @@ struct FollowerLoad {
 struct Stabilisation {
     const std::vector<double>* share = nullptr; ///< s_i, see model::volume_shares
     double stiffness = 0;                       ///< k, of all springs of one body together, N/m
-    Field anchor{};                 ///< a_i, (nodes) m
+    Field anchor{};                             ///< a_i, (nodes) m
 };
 
 /// In statics f(u) = f_int(u) - f_p(u), f_p those of follower pressures, f_int at the end of the step, see
@@ -91,22 +91,22 @@ private:
     std::vector<FollowerLoad> pressures_;
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;
-    std::optional<fe::StepMean> mean_;  ///< of nonlinear elements, for the current dt; none in statics
+    std::optional<fe::StepMean> mean_; ///< of nonlinear elements, for the current dt; none in statics
     model::MaterialHistory history_start_;
-    Stabilisation springs_;             ///< without share: none
-    linear::BlockMatrix tangent_;       ///< dynamics, where it varies, or with springs
-    linear::BlockMatrix constant_;      ///< where it varies: the part of the tangent that does not depend on u
-    Field u_start_;                     ///< in statics where elements have a past
-    Field v_start_, a_start_;           ///< dynamics only
-    Field force_start_;                 ///< f at u_start but for nonlinear elements, N; dynamics only
+    Stabilisation springs_;        ///< without share: none
+    linear::BlockMatrix tangent_;  ///< dynamics, where it varies, or with springs
+    linear::BlockMatrix constant_; ///< where it varies: the part of the tangent that does not depend on u
+    Field u_start_;                ///< in statics where elements have a past
+    Field v_start_, a_start_;      ///< dynamics only
+    Field force_start_;            ///< f at u_start but for nonlinear elements, N; dynamics only
 };
 
 /// Adds the forces of follower pressures at u, (nodes) N, with their pressures at the start of the step.
-void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model,
-                         const Field& u, Field& f);
+void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model, const Field& u,
+                         Field& f);
 
 /// f_int(u) + C v of a state in dynamics, finite strain without stiffness damping, (nodes) N.
-[[nodiscard]] Field body_forces(const model::Model& model, const Dynamics& dynamics,
-                                            const model::State& state, int threads);
+[[nodiscard]] Field body_forces(const model::Model& model, const Dynamics& dynamics, const model::State& state,
+                                int threads);
 
 } // namespace osculate::equilibrium

@@ -41,8 +41,8 @@ private:
     int threads_;
     bool nonlinear_;
     Field internal_;
-    Field linear_about_; ///< of the next evaluate(); empty: exact
-    bool linearised_ = false;        ///< the last evaluate() was, and the stiffness belongs to it
+    Field linear_about_;      ///< of the next evaluate(); empty: exact
+    bool linearised_ = false; ///< the last evaluate() was, and the stiffness belongs to it
     model::WorstElement worst_element_;
 };
 

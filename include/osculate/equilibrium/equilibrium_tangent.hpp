@@ -70,7 +70,7 @@ private:
     std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< none where the tangent is symmetric
     std::unique_ptr<linear::CondensedTangent> condensed_;           ///< where bodies are linear
     bool stale_preconditioner_ = false, stale_matrix_ = false;      ///< the stiffness of the bodies has moved on
-    Field product_u_, product_f_;                       ///< scratch of multiply()
+    Field product_u_, product_f_;                                   ///< scratch of multiply()
 };
 
 } // namespace osculate::equilibrium

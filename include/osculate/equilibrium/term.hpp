@@ -14,8 +14,8 @@ namespace osculate::equilibrium {
 
 /// Loads and motions at the end of the step.
 struct StepLoad {
-    Field force;               ///< (nodes) external forces, N
-    Field prescribed;          ///< (nodes) displacement of the held components, local axes, m
+    Field force;                           ///< (nodes) external forces, N
+    Field prescribed;                      ///< (nodes) displacement of the held components, local axes, m
     std::vector<FollowerLoad> pressures{}; ///< of this step
 };
 

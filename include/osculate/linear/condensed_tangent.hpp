@@ -57,8 +57,8 @@ public:
     [[nodiscard]] int factorisations() const { return factorisations_; }
     /// x with |b - J x| <= allowed. False where K or T is singular, or GMRES gets nowhere.
     /// @param D  (couplings) by lambda, of those that bear on nothing
-    [[nodiscard]] bool solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x, double allowed,
-                             Timings& timings);
+    [[nodiscard]] bool solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x,
+                             double allowed, Timings& timings);
 
 private:
     using Nodal = std::vector<Vec3>; ///< by contact node, global components

@@ -34,10 +34,10 @@ struct Set {
 struct Model {
     std::vector<Body> bodies;
     Vec3 origin = Vec3::Zero(); ///< where the scene's coordinates have X = 0, m: far from it digits would be lost
-    Field X;        ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
+    Field X;                    ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
     std::vector<Set> sets;
     std::vector<std::unique_ptr<const ContactPair>> pairs;
-    linear::BlockMatrix K; ///< constant stiffness of the linear elements, in the pattern of all
+    linear::BlockMatrix K;                        ///< constant stiffness of the linear elements, in the pattern of all
     std::unique_ptr<NonlinearElements> nonlinear; ///< the other elements; null where there are none
     linear::BlockMatrix consistent_mass,
         lumped_mass;                      ///< of all bodies, kg, pattern of K; empty where no stage asks for it

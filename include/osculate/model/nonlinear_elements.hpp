@@ -54,10 +54,10 @@ private:
     /// A block of equal elements.
     struct Block {
         const fe::ElementKernel* kernel = nullptr;
-        Index body = -1, first_element = 0, size = 0;   ///< first_element: number in its body
+        Index body = -1, first_element = 0, size = 0;    ///< first_element: number in its body
         std::size_t history_first = 0, history_size = 0; ///< of its first element, and of each
-        std::vector<Index> node;                        ///< (size x n) global
-        std::vector<Index> slot;                        ///< (size x n x n) of block (i, j) in the pattern, row by row
+        std::vector<Index> node;                         ///< (size x n) global
+        std::vector<Index> slot;                         ///< (size x n x n) of block (i, j) in the pattern, row by row
 
         [[nodiscard]] std::span<const double> history(const MaterialHistory& all, Index element) const;
     };

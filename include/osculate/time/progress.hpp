@@ -22,10 +22,10 @@ struct RunCounts {
 
 struct Progress {
     std::size_t stage = 0;
-    double stage_start = 0;                 ///< time, s
+    double stage_start = 0;     ///< time, s
     Field displacement_start{}; ///< (nodes) at the stage's start, local axes, m
-    std::size_t reached = 0;                ///< times to hit of the stage that lie behind
-    double dt = 0;                          ///< of the next attempt, s
+    std::size_t reached = 0;    ///< times to hit of the stage that lie behind
+    double dt = 0;              ///< of the next attempt, s
     model::State state;
     Ledger ledger;
     bool moved = false; ///< a dynamic stage has begun

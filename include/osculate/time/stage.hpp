@@ -23,8 +23,8 @@ struct Course {
 
 /// External forces that follow a course.
 struct CourseForce {
-    Index course = -1;         ///< of the stage
-    Field pattern; ///< (nodes) forces where the course is 1, N
+    Index course = -1; ///< of the stage
+    Field pattern;     ///< (nodes) forces where the course is 1, N
 };
 
 /// A pressure on the current area, along the current normal.
@@ -44,7 +44,7 @@ struct Stage {
     bool follow_paths = false;                       ///< of slave nodes, see CollisionCheck
     bool ramp = true;                                ///< linear from the last value; false: full value at once
     std::vector<linear::NodeConstraint> constraints; ///< every direction held during this stage
-    Field force_start, force_end;        ///< (nodes) external forces at its two ends, N
+    Field force_start, force_end;                    ///< (nodes) external forces at its two ends, N
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< on top of these
     std::vector<FollowerPressure> follower_pressures;

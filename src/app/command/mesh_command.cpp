@@ -9,9 +9,7 @@
 #include <iterator>
 
 namespace osculate::app {
-namespace {
-
-} // namespace
+namespace {} // namespace
 
 std::string describe_mesh(const MeshCommand& command) {
     try {

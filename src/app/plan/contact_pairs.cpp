@@ -67,23 +67,22 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
         default: return {s.R, s.q};
         }
     };
-    return std::visit(Overloaded{
-                          [&](const scene::FacetsSurface& s) {
-                              options.hysteresis = s.hysteresis;
-                              return contact::make_facets_surface(surface);
-                          },
-                          [&](const scene::RpimSurface& s) {
-                              options.hysteresis = s.hysteresis;
-                              return contact::make_rpim_surface(
-                                  surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
-                          },
-                          [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
-                              options.hysteresis = 0;
-                              return contact::make_blend_surface(
-                                  surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
-                          },
-                      },
-                      spec.surface);
+    return std::visit(
+        Overloaded{
+            [&](const scene::FacetsSurface& s) {
+                options.hysteresis = s.hysteresis;
+                return contact::make_facets_surface(surface);
+            },
+            [&](const scene::RpimSurface& s) {
+                options.hysteresis = s.hysteresis;
+                return contact::make_rpim_surface(surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
+            },
+            [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
+                options.hysteresis = 0;
+                return contact::make_blend_surface(surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
+            },
+        },
+        spec.surface);
 }
 
 /// The surface through the slave nodes that mortar takes its gaps from: as smooth as the master's. None where that is its

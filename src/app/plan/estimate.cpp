@@ -124,7 +124,8 @@ Estimate estimate(const scene::Scene& scene, const Plan& plan) {
     Estimate result;
     result.steps = steps(plan, false) + steps(plan, true);
     for (const CostTerm& term : cost_terms(scene, plan)) result.seconds += term.count * term.seconds;
-    result.bytes = bytes(plan, any(&equilibrium::TangentChoice::multigrid), any(&equilibrium::TangentChoice::condensed));
+    result.bytes =
+        bytes(plan, any(&equilibrium::TangentChoice::multigrid), any(&equilibrium::TangentChoice::condensed));
     return result;
 }
 

@@ -48,10 +48,10 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         multigrid ? fmt::format("cycles over {} nodes in place of factors", plan.model.nodes())
                   : "fewer nodes than cycles pay for, or another solver is asked for");
     say("condensation", condensed,
-        condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
-                                cost.condensed, cost.factorising)
-        : !contact             ? "the scene has no pair"
-        : multigrid            ? "multigrid is used"
+        condensed   ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
+                                  cost.condensed, cost.factorising)
+        : !contact  ? "the scene has no pair"
+        : multigrid ? "multigrid is used"
         : nonlinear || follows ? "the tangent of the bodies is not constant"
         : asked == LinearSolver::automatic
             ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "

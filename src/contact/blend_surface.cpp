@@ -90,8 +90,9 @@ public:
         if (hit.facet < 0) return;
         const double size = surface_.facet_size(hit.facet);
         if (beyond_boundary(hit, size)) return;
-        auto trace = std::make_shared<Side>(seen_from(s, hit, x, placement));
+        const std::shared_ptr<Side> trace = own_trace(point);
         Side& side = *trace;
+        side = seen_from(s, hit, x, placement);
         for (const Index facet : across_crease(hit)) {
             FacetHit there;
             there.facet = facet;
@@ -106,7 +107,7 @@ public:
         point.facet = hit.facet;
         point.side = side.hit.facet;
         if (!point.found) return;
-        point.trace = std::move(trace);
+        point.trace = trace;
         if (variation != nullptr) vary(s, hit, x, point, *variation);
     }
 
@@ -149,6 +150,14 @@ private:
         bool edge;
         Index facet;
     };
+
+    /// The trace of a point's last evaluation where nothing else holds it, or a new one.
+    static std::shared_ptr<Side> own_trace(const ContactPoint& point) {
+        const bool shared = point.trace.use_count() > 1;
+        auto last = std::const_pointer_cast<PointTrace>(point.trace);
+        auto own = shared ? nullptr : std::dynamic_pointer_cast<Side>(std::move(last));
+        return own ? own : std::make_shared<Side>();
+    }
 
     Side seen_from(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, const Placement* placement) const {
         const std::vector<PlacedPatch>* ready =

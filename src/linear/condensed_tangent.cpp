@@ -76,7 +76,7 @@ void CondensedTangent::factorise_bodies() {
 void CondensedTangent::set(const std::vector<BearingContact>& contacts) {
     contacts_ = &contacts;
     const auto same = [](Index coupling, const BearingContact& c) { return coupling == c.law.coupling; };
-    if (laws_ && !std::ranges::equal(laws_->couplings, contacts, same)) laws_ = nullptr;
+    if (schur_ && !std::ranges::equal(schur_->couplings, contacts, same)) schur_ = nullptr;
 }
 
 void CondensedTangent::spread(const double* reduced, Nodal& nodal) const {
@@ -101,13 +101,13 @@ void CondensedTangent::collect(const Nodal& nodal, double* reduced) const {
 
 void CondensedTangent::add_forces(const Vector& lambda, double* reduced) const {
     Nodal nodal(nodes_.size(), Vec3::Zero());
-    for (std::size_t j = 0; j < laws_->terms.size(); ++j)
-        for (const Term& t : laws_->terms[j])
+    for (std::size_t j = 0; j < schur_->terms.size(); ++j)
+        for (const Term& t : schur_->terms[j])
             nodal[t.node] += t.by.transpose() * lambda.segment<3>(3 * static_cast<Index>(j));
     collect(nodal, reduced);
 }
 
-void CondensedTangent::relative(const Laws& laws, const double* reduced, Vector& w) const {
+void CondensedTangent::relative(const ContactLaws& laws, const double* reduced, Vector& w) const {
     Nodal nodal;
     spread(reduced, nodal);
     w.setZero(3 * static_cast<Index>(laws.terms.size()));
@@ -132,9 +132,9 @@ void CondensedTangent::apply_compliance(const double* f, double* u) const {
     });
 }
 
-std::shared_ptr<CondensedTangent::Laws> CondensedTangent::present_laws() const {
-    auto laws = std::make_shared<Laws>();
-    auto& [dt, couplings, terms, B, D] = static_cast<ContactLaws&>(*laws);
+std::shared_ptr<CondensedTangent::SchurComplement> CondensedTangent::schur_complement() const {
+    auto schur = std::make_shared<SchurComplement>();
+    auto& [dt, couplings, terms, B, D] = static_cast<ContactLaws&>(*schur);
     dt = dt_;
     for (const BearingContact& c : *contacts_) {
         couplings.push_back(c.law.coupling);
@@ -150,11 +150,11 @@ std::shared_ptr<CondensedTangent::Laws> CondensedTangent::present_laws() const {
         B.emplace_back(-spring_ * Mat3::Identity());
         D.emplace_back(Mat3::Identity());
     }
-    return laws;
+    return schur;
 }
 
-void CondensedTangent::factorise(Laws& laws) const {
-    const auto& terms = laws.terms;
+void CondensedTangent::factorise(SchurComplement& schur) const {
+    const auto& terms = schur.terms;
     // columns of F = C W C^T
     const auto count = static_cast<Index>(terms.size()), reduced = first_.back();
     Matrix T(3 * count, 3 * count);
@@ -170,25 +170,25 @@ void CondensedTangent::factorise(Laws& laws) const {
                         r >= 0 && local(c) != 0)
                         u.segment(first_[b], first_[b + 1] - first_[b]) += local(c) * bodies_[b].W().col(r - first_[b]);
             }
-            relative(laws, u.data(), w);
-            for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, column) = laws.B[i] * w.segment<3>(3 * i);
+            relative(schur, u.data(), w);
+            for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, column) = schur.B[i] * w.segment<3>(3 * i);
         }
     });
-    for (Index j = 0; j < count; ++j) T.block<3, 3>(3 * j, 3 * j) += laws.D[j];
-    laws.usable = laws.T.factorise(std::move(T));
-    laws.factorised = true;
+    for (Index j = 0; j < count; ++j) T.block<3, 3>(3 * j, 3 * j) += schur.D[j];
+    schur.usable = schur.T.factorise(std::move(T));
+    schur.factorised = true;
 }
 
 Vector CondensedTangent::contact_forces(const Vector& u, const double* r) const {
     // T lambda = r - B C u, no right side for springs
     Vector lambda;
-    relative(*laws_, u.data(), lambda);
-    for (std::size_t j = 0; j < laws_->terms.size(); ++j) {
+    relative(*schur_, u.data(), lambda);
+    for (std::size_t j = 0; j < schur_->terms.size(); ++j) {
         const Index at = 3 * static_cast<Index>(j);
-        lambda.segment<3>(at) = (-laws_->B[j] * lambda.segment<3>(at)).eval();
+        lambda.segment<3>(at) = (-schur_->B[j] * lambda.segment<3>(at)).eval();
     }
     lambda.head(forces()) += Eigen::Map<const Vector>(r, forces());
-    laws_->T.solve(lambda.data());
+    schur_->T.solve(lambda.data());
     return lambda;
 }
 
@@ -228,13 +228,13 @@ bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, cons
         const ScopedTimer timer(timings, Part::factor);
         if (!factorised_) factorise_bodies();
         if (!usable_) return false;
-        if (!laws_) {
-            laws_ = present_laws();
+        if (!schur_) {
+            schur_ = schur_complement();
             ++factorisations_;
         }
-        if (!laws_->factorised) factorise(*laws_);
-        if (!laws_->usable) {
-            laws_ = nullptr;
+        if (!schur_->factorised) factorise(*schur_);
+        if (!schur_->usable) {
+            schur_ = nullptr;
             return false;
         }
     }
@@ -294,7 +294,7 @@ bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, cons
         const auto result = gmres_->solve(J, {}, rest.data(), y.data(), allowed);
         worn = !result.converged || result.iterations > worth_keeping;
         if (!result.converged) {
-            laws_ = nullptr;
+            schur_ = nullptr;
             return false;
         }
         precondition(y.data(), lambda_y, u_y, f_y);
@@ -312,7 +312,7 @@ bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, cons
         const Vec3 local = constraints_.to_local(slaves_[j], lambda[j]);
         for (int k = 0; k < 3; ++k) x[rows.multiplier(static_cast<Index>(j)) + k] = local(k);
     }
-    if (worn) laws_ = nullptr;
+    if (worn) schur_ = nullptr;
     return true;
 }
 

@@ -43,14 +43,14 @@ public:
     void begin(double dt, bool changed) {
         dt_ = dt;
         if (changed) factorised_ = false;
-        if (laws_ && laws_->dt != dt) laws_ = nullptr;
+        if (schur_ && schur_->dt != dt) schur_ = nullptr;
     }
     /// T stays as it is, or goes back to what it was at the last keep(): an attempt that is rejected leaves no trace.
-    void keep() { kept_ = laws_; }
-    void restore() { laws_ = kept_; }
+    void keep() { kept_ = schur_; }
+    void restore() { schur_ = kept_; }
     /// What T was last kept for, null where it is to be made; and T for such laws, as it was then.
     [[nodiscard]] const ContactLaws* kept() const { return kept_.get(); }
-    void restore(const ContactLaws& laws) { laws_ = kept_ = std::make_shared<Laws>(laws); }
+    void restore(const ContactLaws& laws) { schur_ = kept_ = std::make_shared<SchurComplement>(laws); }
     /// Contacts of the next solve(): every coupling that bears, in their order. They must outlive it.
     void set(const std::vector<BearingContact>& contacts);
     /// How many there have been: of all bodies together, and T's.
@@ -63,23 +63,23 @@ public:
 private:
     using Nodal = std::vector<Vec3>; ///< by contact node, global components
     using Term = ContactLaws::Term;
-    /// C, B and D of contacts, then springs, and T of them.
-    struct Laws : ContactLaws {
-        Laws() = default;
-        explicit Laws(const ContactLaws& laws) : ContactLaws(laws) {}
+    /// T, with C, B and D of contacts, then springs, that it is of.
+    struct SchurComplement : ContactLaws {
+        SchurComplement() = default;
+        explicit SchurComplement(const ContactLaws& laws) : ContactLaws(laws) {}
         solve::DenseLu T;
         bool factorised = false, usable = false;
     };
     void factorise_bodies();
     /// Bodies side by side.
     void each_body(const std::function<void(std::size_t)>& work) const;
-    [[nodiscard]] std::shared_ptr<Laws> present_laws() const;
-    void factorise(Laws& laws) const;
+    [[nodiscard]] std::shared_ptr<SchurComplement> schur_complement() const;
+    void factorise(SchurComplement& schur) const;
     void spread(const double* reduced, Nodal& nodal) const;
     void collect(const Nodal& nodal, double* reduced) const;
     /// reduced += C^T lambda, C u; over contacts, then springs
     void add_forces(const Vector& lambda, double* reduced) const;
-    void relative(const Laws& laws, const double* reduced, Vector& w) const;
+    void relative(const ContactLaws& laws, const double* reduced, Vector& w) const;
     /// u = W f
     void apply_compliance(const double* f, double* u) const;
     /// The forces of P, contacts' then springs', for displacements u without them and contact laws' right sides r.
@@ -107,7 +107,7 @@ private:
     int factorisations_ = 0;
     const std::vector<BearingContact>* contacts_ = nullptr;
     mutable std::vector<Vector> on_;    ///< scratch of apply_contact()
-    std::shared_ptr<Laws> laws_, kept_; ///< null: to be made
+    std::shared_ptr<SchurComplement> schur_, kept_; ///< null: to be made
     std::unique_ptr<solve::Gmres> gmres_;
     Index gmres_size_ = -1;
 };

@@ -106,7 +106,7 @@ private:
     bool factorised_ = false, usable_ = true;
     int factorisations_ = 0;
     const std::vector<BearingContact>* contacts_ = nullptr;
-    mutable std::vector<Vector> on_;    ///< scratch of apply_contact()
+    mutable std::vector<Vector> on_;                ///< scratch of apply_contact()
     std::shared_ptr<SchurComplement> schur_, kept_; ///< null: to be made
     std::unique_ptr<solve::Gmres> gmres_;
     Index gmres_size_ = -1;

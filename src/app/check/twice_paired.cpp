@@ -30,7 +30,7 @@ Surface surface(const model::Model& model, const std::string& name) {
     return result;
 }
 
-bool share(const Surface& a, const Surface& b) {
+bool share_facets(const Surface& a, const Surface& b) {
     if (a.body != b.body) return false;
     std::vector<Corners> common;
     std::ranges::set_intersection(a.facets, b.facets, std::back_inserter(common));
@@ -50,12 +50,12 @@ std::vector<Warning> twice_paired(const scene::Scene& scene, const Plan& plan) {
     for (std::size_t later = 0; later < sides.size(); ++later)
         for (std::size_t i = 0; i < later; ++i) {
             const std::string &name = scene.contact[later].first, &other = scene.contact[i].first;
-            if (share(sides[later].slave, sides[i].slave) && share(sides[later].master, sides[i].master))
+            if (share_facets(sides[later].slave, sides[i].slave) && share_facets(sides[later].master, sides[i].master))
                 found.push_back({"contact." + name,
                                  fmt::format("it pairs facets that contact.{} pairs already: one condition too many at "
                                              "every node of them; leave one of the two out",
                                              other)});
-            else if (share(sides[later].slave, sides[i].master) && share(sides[later].master, sides[i].slave))
+            else if (share_facets(sides[later].slave, sides[i].master) && share_facets(sides[later].master, sides[i].slave))
                 found.push_back(
                     {"contact." + name,
                      fmt::format("its slave is the master of contact.{} and its master the slave there: held apart "

@@ -20,11 +20,11 @@ enum class PatchCoordinates {
 
 /// How Newton's linear systems are solved.
 enum class LinearSolver {
-    automatic, ///< multigrid for many nodes, else condensed where that costs less, else iterative
-    condensed, ///< linear::CondensedTangent, where bodies are linear and nothing follows; else iterative
+    automatic, ///< multigrid for many nodes, else condensed if that costs less, else iterative
+    condensed, ///< linear::CondensedTangent, if bodies are linear and no pressure follows its faces; else iterative
     iterative, ///< GMRES with the whole tangent and linear::ContactPreconditioner, factorised
-    multigrid, ///< the same, the preconditioner by multigrid
-    direct     ///< the tangent factorised in every iteration
+    multigrid, ///< the same, but the preconditioner is inverted by multigrid
+    direct     ///< factorises the tangent in every iteration
 };
 
 } // namespace osculate

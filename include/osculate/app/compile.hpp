@@ -1,5 +1,5 @@
 #pragma once
-/// From a scene to the objects that run it, and to nothing else.
+/// Builds from a scene the objects that run it, and nothing else.
 
 #include "osculate/core/timing.hpp"
 #include "osculate/model/model.hpp"
@@ -13,22 +13,22 @@
 
 namespace osculate::app {
 
-/// What a part takes, estimated from counts of the plan: good to a factor of two or so.
+/// Cost of a part, estimated from counts of the plan, correct to a factor of about two.
 struct PlanCost {
-    double bytes = 0;   ///< held while the run goes
+    double bytes = 0;   ///< memory during the run
     double count = 0;   ///< of `unit`
-    std::string unit{}; ///< such as "elements an iteration"
+    std::string unit{}; ///< for example "elements an iteration"
 };
 
-/// A part of the plan that is there or left out, and why.
+/// A part of the plan that is present or left out, and the reason.
 struct PlanItem {
     std::string part;
     bool present = false;
     std::string reason;
-    PlanCost cost{}; ///< zeros where the part is left out, or where there is nothing worth counting
+    PlanCost cost{}; ///< zeros if the part is left out or its cost is negligible
 };
 
-/// A probe, and how many accepted steps lie between its rows.
+/// A probe, and the number of accepted steps between its rows.
 struct PlannedProbe {
     std::string name;
     int every = 1;
@@ -45,14 +45,14 @@ struct Plan {
     std::vector<std::string> mesh_notes; ///< of build_meshes
 };
 
-/// Meshes of the scene's bodies, in its order. Throws SceneError for what cannot be generated or read.
-/// @param notes  what was mended in meshes of files, and what is suspicious but allowed
+/// Meshes of the scene's bodies, in its order. Throws SceneError for a mesh that cannot be generated or read.
+/// @param notes  repairs of meshes from files, and what is suspicious but allowed
 [[nodiscard]] std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene,
                                                    std::vector<std::string>* notes = nullptr);
 
-/// Builds what the scene needs. Throws SceneError with every fault found: names without nodes or facets, bodies without
-/// support, initial overlaps, elements turned inside out.
-/// @param meshes  one per body; build_meshes(scene), or the same bodies numbered otherwise
+/// Builds all objects that the scene needs. Throws SceneError with every fault found: names without nodes or facets,
+/// bodies without support, initial overlaps, elements turned inside out.
+/// @param meshes  one per body; build_meshes(scene), or the same bodies with another numbering
 [[nodiscard]] Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings);
 
 } // namespace osculate::app

@@ -1,5 +1,5 @@
 #pragma once
-/// From a scene file to its plan.
+/// Reads and compiles a scene file to a plan.
 
 #include "osculate/app/compile.hpp"
 #include "osculate/scene/reader.hpp"
@@ -12,7 +12,7 @@ namespace osculate::app {
 struct LoadedScene {
     scene::Scene scene;
     Plan plan;
-    std::string path{}; ///< of the scene file; empty: it comes from a text
+    std::string path{}; ///< of the scene file; empty: the scene is from a text
 };
 
 /// Reads and compiles a scene file.

@@ -1,5 +1,5 @@
 #pragma once
-/// What a plan holds, in words.
+/// Description of a plan in words.
 
 #include "osculate/app/compile.hpp"
 
@@ -7,10 +7,10 @@
 
 namespace osculate::app {
 
-/// Free displacement components, at the stage that has most of them.
+/// Number of free displacement components, in the stage that has most of them.
 [[nodiscard]] Index degrees_of_freedom(const Plan& plan);
 
-/// What the plan contains, what it leaves out and why.
+/// Parts of the plan, parts left out, and the reasons.
 [[nodiscard]] std::string explain(const Plan& plan);
 
 } // namespace osculate::app

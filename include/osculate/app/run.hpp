@@ -1,5 +1,5 @@
 #pragma once
-/// A scene from its file to the files of its run.
+/// Runs a scene file and writes the files of the run.
 
 #include "osculate/app/load.hpp"
 #include "osculate/core/error.hpp"
@@ -17,42 +17,42 @@
 
 namespace osculate::app {
 
-/// In a run's folder.
+/// Paths in a run's folder.
 inline constexpr const char* checkpoint_path = "checkpoint/state";
 inline constexpr const char* previous_checkpoint_path = "checkpoint/state.previous";
 
-/// How often a run writes a checkpoint: after so many accepted steps, or so many seconds, whichever is set; 0 never.
+/// Interval of checkpoints: after this number of accepted steps, or of seconds, whichever is set; 0: never.
 struct CheckpointEvery {
     long steps = 0;
     double seconds = 0;
 };
-/// From "20", steps, or "5 min", a time.
+/// Parses "20" (steps) or "5 min" (a time).
 /// @throws SceneError
 [[nodiscard]] CheckpointEvery parse_checkpoint_every(const std::string& text);
 
-/// What there may be in a folder that files are to be written into, see output::OutputFolder.
+/// Permitted content of an output folder, see output::OutputFolder.
 struct FolderOptions {
-    bool force = false;    ///< anything; files are overwritten
-    bool numbered = false; ///< nothing: where something is, the folder's name gets a number
+    bool force = false;    ///< anything; overwrites files
+    bool numbered = false; ///< nothing: if it is not empty, a number is added to the folder's name
 };
 
 [[nodiscard]] output::OutputFolder::Entry entry_of(const FolderOptions& options);
-/// The folder that is asked for, of which FolderOptions::numbered may make another. @throws RunFailure
+/// The requested folder, or another one if FolderOptions::numbered requires it. @throws RunFailure
 [[nodiscard]] std::filesystem::path chosen_folder(const std::filesystem::path& directory, const FolderOptions& options);
 
 struct RunOptions {
-    std::filesystem::path directory; ///< of the files; out/<scene name>/ when empty
+    std::filesystem::path directory; ///< output folder; out/<scene name>/ if empty
     int threads = 1;
     bool quiet = false;
     CheckpointEvery checkpoint_every{};
     bool heed_signals =
-        true; ///< SIGINT and SIGTERM end the run between two steps; false: they are the caller's business
+        true; ///< SIGINT and SIGTERM end the run between two steps; false: the caller has to handle these signals
     FolderOptions folder{};
     std::function<void(const std::filesystem::path&)>
-        entered{}; ///< told the folder before the first step; null: nobody
+        entered{}; ///< called with the folder before the first step; may be empty
 };
 
-/// A run that was asked to end by a signal, and did between two steps, with a checkpoint written.
+/// A signal ended the run between two steps, after a checkpoint was written.
 class Interrupted : public std::runtime_error {
 public:
     Interrupted(int signal, double time, std::filesystem::path directory);
@@ -62,14 +62,14 @@ private:
     int signal_;
 };
 
-/// What an observer throws from between_steps(), accepted() or attempted() to end a run that writes files: its summary then
-/// says `interrupted`.
+/// An observer throws this from between_steps(), accepted() or attempted() to end a run that writes files; its summary
+/// then says `interrupted`.
 class Stopped : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// A run that gave up after an examination of its last attempt.
+/// A run failed, and its last attempt was examined.
 class GaveUp : public RunFailure {
 public:
     /// @param post_mortem  in words, lines
@@ -81,27 +81,28 @@ private:
     std::string post_mortem_;
 };
 
-/// Runs a scene. On SIGINT or SIGTERM it finishes the step and writes a checkpoint. Every file can be read at any moment; those of an earlier run in the same folder are
-/// removed first, and nothing else.
-/// @returns  what summary.json says at the end
-/// @throws SceneError before anything is written, also where the folder is not one to write into; Interrupted; GaveUp when a step cannot be solved, RunFailure when a file cannot be
-///         written, with everything accepted before on disk
+/// Runs a scene. On SIGINT or SIGTERM it finishes the step and writes a checkpoint. Every file can be read at any
+/// moment. First removes the files of an earlier run in the same folder, and nothing else.
+/// @returns content of summary.json at the end
+/// @throws SceneError before anything is written, also for an unsuitable folder; Interrupted; GaveUp if a step cannot
+///         be solved, RunFailure if a file cannot be written, with all accepted steps on disk
 output::Summary run(const std::string& scene_path, const std::vector<scene::Override>& overrides,
                     const RunOptions& options);
 
-/// Runs a scene that is compiled, writing the same files.
-/// @param stepper  of loaded.plan, not run yet. Like `loaded` and `timings` it is the caller's, who can look at it later
-/// @param beside   told what the files are told, after them; null: nobody
-/// @throws as run() above does, and what `beside` throws
+/// Runs a compiled scene, and writes the same files.
+/// @param stepper  of loaded.plan, not run yet; like `loaded` and `timings` it remains the caller's and can be
+///                 inspected later
+/// @param beside   called after the files are written, for the same events; null: none
+/// @throws like run() above, and whatever `beside` throws
 output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings, const RunOptions& options,
                     time::StepObserver* beside = nullptr);
 
-/// Goes on with a run from the checkpoint in its folder, to the same bits as without a break. What the run had written after the
-/// checkpoint is written anew.
-/// @returns          as run() does; nothing where the run is complete, and nothing is done unless `from` says otherwise
+/// Continues a run from the checkpoint in its folder, with bitwise the same results as without interruption. Files that
+/// the run had written after the checkpoint are written again.
 /// @param directory  of the run's files
 /// @param from       a checkpoint; empty: checkpoint/state in that folder
-/// @throws as run() does; SceneError where the folder, its scene or the checkpoint are not what they have to be
+/// @returns as run(); no value, and nothing done, if the run is complete and `from` is empty
+/// @throws like run(); SceneError if the folder, its scene or the checkpoint is unsuitable
 std::optional<output::Summary> resume(const std::filesystem::path& directory, const std::filesystem::path& from,
                                       const RunOptions& options);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The report of a run: one HTML file for a colleague, and its pictures and plots as files.
+/// The report of a run: one HTML file to pass on, and its pictures and plots as files.
 
 #include "osculate/output/output_folder.hpp"
 
@@ -10,7 +10,7 @@
 
 namespace osculate::app {
 
-/// A report that cannot be written, though the folder is that of a run.
+/// A report cannot be written, although the folder is that of a run.
 class ReportFailure : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -21,10 +21,10 @@ struct WrittenReport {
     std::vector<std::string> notes; ///< what the page leaves out and why, sentences
 };
 
-/// Writes report.html and the folder report/ (pictures; plots where gnuplot is installed) into the folder of a run, be it
-/// done, given up, killed or still going on. Files of an earlier report are replaced, no other file is touched.
-/// @throws SceneError where the folder is none of a run
-/// @throws ReportFailure with path and reason where a file cannot be read or written
+/// Writes report.html and the folder report/ (pictures; plots if gnuplot is installed) into the folder of a run,
+/// whether it has completed, failed, was killed or continues. Replaces files of an earlier report, and no other files.
+/// @throws SceneError if the folder is not that of a run
+/// @throws ReportFailure with path and reason if a file cannot be read or written
 [[nodiscard]] WrittenReport write_report(const std::filesystem::path& run_folder);
 
 /// The same from within the run.

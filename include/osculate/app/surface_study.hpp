@@ -18,19 +18,19 @@ struct StudyRow {
     double size = 0; ///< mean facet size, m
     study::Errors errors;
     Index fallbacks = 0;
-    double cpu_seconds = 0; ///< of making the surface and measuring it
+    double cpu_seconds = 0; ///< to build the surface and measure it
 };
 
 struct StudyResult {
     std::vector<StudyRow> rows; ///< surface by surface, mesh by mesh, methods in the order of the study
 
-    /// Row of a method on a mesh; InternalError when there is none.
+    /// Row of a method on a mesh; InternalError if there is none.
     [[nodiscard]] const StudyRow& row(const std::string& surface, int mesh, const std::string& method) const;
-    /// Meshes of every surface.
+    /// Number of meshes per surface.
     [[nodiscard]] int meshes() const;
 };
 
-/// A kind of error of a study, and what it is called.
+/// A kind of error in a study, and its name.
 struct ErrorKind {
     const char *name, *unit;
     study::ErrorMeasure study::Errors::*measure;
@@ -40,14 +40,14 @@ struct ErrorKind {
 /// Exponent p of error ~ size^p over the given rows: least squares of the logarithms.
 [[nodiscard]] double fitted_order(const std::vector<const StudyRow*>& rows, const ErrorKind& kind);
 
-/// @throws SceneError where the meshes of a file do not fit
+/// @throws SceneError if the meshes of a file do not fit
 [[nodiscard]] StudyResult run_surface_study(const scene::SurfaceStudy& study, int threads);
 
-/// What write_surface_study() may write.
+/// Files that write_surface_study() may write.
 [[nodiscard]] std::vector<std::string> surface_study_files(const scene::SurfaceStudy& study);
 
 /// Writes study.csv, study.md, study.gp and, with gnuplot, the plots study_<surface>.svg and .png.
-/// @returns what there is to say about the plots
+/// @returns a message about the plots
 std::string write_surface_study(const scene::SurfaceStudy& study, const StudyResult& result,
                                 output::OutputFolder& files);
 

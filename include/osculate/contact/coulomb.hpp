@@ -14,9 +14,9 @@ enum class Status : std::uint8_t { open, stick, slip, glide };
     return status != Status::open;
 }
 
-/// What the law needs to know of one slave node.
+/// Input of the law for one slave node.
 struct ContactState {
-    Vec3 lambda = Vec3::Zero(); ///< contact force on the slave node, N; lambda . n > 0 presses it off the master
+    Vec3 lambda = Vec3::Zero(); ///< contact force on the slave node, N; lambda . n > 0 pushes it away from the master
     double gap = 0;             ///< g, m
     Vec3 normal = Vec3::Zero(); ///< n, unit
     Vec3 drift = Vec3::Zero();  ///< d, displacement of the slave relative to the master since the start of the step, m
@@ -34,11 +34,11 @@ struct ContactResidual {
 ///     stick  |L_T| <= mu L_N       R = lambda - L_N n - L_T
 ///     slip   otherwise             R = lambda - L_N n - mu L_N L_T / |L_T|
 ///     glide  mu = 0                R = lambda - L_N n
-/// Exact:    v = lambda - c d, so that stick is c (g n + T d) = 0. R = 0 is then exactly p_N >= 0, g >= 0, p_N g = 0 and
-///           Coulomb's law; c > 0 (N/m) scales the rows, never the solution.
-/// Elastic:  v = lambda_start - k d: stick gives way by the small spring k. For slave nodes that are held or driven along a
-///           tangent: several of them sticking to one master facet would fix its motion more than once, and the
-///           tangent would be singular.
+/// Exact: v = lambda - c d, so that stick means c (g n + T d) = 0. Then R = 0 is exactly p_N >= 0, g >= 0, p_N g = 0
+/// and Coulomb's law; c > 0 (N/m) scales the rows, but does not change the solution.
+/// Elastic: v = lambda_start - k d: a soft spring k makes stick elastic. For slave nodes that are held or driven along
+/// a tangent: if several of them stuck to one master facet, they would constrain its motion more than once, and the
+/// tangent would be singular.
 class Coulomb {
 public:
     /// The exact law. @param mu coefficient of friction  @param c complementarity parameter, N/m
@@ -53,7 +53,7 @@ public:
     }
 
     [[nodiscard]] Status status(const ContactState& state) const;
-    /// Value and derivatives of the branch `status`, whether or not it is the one status() names.
+    /// Value and derivatives of the branch `status`, even if status() returns another one.
     [[nodiscard]] ContactResidual residual(const ContactState& state, Status status) const;
 
 private:

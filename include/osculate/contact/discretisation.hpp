@@ -1,5 +1,5 @@
 #pragma once
-/// How the slave nodes of a pair get their contact points: the one interface between a discretisation and the contact law.
+/// Computes the contact points of a pair's slave nodes: the one interface between a discretisation and the contact law.
 
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/master_surface.hpp"
@@ -11,27 +11,28 @@
 
 namespace osculate::contact {
 
-/// Positions of a pair, and what they are looked at with. Slaves and vertices, m; all of it outlives an evaluation.
+/// Positions of a pair, and the master and search to evaluate them with. All positions in m; all referenced data
+/// outlives an evaluation.
 struct PairPositions {
     const MasterSurface& master;
     const FacetSearch& search;
     std::span<const Vec3> slaves;         ///< of the slave nodes
     const std::vector<Vec3>& vertices;    ///< of the master surface
-    std::span<const Vec3> slave_tails{};  ///< the last digits that `slaves` lack, m; empty: none
-    std::span<const Vec3> vertex_tails{}; ///< the same of `vertices`
+    std::span<const Vec3> slave_tails{};  ///< rounding errors of `slaves`, m; empty: none
+    std::span<const Vec3> vertex_tails{}; ///< rounding errors of `vertices`
 };
 
-/// Which facet each slave node is above, and how often that has changed within an attempt.
+/// The facet of each slave node, and the number of its changes during an attempt.
 struct FacetTracking {
     double hysteresis = 0;        ///< of the facet size, see FacetSearch::track
-    int changes_before_latch = 0; ///< after so many changes a point stays where it is: it is on an edge
+    int changes_before_latch = 0; ///< number of changes after which a point keeps its facet: it is on an edge
     std::vector<Index> facet;     ///< (slaves) -1: none
     std::vector<int> changes;     ///< (slaves)
     std::vector<FacetHit> hits;   ///< (slaves) closest point on that facet
 };
 
-/// Contact points of all slave nodes at one set of positions, and their variations. As made by compile it holds what is fixed
-/// for a run; a clone, which is evaluated, is of one attempt.
+/// Contact points of all slave nodes at one set of positions, and their variations. The object made by compile holds
+/// data that is fixed for a run; its clones, which are evaluated, each belong to one attempt.
 class Discretisation {
 public:
     virtual ~Discretisation() = default;
@@ -39,11 +40,11 @@ public:
 
     /// Opens an attempt at the positions of its start.
     virtual void begin(const PairPositions& at, const FacetTracking& tracking, int threads) = 0;
-    /// Fills the points of all slave nodes, tracked to the facets of `tracking`, which may latch more of them.
-    /// @returns how many points of its own have changed their facet
+    /// Computes the points of all slave nodes on the facets in `tracking`; may latch more of them there.
+    /// @returns number of its own points that changed their facet
     virtual int evaluate(const PairPositions& at, FacetTracking& tracking, std::vector<ContactPoint>& points,
                          int threads) = 0;
-    /// Makes ready what vary() needs at the positions of the last evaluate(), for the slave nodes that are `wanted`.
+    /// Prepares vary() at the positions of the last evaluate(), for the slave nodes that are `wanted`.
     virtual void prepare_variations(const PairPositions& at, std::span<const char> wanted, int threads) {
         (void)at, (void)wanted, (void)threads;
     }
@@ -51,22 +52,23 @@ public:
     virtual void vary(Index j, const PairPositions& at, const FacetHit& hit, const ContactPoint& point,
                       ContactVariation& variation) const = 0;
 
-    /// How many of the nodes of point j carry force: the first ones. The others only bear on the gap.
+    /// Number of nodes of point j that carry force: the first ones. The others affect only the gap.
     [[nodiscard]] virtual Index carriers(Index j, const ContactPoint& point) const = 0;
-    /// Change of the forces on the carriers, (3m), for a force lambda on slave j, from that of the normal and, over the
-    /// carriers, of weights (m) and pressing (3m, where the variation has it).
+    /// Change of the forces on the carriers, (3m), for a force lambda on slave j, from the changes of the normal and,
+    /// over the carriers, of weights (m) and pressing (3m, if the variation has it).
     virtual void force_change(const ContactPoint& point, const Vec3& lambda, const Vec3& dn,
                               std::span<const double> dweights, const double* dpressing, double* df) const = 0;
-    /// Change of weights and pressing along dy, as force_change() takes them.
+    /// Changes of weights and pressing along dy, in the form for force_change().
     virtual void weights_along(const ContactPoint& point, const ContactVariation& variation, const Vector& dy,
                                Vector& dweights, Vector& dpressing) const = 0;
-    /// What the gap of point j lacks, m, by the tails of the positions of the last evaluate(): so small that first variations
-    /// are exact.
+    /// Rounding error of the gap of point j, m, from the tails of the positions of the last evaluate(): so small that
+    /// first variations are exact.
     [[nodiscard]] virtual double gap_rounded_off(Index j, const PairPositions& at, const ContactPoint& point) const = 0;
-    /// Vertices by which the master moves below slave j, and their shares, for what needs few of them.
+    /// Vertices that describe the motion of the master below slave j, and their shares, for callers that need only a
+    /// few vertices.
     virtual void follow(const FacetHit& hit, const ContactPoint& point, Index carried, std::vector<Index>& vertices,
                         std::vector<double>& shares) const = 0;
-    /// Whether a slave node without a point may lie inside the master all the same, since no average sees it.
+    /// Whether a slave node without a point may still be inside the master, because no average detects it.
     [[nodiscard]] virtual bool overlooks() const { return false; }
 };
 

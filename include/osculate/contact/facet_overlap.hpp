@@ -1,5 +1,5 @@
 #pragma once
-/// Where a slave facet and a master facet lie over each other, as points to integrate at.
+/// Overlap of a slave facet and a master facet, as integration points.
 
 #include "osculate/core/types.hpp"
 
@@ -9,27 +9,27 @@
 
 namespace osculate::contact {
 
-/// One point of an overlap: on the slave facet, and where the line through it along the slave plane's normal meets the
-/// master facet.
+/// One point of an overlap: on the slave facet, and on the master facet where the line through it along the normal of
+/// the slave plane meets that facet.
 struct OverlapPoint {
     Vec2 xi = Vec2::Zero(); ///< natural coordinates on the slave facet, as in FacetPatch
     Vec2 u = Vec2::Zero();  ///< natural coordinates on the master facet
     double area = 0;        ///< weight: area in the slave plane, m^2
 };
 
-/// The plane of a slave facet: through its centre, normal to its vector area.
+/// The plane of a slave facet: through its centre, normal to its area vector.
 class SlavePlane {
 public:
     /// @param corners (3 or 4) positions, counter-clockwise seen from outside
     explicit SlavePlane(std::span<const Vec3> corners);
 
     [[nodiscard]] const Vec3& normal() const { return normal_; } ///< unit, out of the slave
-    [[nodiscard]] double area() const { return area_; }          ///< of the facet seen along the normal, m^2
+    [[nodiscard]] double area() const { return area_; }          ///< area of the facet projected along the normal, m^2
     [[nodiscard]] Vec2 operator()(const Vec3& x) const { return {e1_.dot(x - centre_), e2_.dot(x - centre_)}; }
 
-    /// Points that integrate over the overlap of the two facets, projected along the normal: exactly for polynomials of
-    /// degree 4. Nothing where they do not overlap, or where the master facet does not face the slave.
-    /// @param master (3 or 4) corners of the master facet
+    /// Integration points of the overlap of the two facets, projected along the normal. They are exact for polynomials
+    /// of degree 4. Empty if the facets do not overlap, or if the master facet does not face the slave.
+    /// @param master  (3 or 4) corners of the master facet
     [[nodiscard]] std::vector<OverlapPoint> overlap(std::span<const Vec3> master) const;
 
 private:
@@ -38,7 +38,7 @@ private:
     double area_ = 0;
 };
 
-/// Natural coordinates of point p in a plane triangle or quadrilateral; nothing where the iteration fails.
+/// Natural coordinates of point p in a plane triangle or quadrilateral; no value if the iteration fails.
 [[nodiscard]] std::optional<Vec2> natural_coordinates(std::span<const Vec2> corners, const Vec2& p);
 
 } // namespace osculate::contact

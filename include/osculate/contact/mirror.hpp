@@ -1,5 +1,5 @@
 #pragma once
-/// Symmetry planes of a master surface: mirrored facets carry its patches on past the plane.
+/// Symmetry planes of a master surface: mirrored facets continue its patches past the plane.
 
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/mesh.hpp"
@@ -21,18 +21,18 @@ struct Image {
     [[nodiscard]] Vec3 operator()(const Vec3& x) const { return M * x + t; }
 };
 
-/// A surface with its mirror images. Nodes below `original.size()` of the nodes given are themselves; the ghosts follow.
+/// A surface with its mirror images. The given nodes come first and are themselves; the ghost nodes follow.
 struct MirroredSurface {
-    std::vector<mesh::Facet> facets; ///< those given first, then the mirrored ones, oriented alike
+    std::vector<mesh::Facet> facets; ///< the given facets, then the mirrored ones, with the same orientation
     std::vector<Vec3> positions;     ///< of nodes and ghosts
-    std::vector<Index> original;     ///< node that each node or ghost stands for
+    std::vector<Index> original;     ///< node of which each node or ghost is an image
     std::vector<Index> image;        ///< into images
     std::vector<Image> images{Image{}};
 };
 
-/// Mirrors the facets at the planes, again and again between parallel ones, six rings of facets far and no farther than
-/// `depth` (m) from the nearest plane; corners between planes are filled too. Nodes on a plane are their own image. Facets
-/// that lie in a plane are not mirrored.
+/// Mirrors the facets at the planes, repeatedly between parallel ones, up to six rings of facets and no farther than
+/// `depth` (m) from the nearest plane; also fills corners between planes. Nodes on a plane are their own image. Facets
+/// in a plane are not mirrored.
 [[nodiscard]] MirroredSurface mirror(const std::vector<mesh::Facet>& facets, const std::vector<Vec3>& X,
                                      const std::vector<SymmetryPlane>& planes, double depth);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Contact averaged over the slave facets with dual shape functions, in place of contact at the slave nodes.
+/// Contact averaged over the slave facets with dual shape functions, instead of contact at the slave nodes.
 
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/discretisation.hpp"
@@ -24,9 +24,9 @@ struct SlaveFacet {
     [[nodiscard]] const Index* end() const { return node.data() + count; }
 };
 
-/// A smooth surface through the slave nodes, so that a curved slave is not taken for its chords.
+/// A smooth surface through the slave nodes, so that a curved slave is not represented by its chords.
 struct SmoothSlave {
-    std::unique_ptr<mesh::HalfEdgeSurface> surface; ///< the slave facets in their order, then mirror images of some
+    std::unique_ptr<mesh::HalfEdgeSurface> surface; ///< the slave facets in their order, then some mirror images
     std::unique_ptr<MasterSurface> shape;
     std::vector<Vec3> X;      ///< (vertices) reference positions
     std::vector<Index> node;  ///< (vertices) slave node
@@ -36,33 +36,36 @@ struct SmoothSlave {
 /// Mortar weighting: every slave node j has the dual shape functions psi_j of its facets,
 ///     psi = A N,  A = D M^-1,  M = int N N^T dA,  D = diag(int N dA),  so that  int psi_j N_k dA = delta_jk D_j,
 /// and its contact point is an average with them over the reference area of those facets,
-///     gap      g_j = int psi_j g dA / D_j                     normal  n_j = N_j / |N_j|,  N_j = int psi_j n dA / D_j
-///     weights  W_ji = int psi_j N_i dA / D_j                  a force lambda on node j loads master node i with -W_ji lambda.
-/// Gap and normal are those of the master surface, from one evaluation at each point of a rule on the slave facet, or on
-/// the smooth surface through the slave nodes: positions sum_k C_k s_k with constant C, m. The weights are the shape
-/// functions N_i of the master's facets, so that a constant pressure meets the master as the loads that its elements take
-/// for constant: the patch test. They have kinks, and are integrated over the overlaps of slave and master facets.
+///     gap      g_j = int psi_j g dA / D_j               normal  n_j = N_j / |N_j|,  N_j = int psi_j n dA / D_j
+///     weights  W_ji = int psi_j N_i dA / D_j           a force lambda on node j loads master node i with -W_ji lambda.
+/// Gap and normal are those of the master surface, from one evaluation at each point of a rule on the slave facet, or
+/// on the smooth surface through the slave nodes: positions sum_k C_k s_k with constant C, m. The weights are the shape
+/// functions N_i of the master's facets, so that the master receives a constant pressure as the nodal loads that its
+/// elements balance with constant stress: the patch test. They have kinks, and are integrated over the overlaps of
+/// slave and master facets.
 ///
-/// Facets that lie over the master in part are averaged over that part, with dual functions made for it.
-/// In ContactPoint::nodes, numbers from surface.vertex_count() on are slave nodes, counted from there: the other nodes of
-/// the facets of j, which its gap depends on. The nodes that carry force come first, carriers(j) of them.
+/// Slave facets that are only partly above the master are averaged over that part, with dual functions made for it. In
+/// ContactPoint::nodes, numbers from surface.vertex_count() on are slave nodes, counted from there: the other nodes of
+/// the facets of j, on which its gap depends. The nodes that carry force come first, carriers(j) of them.
 /// After Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012; Popp et al., Int. J. Numer. Meth. Eng. 83 (2010) 1428-1465.
 class Mortar final : public Discretisation {
 public:
-    /// @param surface  topology of the master
-    /// @param facets   slave facets            @param S  (slaves) reference positions of the slave nodes
-    /// @param in_plane (slaves) projectors on the symmetry planes that slave nodes lie on; empty: there are none
-    /// @param smooth   null: the slave facets as they are
+    /// @param surface   topology of the master
+    /// @param facets    slave facets
+    /// @param S         (slaves) reference positions of the slave nodes
+    /// @param in_plane  (slaves) projectors on the symmetry planes of each slave node; empty: no such planes
+    /// @param smooth    null: use the slave facets themselves
     Mortar(const mesh::HalfEdgeSurface& surface, const std::vector<SlaveFacet>& facets, const std::vector<Vec3>& S,
            std::vector<Mat3> in_plane, const SmoothSlave* smooth = nullptr);
 
     [[nodiscard]] std::unique_ptr<Discretisation> clone() const override;
-    /// Puts the points of every slave facet over their closest master facets, found from those of the nodes.
+    /// Assigns the points of every slave facet to their closest master facets, found from those of the nodes.
     void begin(const PairPositions& at, const FacetTracking& tracking, int threads) override;
     int evaluate(const PairPositions& at, FacetTracking& tracking, std::vector<ContactPoint>& points,
                  int threads) override;
     void prepare_variations(const PairPositions& at, std::span<const char> wanted, int threads) override;
-    /// dweights has the rows of the carriers; dpressing is left alone, as all of a force goes by the weights.
+    /// dweights has the rows of the carriers; dpressing is not set, because all of a force is distributed by the
+    /// weights.
     void vary(Index j, const PairPositions& at, const FacetHit& hit, const ContactPoint& point,
               ContactVariation& variation) const override;
     [[nodiscard]] Index carriers(Index j, const ContactPoint& point) const override;
@@ -70,7 +73,7 @@ public:
                       const double* dpressing, double* df) const override;
     void weights_along(const ContactPoint& point, const ContactVariation& variation, const Vector& dy, Vector& dweights,
                        Vector& dpressing) const override;
-    /// Positions of the points of slave facets are rounded themselves.
+    /// Includes the rounding errors of the positions of the points on slave facets.
     [[nodiscard]] double gap_rounded_off(Index j, const PairPositions& at, const ContactPoint& point) const override;
     void follow(const FacetHit& hit, const ContactPoint& point, Index carried, std::vector<Index>& vertices,
                 std::vector<double>& shares) const override;
@@ -84,14 +87,14 @@ private:
         Index slave;
         Mat3 C;
     };
-    /// A point that the gap is averaged from, at  offset + sum C s  =  s_0 + sum C (s - s_0) without mirror images.
+    /// A point from which the gap is averaged, at  offset + sum C s  =  s_0 + sum C (s - s_0) without mirror images.
     struct GapPoint {
         Vec2 xi = Vec2::Zero();
         Row4 N = Row4::Zero();
         std::vector<Share> shares;
         Vec3 offset = Vec3::Zero(); ///< of mirror images
         bool mirrored = false;
-        Vec3 tail = Vec3::Zero(); ///< what rounding took off its position
+        Vec3 tail = Vec3::Zero(); ///< rounding error of its position, m
         double weight = 0;        ///< reference area
         Index facet = -1;
         int changes = 0;
@@ -102,7 +105,7 @@ private:
         Index facet = -1; ///< of the master
         std::vector<OverlapPoint> points;
     };
-    /// Linear map of shape functions to dual ones, and what they integrate to.
+    /// Linear map from shape functions to dual ones, and the integrals D.
     struct Dual {
         bool usable = false;
         Square A;
@@ -115,8 +118,8 @@ private:
         std::vector<GapPoint> gap_points;
         std::vector<Overlap> overlaps;
         Dual gap_dual, weight_dual;
-        std::vector<Index> gap_slaves; ///< those that share in its points, ascending
-        // variations by y, slave nodes first, then vertices: of the gap by gap_slaves, of the weights by the corners
+        std::vector<Index> gap_slaves; ///< slave nodes that affect its points, ascending
+        // Variations by y, slave nodes first, then vertices: of the gap by gap_slaves, of the weights by the corners.
         std::vector<Index> gap_vertices, weight_vertices;
         Matrix dgap;     ///< (corners x 3y)
         Matrix dnormal;  ///< (3 corners x 3y)
@@ -135,10 +138,10 @@ private:
     void gather(Index j, const std::vector<Vec3>& x, ContactPoint& point);
     void vary_gap(Facet& facet, const PairPositions& at) const;
     void vary_weights(Facet& facet, const PairPositions& at) const;
-    /// Sum of D_j over the facets whose gaps, or whose weights, count.
+    /// Sum of D_j over the facets with gaps, or with weights.
     [[nodiscard]] double gap_area(Index j) const;
     [[nodiscard]] double weight_area(Index j) const;
-    /// Area of the reference facet for a unit of natural coordinates, m^2.
+    /// Area of the reference facet per unit of natural coordinates, m^2.
     [[nodiscard]] static double reference_area(const Facet& facet, const Vec2& xi);
 
     const mesh::HalfEdgeSurface& surface_;

@@ -16,11 +16,11 @@ struct Foot {
     PatchPoint point;
 };
 
-/// Newton iteration of eq (25) with K_ab = X,a . X,b - (s - X) . X,ab, falling back to the metric X,a . X,b where K is not
-/// positive definite; a step is at most one node distance long. Ends after the step that follows one below 1e-6 node
-/// distances: with quadratic convergence that is far below 1e-11, which is checked.       [Qian 2014, eq (25)]
+/// Newton iteration of eq (25) with K_ab = X,a . X,b - (s - X) . X,ab; uses the metric X,a . X,b if K is not positive
+/// definite. A step is at most one node distance long. Ends after the step that follows one below 1e-6 node distances:
+/// with quadratic convergence that is far below 1e-11, which is checked.                           [Qian 2014, eq (25)]
 /// @param hopeless  hopeless(u, step) after each step that was not shortened: true ends the iteration without a foot
-/// @returns nothing when it does not converge: s is then near a centre of curvature or far off the patch.
+/// @returns no value without convergence: s is then near a centre of curvature or far off the patch.
 template <class Patch, class Hopeless>
 [[nodiscard]] std::optional<Foot> project(const Patch& patch, const MatrixX3& coefficients, const Vec3& s, Vec2 u,
                                           const Hopeless& hopeless) {
@@ -68,7 +68,7 @@ template <class Patch>
 }
 
 /// Gap, normal, foot and weights of `point` from the foot of s; p_i = -Phi_i n.
-/// @returns false where s lies beyond 0.8 of the smallest radius of curvature on the hollow side: no unique foot.
+/// @returns false if s is beyond 0.8 of the smallest radius of curvature on the concave side: no unique foot.
 template <class Patch>
 [[nodiscard]] bool locate(const Patch& patch, const Foot& foot, const Vec3& s, ContactPoint& point) {
     const PatchPoint& p = foot.point;

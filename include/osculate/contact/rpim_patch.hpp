@@ -14,12 +14,12 @@ struct ReferencePlane {
     Vec3 origin = Vec3::Zero();
     Matrix32 axes = Matrix32::Zero();
 
-    /// Plane with unit normal n, turned from the x1x2 plane by the shortest rotation.         [Qian 2014, eq (20)]
+    /// Plane with unit normal n, rotated from the x1x2 plane by the shortest rotation.             [Qian 2014, eq (20)]
     [[nodiscard]] static ReferencePlane through(const Vec3& origin, const Vec3& n);
     /// Orthogonal projection of x, metres.                                                    [Qian 2014, eq (21)]
     [[nodiscard]] Vec2 tangential(const Vec3& x) const { return axes.transpose() * (x - origin); }
-    /// The same direction, with the length of x - origin kept: an azimuthal equidistant chart. Strongly turned patches
-    /// do not fold, and normals come out several times more accurate than with eq (21).
+    /// The same direction, but with the length of x - origin: an azimuthal equidistant chart. Strongly curved patches
+    /// do not fold, and normals are several times more accurate than with eq (21).
     [[nodiscard]] Vec2 equal_length(const Vec3& x) const;
 };
 
@@ -30,8 +30,8 @@ class RpimPatch {
 public:
     /// @param u      (n x 2) natural coordinates, m; at least three, not on one line
     /// @param basis  radial function
-    /// @param m      terms of the polynomial basis, 3 or 6; 6 falls back to 3 where the nodes do not determine a quadratic
-    /// @returns nothing when the nodes do not even determine a plane, or two of them coincide.      Cost O(n^3).
+    /// @param m      terms of the polynomial basis, 3 or 6; 6 falls back to 3 if the nodes do not determine a quadratic
+    /// @returns no value if the nodes do not even determine a plane, or two of them coincide. Cost O(n^3).
     [[nodiscard]] static std::optional<RpimPatch> fit(const MatrixX2& u, const Multiquadric& basis, int m);
 
     [[nodiscard]] Index size() const { return static_cast<Index>(t_.rows()); }

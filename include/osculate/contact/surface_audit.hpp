@@ -1,5 +1,5 @@
 #pragma once
-/// Looks for bodies inside one another, or inside themselves, by the geometry of their facets alone.
+/// Detects bodies that penetrate each other or themselves, from the geometry of their facets alone.
 
 #include "osculate/mesh/mesh.hpp"
 
@@ -8,44 +8,45 @@
 
 namespace osculate::contact {
 
-/// The deepest place at which one body lies inside another, or has gone through itself.
+/// The deepest place at which one body is inside another, or has passed through itself.
 struct Intrusion {
-    Index body = -1;  ///< whose node or edge it is
-    Index other = -1; ///< that it lies in; `body` itself where a body passes through itself
-    Index node = -1;  ///< global; where it is an edge that lies inside, one of its ends
+    Index body = -1;  ///< the body of the node or edge
+    Index other = -1; ///< the body that contains it; `body` itself for self-penetration
+    Index node = -1;  ///< global; for an edge, one of its ends
     bool edge = false;
     Vec3 place = Vec3::Zero();
     double depth = 0;  ///< distance to the surface of `other`, m
-    double excess = 0; ///< depth less the sagitta of the facets there, >= 0, m
+    double excess = 0; ///< depth minus the sagitta of the facets there, >= 0, m
     double length = 1; ///< size of the larger of the facets that meet there, m
 
-    /// In facets.
+    /// Excess in facet sizes.
     [[nodiscard]] double relative() const { return excess / length; }
 };
 
-/// What an audit found: per pair of bodies that lie inside one another the deepest place, ascending by their numbers, and
-/// nodes that lie inside a body with their excess, ascending.
+/// Result of an audit: for each pair of bodies that penetrate each other the deepest place, ascending by their numbers;
+/// and nodes inside a body with their excess, ascending.
 struct AuditResult {
     std::vector<Intrusion> intrusions;
     std::vector<std::pair<Index, double>> nodes;
 
-    /// With the largest relative(); null where nothing lies inside anything.
+    /// The intrusion with the largest relative(); null if there are none.
     [[nodiscard]] const Intrusion* worst() const;
-    /// Largest excess between two bodies, m; 0 where there is none.
+    /// Largest excess between two bodies, m; 0 if there is none.
     [[nodiscard]] double between(Index body, Index other) const;
 };
 
-/// The outer surfaces of all bodies. Two closed surfaces that do not touch lie inside one another only where an edge of one
-/// goes through a facet of the other, or where one contains the other whole: both are looked for among near pairs, found
-/// by R-trees over the current boxes. From the ends of such edges the nodes inside are found neighbour by neighbour; their
-/// depth is the distance to the closest facet, its side told by the normal there. An edge with both ends outside is as deep
-/// as the middle between where it enters and leaves. No contact status, pair or gap is asked.
+/// The outer surfaces of all bodies. Two closed surfaces that do not touch penetrate each other only if an edge of one
+/// crosses a facet of the other, or if one contains the other completely. Both cases are searched among near pairs,
+/// found by R-trees over the current boxes. From the ends of such edges the nodes inside are found neighbour by
+/// neighbour; their depth is the distance to the closest facet, with the side from the normal there. An edge with both
+/// ends outside is as deep as the midpoint between its entry and exit. Contact status, pairs and gaps are not used.
 ///
-/// Facets are chords: smooth surfaces bulge over them by the sagitta h theta/8, theta the turn of the normal over a facet of
-/// size h. Where facets of unlike size h meet surfaces of curvature theta_a/h_a and theta_b/h_b, nodes may lie
+/// Facets are chords: smooth surfaces bulge beyond them by the sagitta h theta/8, where theta is the rotation of the
+/// normal over a facet of size h. If facets of different size h meet surfaces of curvature theta_a/h_a and theta_b/h_b,
+/// nodes may be
 ///     s = h^2/8 (theta_a/h_a + theta_b/h_b) + w,   h = max(h_a, h_b)
-/// deep in facets while the surfaces just touch, w the height by which a quadrilateral is warped. Turns of more than 40
-/// degrees are edges, and have none.
+/// deep in facets while the surfaces just touch, where w is the warping height of a quadrilateral. Rotations of more
+/// than 40 degrees are edges, without sagitta.
 class SurfaceAudit {
 public:
     /// @param bodies  outer facets of each body, global nodes, normals outward
@@ -53,7 +54,7 @@ public:
     SurfaceAudit(const std::vector<std::vector<mesh::Facet>>& bodies, const std::vector<Vec3>& X);
     ~SurfaceAudit();
 
-    /// At positions x of all nodes.
+    /// Audits positions x of all nodes.
     [[nodiscard]] AuditResult examine(const std::vector<Vec3>& x) const;
 
 private:

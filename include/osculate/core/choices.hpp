@@ -1,12 +1,12 @@
 #pragma once
-/// Choices that a scene names and numerics make, spelled as in the scene.
+/// Choices that a scene makes and that numerical code uses. The names are those in scenes.
 
 namespace osculate {
 
-/// How a hexahedron keeps from locking. `full`: not at all. `b_bar`: a mean dilatation, against near incompressibility;
-/// too soft in bending with a single element through the thickness; F-bar at finite strain. `incompatible_modes`:
-/// internal bending modes, against locking in bending, and in near incompressibility too as long as elements are not badly
-/// distorted; small strain only.
+/// How a hexahedron avoids locking. `full`: not at all. `b_bar`: mean dilatation, against locking in near
+/// incompressibility; a single element through the thickness is too soft in bending; at finite strain this is F-bar.
+/// `incompatible_modes`: internal bending modes, against locking in bending, and also in near incompressibility unless
+/// elements are badly distorted; small strain only.
 enum class HexFormulation { full, b_bar, incompatible_modes };
 
 /// Where contact acts: at the slave nodes, or spread over the slave facets.
@@ -20,11 +20,11 @@ enum class PatchCoordinates {
 
 /// How Newton's linear systems are solved.
 enum class LinearSolver {
-    automatic, ///< multigrid for many nodes, else condensed where that costs less, else iterative
-    condensed, ///< linear::CondensedTangent, where bodies are linear and nothing follows; else iterative
+    automatic, ///< multigrid for many nodes, else condensed if that costs less, else iterative
+    condensed, ///< linear::CondensedTangent, if bodies are linear and no pressure follows its faces; else iterative
     iterative, ///< GMRES with the whole tangent and linear::ContactPreconditioner, factorised
-    multigrid, ///< the same, the preconditioner by multigrid
-    direct     ///< the tangent factorised in every iteration
+    multigrid, ///< the same, but the preconditioner is inverted by multigrid
+    direct     ///< factorises the tangent in every iteration
 };
 
 } // namespace osculate

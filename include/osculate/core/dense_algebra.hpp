@@ -1,12 +1,12 @@
 #pragma once
-/// Decompositions of small dense matrices, compiled once: Eigen's templates for them take most of a minute of every file that
-/// instantiates them.
+/// Decompositions of small dense matrices, compiled once: a file that instantiates Eigen's templates for them takes
+/// most of a minute longer to compile.
 
 #include "osculate/core/types.hpp"
 
 namespace osculate {
 
-/// Moore and Penrose's inverse (n x m) of A (m x n), by a complete orthogonal decomposition.
+/// Moore-Penrose inverse (n x m) of A (m x n), by a complete orthogonal decomposition.
 [[nodiscard]] Matrix pseudo_inverse(const Matrix& A);
 /// x (n) of least norm that minimises |A x - b|, A (m x n), b (m).
 [[nodiscard]] Vector least_squares(const Matrix& A, const Vector& b);

@@ -1,5 +1,5 @@
 #pragma once
-/// The three ways a run can end badly, one type each; the command line maps them to exit codes 2, 3 and 4.
+/// The three kinds of error that end a run, one type each; the command line maps them to exit codes 2, 3 and 4.
 
 #include <stdexcept>
 #include <string>
@@ -7,20 +7,20 @@
 
 namespace osculate {
 
-/// One fault of a scene, with everything a reader needs to mend it. Empty members are left out of the message.
+/// One fault of a scene, with everything that a user needs to correct it. The message leaves out empty members.
 struct Fault {
     std::string file;
     int line = 0; ///< 1-based; 0 where the fault has no place in the file
     int column = 0;
     std::string key;      ///< dotted key path, "contact.sliding.friction"
-    std::string expected; ///< what would have been right
-    std::string found;    ///< what stood there
-    std::string nearest;  ///< the nearest known key or name, when there is one
+    std::string expected; ///< what would be correct
+    std::string found;    ///< what the scene contains
+    std::string nearest;  ///< the most similar known key or name, if there is one
 
     [[nodiscard]] std::string message() const;
 };
 
-/// A scene that cannot be run. Carries every fault found, never only the first.                         [exit code 2]
+/// A scene that cannot be run. Contains every fault found, not only the first.                            [exit code 2]
 class SceneError : public std::runtime_error {
 public:
     explicit SceneError(std::vector<Fault> faults);
@@ -30,7 +30,7 @@ private:
     std::vector<Fault> faults_;
 };
 
-/// A run that gave up for a named physical or numerical cause; frames written so far are kept.          [exit code 3]
+/// A run that failed for a known physical or numerical reason; frames written so far are kept.            [exit code 3]
 class RunFailure : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -6,7 +6,8 @@
 
 namespace osculate {
 
-/// Text for HTML and XML, within elements and within quoted attributes; characters that end or break a page are gone.
+/// Escapes text for HTML and XML, within elements and within quoted attributes; removes characters that end or break a
+/// page.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 } // namespace osculate

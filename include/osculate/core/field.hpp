@@ -1,5 +1,5 @@
 #pragma once
-/// A vector at every node of all bodies, with the sums and largest values that decisions are made from.
+/// A vector at every node of all bodies, with the sums and maxima on which decisions are based.
 
 #include "osculate/core/types.hpp"
 
@@ -8,9 +8,9 @@
 
 namespace osculate {
 
-/// Displacements, velocities, positions, forces: three components at each node, a plain value. What is summed up or compared
-/// over the nodes is so here and nowhere else, in the order of the nodes, so that there is one place to add up what several
-/// processes own. Geometry, which asks for single points, takes it as the list that it is.
+/// Displacements, velocities, positions, forces: three components at each node, a plain value. All sums and comparisons
+/// over the nodes are made here, in the order of the nodes. So there is one place to add up contributions when several
+/// processes own the nodes. Geometry code needs single points only and takes the field as a list.
 class Field {
 public:
     Field() = default;
@@ -31,7 +31,7 @@ public:
     [[nodiscard]] auto end() const noexcept { return values_.end(); }
     void assign(std::size_t nodes, const Vec3& value) { values_.assign(nodes, value); }
     void clear() noexcept { values_.clear(); }
-    /// Zero at every one of so many nodes.
+    /// Sets the field to zero at `nodes` nodes.
     void reset(std::size_t nodes) { values_.assign(nodes, Vec3::Zero()); }
     [[nodiscard]] bool operator==(const Field&) const = default;
 
@@ -44,7 +44,7 @@ private:
     std::vector<Vec3> values_;
 };
 
-/// A value over all nodes, and the first node that has it; -1: no node.
+/// A value found over all nodes, and the first node that has it; -1: no node.
 struct AtNode {
     double value = 0;
     Index node = -1;
@@ -56,7 +56,7 @@ template <class Value, class F> [[nodiscard]] Value sum_over(Index nodes, Value 
     return start;
 }
 
-/// Largest f(node) over all nodes that is above `least`.
+/// Largest f(node) over all nodes if it is above `least`; otherwise `least` and node -1.
 template <class F> [[nodiscard]] AtNode largest_over(Index nodes, F&& f, double least = 0) {
     AtNode largest{least, -1};
     for (Index node = 0; node < nodes; ++node)
@@ -68,7 +68,7 @@ template <class F> [[nodiscard]] AtNode largest_over(Index nodes, F&& f, double 
 [[nodiscard]] double dot(const Field& a, const Field& b);
 /// Euclidean norm over all components.
 [[nodiscard]] double norm(const Field& a);
-/// Largest component, in absolute value; NaN counts for nothing.
+/// Largest component, in absolute value; NaN is ignored.
 [[nodiscard]] double largest_component(const Field& a);
 /// Largest |a - b|.
 [[nodiscard]] AtNode largest_distance(const Field& a, const Field& b);

@@ -8,10 +8,10 @@
 namespace osculate {
 
 /// All bytes of a file, which may be a pipe.
-/// @param error  why the file cannot be opened or read to its end; what comes back are then the bytes before that
+/// @param error  why the file cannot be opened or read to its end; the result is then the bytes before that point
 [[nodiscard]] std::string file_content(const std::filesystem::path& path, std::error_code& error);
 
-/// The same where a file that cannot be read counts as an empty one.
+/// The same, but a file that cannot be read counts as empty.
 [[nodiscard]] std::string file_content(const std::filesystem::path& path);
 
 } // namespace osculate

@@ -11,7 +11,8 @@
 namespace osculate {
 
 /// Calls body(begin, end) on contiguous chunks of [0, n). Every item must write only its own results: then the result
-/// is bitwise the same for any number of threads. The first exception of a chunk is rethrown after all have ended.
+/// is bitwise the same for any number of threads. After all chunks have ended, rethrows the exception of the first
+/// chunk that threw.
 template <class Body> void parallel_for(int threads, Index n, Body&& body) {
     const Index smallest_chunk = 32; // below this a thread costs more than it saves
     const Index chunks = std::clamp<Index>(n / smallest_chunk, 1, std::max(threads, 1));
@@ -32,14 +33,14 @@ template <class Body> void parallel_for(int threads, Index n, Body&& body) {
         if (error) std::rethrow_exception(error);
 }
 
-/// One of several passes over the same items, each of which writes only what belongs to it.
+/// One of several passes over the same items; each pass writes only the results that it owns.
 struct Lane {
     Index index = 0, count = 1;
     [[nodiscard]] bool owns(Index owner) const { return owner % count == index; }
 };
 
-/// Calls body(lane) for every lane, each on its own thread. Whatever has one owner is written in the order of the items,
-/// so that sums are bitwise the same for any number of threads.
+/// Calls body(lane) for every lane, each on its own thread. Each result has one owner, which writes it in the order of
+/// the items, so that sums are bitwise the same for any number of threads.
 template <class Body> void parallel_lanes(int threads, Body&& body) {
     const Index lanes = std::max(threads, 1);
     if (lanes == 1) return body(Lane{});

@@ -1,11 +1,12 @@
 #pragma once
-/// A sum and what its rounding takes off.
+/// A sum and its rounding error.
 
 #include "osculate/core/types.hpp"
 
 namespace osculate {
 
-/// a + b = sum + what is returned, exactly (Knuth). The compiler may not contract or reassociate, see cmake/Options.cmake.
+/// Returns the rounding error of the sum: a + b = sum + result, exactly (Knuth). The compiler must not contract or
+/// reassociate, see cmake/Options.cmake.
 inline double rounded_off(double a, double b, double& sum) {
     sum = a + b;
     const double of_b = sum - a, of_a = sum - of_b;

@@ -1,5 +1,5 @@
 #pragma once
-/// Threads that wait for work, so that a loop of a tenth of a millisecond is worth sharing.
+/// Threads that wait for work, so that sharing is worthwhile even for a loop of a tenth of a millisecond.
 
 #include "osculate/core/types.hpp"
 
@@ -7,9 +7,10 @@
 
 namespace osculate {
 
-/// Calls task(i) for i in [0, count), task 0 on the calling thread, the others on one thread each, with the caller's
-/// floating-point environment; returns when all have ended. Threads are started when first needed and live as long as the
-/// process. Calls from within a task, and those that find the threads at work for another caller, run one task after another.
+/// Calls task(i) for i in [0, count): task 0 on the calling thread, each other task on a thread of its own, with the
+/// caller's floating-point environment. Returns when all have ended. Threads are started when first needed and live as
+/// long as the process. Calls from within a task, and calls while the threads work for another caller, run their tasks
+/// one after another.
 /// @pre task throws nothing
 void run_side_by_side(Index count, const std::function<void(Index)>& task);
 

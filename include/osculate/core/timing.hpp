@@ -1,5 +1,5 @@
 #pragma once
-/// Wall time by part of a run, for summary.json.
+/// Wall time of each part of a run, for summary.json.
 
 #include <array>
 #include <chrono>
@@ -19,7 +19,7 @@ private:
     std::array<double, static_cast<std::size_t>(Part::count)> seconds_{};
 };
 
-/// Adds the lifetime of this object to one part.
+/// Adds its own lifetime to the time of one part.
 class ScopedTimer {
 public:
     ScopedTimer(Timings& timings, Part part) : timings_(timings), part_(part), start_(clock::now()) {}

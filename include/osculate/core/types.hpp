@@ -17,7 +17,7 @@ using Mat3 = Eigen::Matrix3d;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
-using ConstVectorRef = Eigen::Ref<const Vector>; ///< a vector that is read, whoever holds it
-using VectorRef = Eigen::Ref<Vector>;            ///< one that is written
+using ConstVectorRef = Eigen::Ref<const Vector>; ///< read access to a vector, whatever object stores it
+using VectorRef = Eigen::Ref<Vector>;            ///< write access
 
 } // namespace osculate

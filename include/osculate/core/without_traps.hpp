@@ -1,12 +1,13 @@
 #pragma once
-/// Stretches of code that may divide by zero.
+/// Code sections that may divide by zero.
 
 #include <cfenv>
 
 namespace osculate {
 
-/// Suspends floating-point traps, where any are set, while it lives: for libraries and for formulas of users that raise
-/// exceptions on their way to values that are looked at afterwards. Threads they start have none either.
+/// Suspends floating-point traps, if any are set, during its lifetime. Meant for libraries and user formulas that raise
+/// floating-point exceptions on the way to results that are checked afterwards. Threads that they start have no traps
+/// either.
 class WithoutTraps {
 public:
     WithoutTraps() { std::feholdexcept(&before_); }

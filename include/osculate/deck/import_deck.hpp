@@ -8,7 +8,7 @@
 
 namespace osculate::deck {
 
-/// Units that the numbers of a deck are in.
+/// Units of the numbers in a deck.
 enum class DeckUnits {
     si, ///< m, kg, s
     mm, ///< mm, t, s; so N and MPa
@@ -17,14 +17,15 @@ enum class DeckUnits {
 struct ImportedScene {
     std::string text;                  ///< YAML, with comments
     std::vector<std::string> left_out; ///< `file:line: what: why`, in order: `lost` and `notes` together
-    std::vector<std::string> lost;     ///< of these, loads, contact, materials, supports and steps that the scene lacks
-    std::vector<std::string> notes; ///< of these, the others: output, solver settings, what means something else here
+    std::vector<std::string> lost;     ///< of these: loads, contact, materials, supports and steps missing in the scene
+    std::vector<std::string> notes;    ///< of these: all others, such as output, solver settings, changed meanings
 };
 
-/// The deck as a scene: a body per connected piece of its mesh, which is read from the deck itself, loads and supports by steps,
-/// contact pairs, materials. What is lost, and what has another meaning, is listed in comments too.
-/// @param mesh_path  of the deck, as the scene is to name it
-/// Throws mesh::MeshError where the deck has no mesh fit for use, or no step that can be run.
+/// Converts a deck to a scene: one body per connected piece of its mesh, which is read from the deck itself, loads and
+/// supports by steps, contact pairs, materials. Lost features, and those with another meaning, are also listed in
+/// comments.
+/// @param mesh_path  path of the deck as written in the scene
+/// Throws mesh::MeshError if the deck has no usable mesh, or no step that can be run.
 [[nodiscard]] ImportedScene import_deck(const mesh::Deck& deck, const std::string& mesh_path, DeckUnits units);
 
 } // namespace osculate::deck

@@ -1,5 +1,6 @@
 #pragma once
-/// Inertia, damping, internal forces and follower pressures of all bodies over one step: all but dead loads and contact.
+/// Inertia, damping, internal forces and follower pressures of all bodies over one step: everything except dead loads
+/// and contact.
 
 #include "osculate/equilibrium/dynamics.hpp"
 #include "osculate/fe/element_block.hpp"
@@ -11,7 +12,7 @@ namespace osculate::equilibrium {
 /// Work of the body forces over the displacements of a step, J.
 struct BodyWork {
     double inertia = 0, internal = 0, damping = 0;
-    double follower = 0; ///< of the follower pressures on the bodies
+    double follower = 0; ///< work of the follower pressures on the bodies
 };
 
 /// A pressure that follows its faces over a step.
@@ -20,58 +21,58 @@ struct FollowerLoad {
     double start = 0, end = 0;                             ///< Pa
 };
 
-/// Springs that hold every node of all bodies to where it was, in proportion to its share of its body's volume: the forces
+/// Springs that hold every node of all bodies at its place, in proportion to its share of its body's volume: the forces
 ///     s_i k (u_i - a_i).
-/// Something to lean on for bodies that nothing else holds yet; no equilibrium is accepted with them in place.
+/// They support bodies that nothing else holds yet; no equilibrium is accepted while they act.
 struct Stabilisation {
     const std::vector<double>* share = nullptr; ///< s_i, see model::volume_shares
-    double stiffness = 0;                       ///< k, of all springs of one body together, N/m
+    double stiffness = 0;                       ///< k, sum over the springs of one body, N/m
     Field anchor{};                             ///< a_i, (nodes) m
 };
 
-/// In statics f(u) = f_int(u) - f_p(u), f_p those of follower pressures, f_int at the end of the step, see
-/// fe::ElementKernel::update. In dynamics the mean over the step that the integrator asks for,
+/// In statics f(u) = f_int(u) - f_p(u), with the forces f_p of follower pressures and f_int at the end of the step, see
+/// fe::ElementKernel::update. In dynamics the mean over the step that the integrator requires,
 ///     f(u) = (1-alpha_m) M a + alpha_m M a_n + (1-alpha_f) (C v + K u - f_p) + alpha_f (C v_n + K u_n - f_p,n),
-/// v and a affine in u by its kinematics, C = mass_damping M + stiffness_damping K. Nonlinear elements have in place of K u
-/// and stiffness damping the forces that fe::ElementKernel::update has with a mean, with end_weight = 1-alpha_f: with alpha_f =
-/// alpha_m = 1/2 they conserve energy and momenta for every dt, where the mean of the forces at the two ends, under large
-/// rotations, feeds energy into a body out of nowhere.
+/// v and a affine in u by its kinematics, C = mass_damping M + stiffness_damping K. For nonlinear elements, the forces
+/// of fe::ElementKernel::update with a mean and end_weight = 1-alpha_f replace K u and stiffness damping. If alpha_f
+/// and alpha_m are 1/2, they conserve energy and momenta for every dt; the mean of the forces at both ends would add
+/// energy to a body under large rotations.
 class BodyForces {
 public:
-    /// @param dynamics  null in statics; must outlive this object, as must the model
-    /// @param follower_pressure  whether steps may have any
+    /// @param dynamics           null in statics; must outlive this object, like the model
+    /// @param follower_pressure  whether any step may have follower pressures
     BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads);
 
-    /// Opens a step. True where it changed the tangent.
+    /// Opens a step. True if this changed the tangent.
     bool begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt);
-    /// Adds springs, or changes them, in statics. tangent() is another matrix afterwards.
+    /// Adds or changes springs, in statics. Afterwards tangent() is another matrix.
     void stabilise(Stabilisation springs);
-    /// Takes them away; tangent() is the one it was before.
+    /// Removes the springs; tangent() is again the matrix without them.
     void release();
     [[nodiscard]] bool stabilised() const { return springs_.share != nullptr; }
-    /// f (nodes) N at u (nodes) m; not to be used where an element is not admissible.
+    /// f (nodes) N at u (nodes) m; do not use f if an element is not admissible.
     model::WorstElement evaluate(const Field& u, Field& f) const;
-    /// Adds to `terms`, (nodes) N, the absolute values of what f(u) is summed up from: its round-off is some last digits of
-    /// that. By the tangent as it is.
+    /// Adds to `terms`, (nodes) N, the absolute values of the summands of f(u), from the current tangent: the round-off
+    /// of f is a few last digits of these sums.
     void add_terms(const Field& u, Field& terms) const;
-    /// Takes the tangent to u. False where it does not depend on u, and nothing is done.
+    /// Updates the tangent to u. False if it does not depend on u; then nothing is done.
     bool linearise(const Field& u);
-    /// df/du, at the last linearise(): the effective stiffness.
+    /// df/du at the last linearise(): the effective stiffness.
     [[nodiscard]] const linear::BlockMatrix& tangent() const {
         return dynamics_ || varies() || stabilised() ? tangent_ : model_.K;
     }
     [[nodiscard]] bool dynamic() const { return dynamics_ != nullptr; }
     [[nodiscard]] bool symmetric() const { return !follower_pressure_ && (dynamics_ == nullptr || !nonlinear()); }
 
-    /// Velocities, accelerations and what elements carry on at the end of the step from the displacements there; without
-    /// velocities in statics.
+    /// Computes velocities, accelerations and element histories at the end of the step from the displacements there; no
+    /// velocities or accelerations in statics.
     void complete(model::State& state) const;
-    /// Share of the inertia in the tangent, d/du of one direction's force summed over the row of a node, N/m.
+    /// Inertia part of the tangent: d/du of the force in one direction, summed over the row of a node, N/m.
     [[nodiscard]] double inertia(Index node) const;
     /// Work over the step that ended in `state`.
     [[nodiscard]] BodyWork work(const model::State& state) const;
-    /// What acts from outside of the bodies over that step but for dead loads: follower pressures, less inertia and damping
-    /// by mass. (nodes) N; empty where there is neither
+    /// External forces of that step except dead loads: follower pressures minus inertia and mass damping. (nodes) N;
+    /// empty if there are none of these
     [[nodiscard]] Field outer_forces(const model::State& state) const;
 
 private:
@@ -79,7 +80,7 @@ private:
     /// Whether the tangent depends on u.
     [[nodiscard]] bool varies() const { return nonlinear() || follower_pressure_; }
     [[nodiscard]] model::BodyStep step_to(const Field& u) const { return {u_start_, u, history_start_, mean_}; }
-    /// f += factor times the pressures' forces, each pressure that of the step's start or end.
+    /// f += factor times the forces of the pressures, with their values at the start or the end of the step.
     void add_pressures(double factor, bool end, const Field& u, Field& f) const;
     void add_springs(linear::BlockMatrix& tangent) const;
     [[nodiscard]] const linear::BlockMatrix& mass() const { return model_.mass(dynamics_->lumped_mass); }
@@ -91,21 +92,21 @@ private:
     std::vector<FollowerLoad> pressures_;
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;
-    std::optional<fe::StepMean> mean_; ///< of nonlinear elements, for the current dt; none in statics
+    std::optional<fe::StepMean> mean_; ///< for nonlinear elements, with the current dt; none in statics
     model::MaterialHistory history_start_;
-    Stabilisation springs_;        ///< without share: none
-    linear::BlockMatrix tangent_;  ///< dynamics, where it varies, or with springs
-    linear::BlockMatrix constant_; ///< where it varies: the part of the tangent that does not depend on u
-    Field u_start_;                ///< in statics where elements have a past
+    Stabilisation springs_;        ///< no share: no springs
+    linear::BlockMatrix tangent_;  ///< in dynamics, if it varies, or with springs
+    linear::BlockMatrix constant_; ///< if it varies: the part of the tangent that does not depend on u
+    Field u_start_;                ///< in statics only if elements have a history
     Field v_start_, a_start_;      ///< dynamics only
-    Field force_start_;            ///< f at u_start but for nonlinear elements, N; dynamics only
+    Field force_start_;            ///< f at u_start without nonlinear elements, N; dynamics only
 };
 
-/// Adds the forces of follower pressures at u, (nodes) N, with their pressures at the start of the step.
+/// Adds the forces of follower pressures at u, (nodes) N, with the pressures at the start of the step.
 void add_follower_forces(const std::vector<FollowerLoad>& pressures, const model::Model& model, const Field& u,
                          Field& f);
 
-/// f_int(u) + C v of a state in dynamics, finite strain without stiffness damping, (nodes) N.
+/// f_int(u) + C v of a state in dynamics, at finite strain without stiffness damping, (nodes) N.
 [[nodiscard]] Field body_forces(const model::Model& model, const Dynamics& dynamics, const model::State& state,
                                 int threads);
 

@@ -6,24 +6,24 @@
 
 namespace osculate::equilibrium {
 
-/// Inertia, damping, internal forces and follower pressures of all bodies. Its derivatives are the matrix that the others'
-/// are added to.
+/// Inertia, damping, internal forces and follower pressures of all bodies. The other terms add their derivatives to its
+/// matrix.
 class BodyTerm final : public Term {
 public:
     BodyTerm(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, Timings& timings,
              int threads);
 
-    /// The next evaluate() is linear in the displacements about u, (nodes) m. Of no concern without nonlinear elements.
+    /// Makes the next evaluate() linear in the displacements about u, (nodes) m. No effect without nonlinear elements.
     void linearise_next_about(const Field& u) {
         if (nonlinear_) linear_about_ = u;
     }
     [[nodiscard]] BodyForces& bodies() { return bodies_; }
     [[nodiscard]] const BodyForces& bodies() const { return bodies_; }
-    /// At the last evaluate(), (nodes) N.
+    /// Forces at the last evaluate(), (nodes) N.
     [[nodiscard]] const Field& internal_force() const { return internal_; }
-    /// Element with the least volume left there; where it has none evaluate() was false.
+    /// Element with the least det F there; if this is not positive, evaluate() returned false.
     [[nodiscard]] const model::WorstElement& worst_element() const { return worst_element_; }
-    /// Takes the stiffness to the last evaluate(); true where it has other values than before.
+    /// Updates the stiffness to the last evaluate(); true if its values changed.
     bool update_stiffness(const Iterate& at);
 
     [[nodiscard]] std::string_view name() const override { return "bodies"; }
@@ -41,15 +41,15 @@ private:
     int threads_;
     bool nonlinear_;
     Field internal_;
-    Field linear_about_;      ///< of the next evaluate(); empty: exact
-    bool linearised_ = false; ///< the last evaluate() was, and the stiffness belongs to it
+    Field linear_about_;      ///< for the next evaluate(); empty: exact
+    bool linearised_ = false; ///< whether the last evaluate() was linear; the stiffness then belongs to it
     model::WorstElement worst_element_;
 };
 
 /// Dead loads.
 class LoadTerm final : public Term {
 public:
-    /// In dynamics their mean over the step, (nodes) N.
+    /// The loads; in dynamics their mean over the step, (nodes) N.
     [[nodiscard]] const Field& force() const { return force_; }
 
     [[nodiscard]] std::string_view name() const override { return "loads"; }

@@ -6,16 +6,17 @@
 
 namespace osculate::equilibrium {
 
-/// As SystemMatrix takes them, over y = (slave, its n master nodes), the first m of which carry force.
+/// Derivatives in the form of SystemMatrix, with respect to y = (slave, its n master nodes); the first m masters carry
+/// force.
 struct ContactTangent final : linear::ContactDerivatives {
-    bool reaches = false;  ///< false: only D means anything
-    Mat3 D = Mat3::Zero(); ///< of the law by the contact force
-    contact::MatrixX3 E;   ///< (3m x 3) of the forces on the left of the equilibrium by the contact force
-    Matrix A, G;           ///< (3 x 3+3n) of the law and (3m x 3+3n) of the forces by y; G where asked for as matrix
+    bool reaches = false;  ///< false: only D is valid
+    Mat3 D = Mat3::Zero(); ///< of the law, by the contact force
+    contact::MatrixX3 E;   ///< (3m x 3) of the forces on the left of the equilibrium, by the contact force
+    Matrix A, G;           ///< (3 x 3+3n) of the law and (3m x 3+3n) of the forces, by y; G only if needed as matrix
     Matrix dd;             ///< (3 x 3+3n) of the drift, scratch
     contact::ContactVariation variation;
     const model::ContactEvaluation* evaluation = nullptr;
-    Index slave = -1;          ///< of its pair
+    Index slave = -1;          ///< number within its pair
     Vec3 force = Vec3::Zero(); ///< lambda where the tangent was taken, N
 
     Vec3 along(Vector& dy, const Vec3& lambda, Vector& on) const override {

@@ -1,5 +1,5 @@
 #pragma once
-/// Contact of all pairs as a term of the residual: forces on slaves and masters, and the contact laws' rows.
+/// Contact of all pairs as a term of the residual: forces on slaves and masters, and the rows of the contact laws.
 
 #include "osculate/core/timing.hpp"
 #include "osculate/equilibrium/contact_tangent.hpp"
@@ -14,35 +14,36 @@ using Statuses = std::vector<std::vector<contact::Status>>; ///< (pairs) (slaves
 
 /// How contact statuses follow the iterate.
 enum class StatusRule {
-    natural, ///< named anew by the complementarity functions at every iterate: semismooth Newton
-    frozen   ///< as given; the problem is smooth
+    natural, ///< determined by the complementarity functions at every iterate: semismooth Newton
+    frozen   ///< fixed as given; the problem is smooth
 };
 
 ///     forces        lambda on the slave, on its masters as ContactPoint says
 ///     contact law   see contact::Coulomb
 class ContactTerm final : public Term {
 public:
-    /// @param unknowns  must outlive this object, as must the others
+    /// @param unknowns  must outlive this object, like the other references
     ContactTerm(const model::Model& model, const linear::Constraints& constraints, const linear::Unknowns& unknowns,
                 Timings& timings, int threads);
 
-    /// Statuses for the next solve. With `natural` they hold for the next iterate only, where `force_first` asks for it.
+    /// Sets the statuses for the next solve. With `natural` they are used only at the next iterate, and only if
+    /// `force_first`.
     void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
     [[nodiscard]] const Statuses& statuses() const { return statuses_; }
-    /// How many the last evaluate() has changed.
+    /// Number of statuses that the last evaluate() changed.
     [[nodiscard]] int status_changes() const { return status_changes_; }
-    /// What the complementarity functions say at the last evaluate().
+    /// Statuses according to the complementarity functions at the last evaluate().
     [[nodiscard]] Statuses natural_statuses() const;
-    /// Inertia of the nodes in the bodies' stiffness, see ContactEvaluation::set_inertia.
+    /// Sets the inertia of the slave nodes from the bodies' stiffness, see ContactEvaluation::set_inertia.
     void set_inertia(const BodyForces& bodies);
     [[nodiscard]] const model::ContactEvaluations& evaluations() const { return evaluations_; }
     [[nodiscard]] model::ContactEvaluations& evaluations() { return evaluations_; }
-    /// Smallest gap, m; infinite where nothing faces anything.
+    /// Smallest gap, m; infinite if no slave node faces a master.
     [[nodiscard]] double least_gap() const;
-    /// Contact forces of a state, into z.
+    /// Writes the contact forces of a state into z.
     void pack(const std::vector<model::ContactHistory>& contact, VectorRef z) const;
-    /// At the last linearise(): slave nodes that bear on a master, by coupling, and derivatives of the law by the force of
-    /// the others, (couplings).
+    /// At the last linearise(): slave nodes in contact with a master, by coupling; and, for the others, derivatives of
+    /// the law by the contact force, (couplings).
     [[nodiscard]] const std::vector<linear::BearingContact>& bearing() const { return bearing_; }
     [[nodiscard]] const std::vector<Mat3>& open_laws() const { return open_laws_; }
 
@@ -62,15 +63,15 @@ public:
 
 private:
     [[nodiscard]] Vec3 force(const ConstVectorRef& z, Index coupling) const;
-    /// What the contact law's row of slave j of pair p is the sum of, N, local axes.
+    /// Sum of the absolute values of the summands of the contact law's row of slave j of pair p, N, local axes.
     [[nodiscard]] Vec3 law_magnitudes(const Iterate& at, std::size_t p, Index j) const;
     [[nodiscard]] contact::ContactResidual law(std::size_t p, Index j) const;
-    /// Whether slave j of pair p has a contact partner and bears on it.
+    /// Whether slave j of pair p has a contact partner and is closed or carries a contact force.
     [[nodiscard]] bool reaches(std::size_t p, Index j) const;
     void prepare_variations(std::size_t p);
     void linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const;
     [[nodiscard]] linear::SoftContact soften(std::size_t p, Index j) const;
-    /// Projector on the directions in which symmetry planes hold a node: no contact force acts along these.
+    /// Projector on the directions in which symmetry planes hold a node: no contact force acts along these directions.
     [[nodiscard]] Mat3 symmetry_directions(Index node) const;
 
     const linear::Constraints& constraints_;
@@ -84,7 +85,7 @@ private:
     StatusRule rule_ = StatusRule::natural;
     bool force_next_ = false;
     int status_changes_ = 0;
-    std::vector<ContactTangent> tangents_; ///< by coupling for products, a batch for a matrix
+    std::vector<ContactTangent> tangents_; ///< by coupling for products; one batch for a matrix
     std::vector<linear::BearingContact> bearing_;
     std::vector<Mat3> open_laws_;
     std::vector<Vec3> product_law_; ///< scratch of add_product()

@@ -1,5 +1,5 @@
 #pragma once
-/// Whether a nonlinear iteration with contact still gains anything.
+/// Detects when a nonlinear iteration with contact makes no more progress.
 
 #include "osculate/equilibrium/contact_term.hpp"
 
@@ -16,20 +16,20 @@ public:
     void begin();
     /// Opens a solve.
     void restart();
-    /// Notes an iterate: its statuses and the norm of its residual.
+    /// Records an iterate: its statuses and the norm of its residual.
     void note(const Statuses& statuses, double residual);
-    /// Whether the iteration goes round, or has long gained nothing.
+    /// Whether the iteration cycles, or has made no progress for several iterates.
     [[nodiscard]] bool goes_round() const { return round_; }
-    /// Iterates that have gained nothing.
+    /// Number of consecutive iterates without progress.
     [[nodiscard]] int idle() const { return idle_; }
-    /// The last different sets of statuses since begin(), the latest last: a few, for a post-mortem.
+    /// The last few different sets of statuses since begin(), the latest last, for diagnosis of a failure.
     [[nodiscard]] const std::vector<Statuses>& recent() const { return recent_; }
 
 private:
     [[nodiscard]] bool comes_back(const Statuses& statuses, double residual);
 
     std::vector<Statuses> recent_;
-    std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> times seen, least residual
+    std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> visits, least residual
     std::size_t last_configuration_ = 0;
     double best_ = std::numeric_limits<double>::max(); ///< least residual of the solve
     int idle_ = 0;

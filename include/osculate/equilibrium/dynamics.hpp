@@ -1,11 +1,11 @@
 #pragma once
-/// What inertia and damping are like in a stage.
+/// Options of inertia and damping in a stage.
 
 #include "osculate/equilibrium/integrator.hpp"
 
 namespace osculate::equilibrium {
 
-/// What makes a stage dynamic.
+/// Options of a dynamic stage.
 struct Dynamics {
     Integrator integrator;
     bool lumped_mass = false;

@@ -1,5 +1,5 @@
 #pragma once
-/// Equilibrium with contact at the end of one step, as the nonlinear problem KINSOL sees.
+/// Equilibrium with contact at the end of one step, as a nonlinear problem for KINSOL.
 
 #include "osculate/equilibrium/body_term.hpp"
 #include "osculate/equilibrium/contact_term.hpp"
@@ -18,12 +18,12 @@ namespace osculate::equilibrium {
 /// One line of iterations.csv.
 struct IterationRecord {
     int iteration = 0;
-    double residual = 0; ///< L2 norm over the reference force
+    double residual = 0; ///< L2 norm, divided by the reference force
     int status_changes = 0, open = 0, stick = 0, slip = 0, facet_changes = 0;
 };
 
-/// F(z) with z as Unknowns says: equilibrium of every free component and the contact law of every slave node. The sum of its
-/// terms; contact points are located anew at every z.
+/// F(z) with z as in Unknowns: equilibrium of every free component and the contact law of every slave node. It is the
+/// sum of its terms; contact points are located again at every z.
 ///     equilibrium   f(u) - f_ext - f_contact = 0,   f of BodyForces, contact forces as at the end of the step
 class Equilibrium final : public solve::NonlinearProblem {
 public:
@@ -31,21 +31,21 @@ public:
     Equilibrium(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics,
                 const TangentChoice& choice, Timings& timings, int threads, bool follower_pressure = false);
 
-    /// Opens an attempt over dt: slips and facets start from `state`, loads are those at the end of the step, in dynamics
-    /// their weighted mean over the step.
+    /// Opens an attempt over dt: slips and facets start from `state`; loads are those at the end of the step, in
+    /// dynamics their weighted mean over the step.
     void begin_attempt(const model::State& state, StepLoad load, double dt);
-    /// Ends an attempt: patterns that grew in it stay, or go back to what they were. Nothing else outlives an attempt.
+    /// Ends an attempt: keeps or discards the growth of patterns during it. Nothing else is kept after an attempt.
     void commit() { tangent_.commit(); }
     void rollback() { tangent_.rollback(); }
-    /// What the last commit() left for later steps, and the same as if it had left that. Between attempts only.
+    /// Data that the last commit() kept for later steps; recall() restores it. Call only between attempts.
     [[nodiscard]] EquilibriumMemory memory() const { return tangent_.memory(); }
     void recall(const EquilibriumMemory& memory) { tangent_.recall(memory); }
     /// Statuses for the next solve, see ContactTerm.
     void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
-    /// The next residual is linear in the displacements about u, (nodes) m, where elements bear a driven motion that has
-    /// not spread into the body yet. Of no concern, and not kept, without nonlinear elements.
+    /// Makes the next residual linear in the displacements about u, (nodes) m: for elements under a driven motion that
+    /// has not spread into the body yet. No effect without nonlinear elements.
     void linearise_first_about(const Field& u) { bodies_.linearise_next_about(u); }
-    /// Springs in place from the next residual on, see BodyForces; release() takes them away.
+    /// Adds springs from the next residual on, see BodyForces; release() removes them.
     void stabilise(Stabilisation springs);
     void release();
     void set_reference_force(double force) { reference_force_ = force; }
@@ -59,43 +59,44 @@ public:
     [[nodiscard]] bool factorisable() const override { return factorisable_; }
     [[nodiscard]] solve::Tangent* tangent() override { return tangent_.by_products() ? &tangent_ : nullptr; }
 
-    /// z from displacements and contact forces, and the state (time apart) from z.
+    /// z from displacements and contact forces, and the state (without time) from z.
     [[nodiscard]] Vector unknowns(const Field& u, const std::vector<model::ContactHistory>& contact) const;
     [[nodiscard]] model::State state(const Vector& z) const;
     /// Displacements of z, (nodes) m.
     [[nodiscard]] Field displacements(const Vector& z) const;
 
-    /// Midway between the last two points at which the residual was evaluated: out of a cycle of two.
+    /// Midpoint of the last two points at which the residual was evaluated, to leave a cycle of two.
     [[nodiscard]] Vector midpoint() const { return 0.5 * (last_z_ + before_z_); }
-    /// Statuses at the last residual, and what the complementarity functions say there.
+    /// Statuses at the last residual, and statuses according to the complementarity functions there.
     [[nodiscard]] const Statuses& statuses() const { return contact_.statuses(); }
     [[nodiscard]] Statuses natural_statuses() const { return contact_.natural_statuses(); }
-    /// Whether the last residual came to rest at the round-off of its own rows: no iterate can say more, see at_round_off().
+    /// Whether the last residual stagnated at the round-off of its own rows, so that no iterate can improve it, see
+    /// at_round_off().
     [[nodiscard]] bool rests() const { return rests_; }
     /// The z of the last residual.
     [[nodiscard]] const Vector& last_iterate() const { return last_z_; }
-    /// Whether z is an equilibrium with these statuses, to the tolerance (of the reference force) or to the round-off of its
-    /// rows. Statuses are these afterwards, frozen.
+    /// Whether z is an equilibrium with these statuses, to the tolerance (relative to the reference force) or to the
+    /// round-off of its rows. Sets and freezes these statuses.
     [[nodiscard]] bool holds(const Vector& z, Statuses statuses, double tolerance);
     /// Lines of iterations.csv since begin_attempt.
     [[nodiscard]] const std::vector<IterationRecord>& records() const { return records_; }
-    /// The last different sets of statuses since begin_attempt, the latest last: a few, for a post-mortem.
+    /// The last few different sets of statuses since begin_attempt, the latest last, for diagnosis of a failure.
     [[nodiscard]] const std::vector<Statuses>& recent_statuses() const { return cycles_.recent(); }
-    /// f_int - f_ext - f_contact at the last residual: what the supports carry, and round-off elsewhere. (nodes) N
+    /// f_int - f_ext - f_contact at the last residual: the forces of the supports, and round-off elsewhere. (nodes) N
     [[nodiscard]] const Field& unbalanced() const { return unbalanced_; }
     [[nodiscard]] const Field& internal_force() const { return bodies_.internal_force(); }
     /// Dead loads of the attempt, in dynamics their mean over the step. (nodes) N
     [[nodiscard]] const Field& external_force() const { return loads_.force(); }
-    /// What residuals are measured against, N.
+    /// Reference force for residuals, N.
     [[nodiscard]] double reference_force() const { return reference_force_; }
-    /// Node whose row holds the largest residual.
+    /// Node of the row with the largest residual.
     [[nodiscard]] Index worst_node() const { return worst_node_; }
-    /// Smallest gap at the last residual, m; infinite where nothing faces anything.
+    /// Smallest gap at the last residual, m; infinite if no slave node faces a master.
     [[nodiscard]] double least_gap() const { return contact_.least_gap(); }
-    /// Element with the least volume left, at the last residual; where it has none there was no residual.
+    /// Element with the least det F at the last residual; if this is not positive, there was no residual.
     [[nodiscard]] const model::WorstElement& worst_element() const { return bodies_.worst_element(); }
     [[nodiscard]] const BodyForces& bodies() const { return bodies_.bodies(); }
-    /// What contact found at the last residual; opened anew by begin_attempt().
+    /// Contact of all pairs at the last residual; reset by begin_attempt().
     [[nodiscard]] const model::ContactEvaluations& contact() const { return contact_.evaluations(); }
     [[nodiscard]] model::ContactEvaluations& contact() { return contact_.evaluations(); }
     [[nodiscard]] long patterns_built() const { return tangent_.patterns_built(); }
@@ -105,9 +106,9 @@ private:
     void unpack();
     void fill(VectorRef F);
     void record(const ConstVectorRef& F);
-    /// u to positions x and what their rounding takes off.
+    /// Computes positions x from u, and their rounding errors.
     void place();
-    /// Whether no component of F, the last residual, is more than round-off of the terms its row is the sum of.
+    /// Whether every component of F, the last residual, is within the round-off of the summands of its row.
     [[nodiscard]] bool at_round_off(const ConstVectorRef& F) const;
 
     const model::Model& model_;

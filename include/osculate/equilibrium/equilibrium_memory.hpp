@@ -1,5 +1,5 @@
 #pragma once
-/// What equilibria hand on from step to step beside the state: plain values.
+/// Data that equilibria pass on from step to step besides the state: plain values.
 
 #include "osculate/linear/contact_laws.hpp"
 #include "osculate/linear/penalty_stiffness.hpp"
@@ -10,11 +10,11 @@
 
 namespace osculate::equilibrium {
 
-/// Where matrices have entries, which decides the order of elimination, and what condensed contact was last factorised for:
-/// the last digit of a solution follows from these.
+/// Patterns of matrices, which determine the order of elimination, and the contact laws for which condensed contact was
+/// last factorised: the last digit of a solution depends on these.
 struct EquilibriumMemory {
-    std::vector<linear::Coupling> couplings{}; ///< of the tangent as a matrix; empty: as at the stage's start
-    std::optional<std::vector<linear::Spring>> springs{}; ///< of the preconditioner, places only; none: not made yet
+    std::vector<linear::Coupling> couplings{};            ///< of the tangent matrix; empty: as at the stage's start
+    std::optional<std::vector<linear::Spring>> springs{}; ///< of the preconditioner, without stiffness; none: not made
     std::optional<linear::ContactLaws> laws{};            ///< none: to be made
 };
 

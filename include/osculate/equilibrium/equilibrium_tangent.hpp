@@ -1,5 +1,5 @@
 #pragma once
-/// The derivative of the residual, and what inverts it: products, condensed contact, preconditioner, matrix.
+/// The derivative of the residual, and all means to invert it: products, condensed contact, preconditioner, matrix.
 
 #include "osculate/equilibrium/body_term.hpp"
 #include "osculate/equilibrium/contact_term.hpp"
@@ -18,21 +18,21 @@ namespace osculate::equilibrium {
 
 class EquilibriumTangent final : public solve::Preconditioner, public solve::Tangent {
 public:
-    /// @param terms  of the residual, `bodies` and `contact` among them; all of it must outlive this object
-    /// @param at     where the residual was evaluated last
+    /// @param terms  of the residual, including `bodies` and `contact`; all arguments must outlive this object
+    /// @param at     iterate at which the residual was last evaluated
     EquilibriumTangent(const model::Model& model, const linear::Constraints& constraints,
                        const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
                        ContactTerm& contact, const Iterate& at, const TangentChoice& choice, Timings& timings,
                        int threads);
 
-    /// Opens an attempt over dt (0 in statics); changed: the bodies' stiffness has other values.
+    /// Opens an attempt over dt (0 in statics); changed: the bodies' stiffness has new values.
     void begin(double dt, bool changed);
-    /// The bodies have another stiffness matrix, or another one again.
+    /// To be called when the bodies' stiffness is another matrix object.
     void stiffness_replaced();
-    /// Ends an attempt: patterns that grew in it stay, or go back to what they were.
+    /// Ends an attempt: keeps or discards the growth of patterns during it.
     void commit();
     void rollback();
-    /// What the last commit() left for later steps, and the same as if it had left that.
+    /// Data that the last commit() kept for later steps; recall() restores it.
     [[nodiscard]] EquilibriumMemory memory() const;
     void recall(const EquilibriumMemory& memory);
     [[nodiscard]] long patterns_built() const { return patterns_built_; }
@@ -53,7 +53,7 @@ public:
 private:
     void update_stiffness();
     void cover_patterns();
-    /// Forgets the matrix: it is made anew when asked for, by the pattern of these couplings.
+    /// Discards the matrix: it is rebuilt when needed, with the pattern of these couplings.
     void use_pattern(std::vector<linear::Coupling> couplings);
 
     const linear::Constraints& constraints_;
@@ -64,12 +64,12 @@ private:
     const Iterate& at_;
     Timings& timings_;
     bool may_buckle_, products_;                               ///< products_: see TangentChoice
-    std::vector<linear::Coupling> couplings_, kept_couplings_; ///< pattern of the matrix; at the last commit
+    std::vector<linear::Coupling> couplings_, kept_couplings_; ///< pattern of the matrix: current, at the last commit
     long patterns_built_ = 0, kept_patterns_ = 0;
-    std::unique_ptr<linear::SystemMatrix> matrix_;                  ///< null: not asked for yet
-    std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< none where the tangent is symmetric
-    std::unique_ptr<linear::CondensedTangent> condensed_;           ///< where bodies are linear
-    bool stale_preconditioner_ = false, stale_matrix_ = false;      ///< the stiffness of the bodies has moved on
+    std::unique_ptr<linear::SystemMatrix> matrix_;                  ///< null: not needed yet
+    std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< see TangentChoice; null: not used
+    std::unique_ptr<linear::CondensedTangent> condensed_;           ///< see TangentChoice; null: not used
+    bool stale_preconditioner_ = false, stale_matrix_ = false;      ///< the stiffness of the bodies has changed since
     Field product_u_, product_f_;                                   ///< scratch of multiply()
 };
 

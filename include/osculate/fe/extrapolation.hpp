@@ -1,17 +1,18 @@
 #pragma once
-/// The way that stresses and strains take from the quadrature points to the nodes of an element.
+/// Extrapolation of stresses and strains from the quadrature points to the nodes of an element.
 
 #include "osculate/core/dense_algebra.hpp"
 #include "osculate/fe/reference_element.hpp"
 
 namespace osculate::fe {
 
-/// The element whose shape functions fit the points of a stress field: as many as there are points, where possible.
+/// The element whose shape functions fit the quadrature points of a stress field: one function per point, where
+/// possible.
 template <ReferenceElement E> struct StressField { using Element = E; };
 template <> struct StressField<Tet10> { using Element = Tet4; };
 
-/// Nodes x points: carries point values to the nodes, exact for a field in the span of the stress field's shape functions
-/// where there are as many points as those, the mean where there is one point.
+/// Matrix (nodes x points) from point values to nodal values. Exact for a field in the span of the stress field's shape
+/// functions if there are as many points as functions; the mean if there is one point.
 template <ReferenceElement E> Eigen::Matrix<double, E::nodes, E::points> extrapolation() {
     using Field = typename StressField<E>::Element;
     const auto rule = E::quadrature();

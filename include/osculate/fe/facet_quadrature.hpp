@@ -11,25 +11,25 @@
 namespace osculate::fe {
 
 /// Tributary areas, integral of N_i dA, m^2, in the order of face.nodes; zero past face.count. Exact for triangles and
-/// flat quadrilaterals, 2 x 2 Gauss otherwise; exact for straight six-node faces, where corners have none and middle nodes a
-/// third each, by a rule of degree four on curved ones.
+/// flat quadrilaterals, 2 x 2 Gauss for other quadrilaterals. Exact for straight six-node faces, where corners get zero
+/// and midside nodes a third each; a rule of degree four on curved ones.
 [[nodiscard]] std::array<double, 6> tributary_areas(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions);
-/// The same with the facet's own shape functions: not what belongs to the nodes of a six-node face.
+/// The same with the facet's own shape functions; these are not the areas of the nodes of a six-node face.
 [[nodiscard]] std::array<double, 4> tributary_areas(const mesh::Facet& facet, const std::vector<Vec3>& positions);
 
 /// Area of a face, m^2: the sum of its tributary areas.
 [[nodiscard]] double area(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions);
 
 /// Consistent nodal forces of a pressure p (Pa), -p times the integral of N_i n dA, N, in the order of face.nodes; zero
-/// past face.count. n points out of the body: p > 0 pushes into it. Exact, warped quadrilaterals and curved six-node faces
-/// included.
+/// past face.count. n points out of the body: p > 0 pushes into it. Exact, also for warped quadrilaterals and curved
+/// six-node faces.
 [[nodiscard]] std::array<Vec3, 6> pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions,
                                                   double pressure);
-/// Adds them to the forces of all nodes, N.
+/// Adds these forces to the forces of all nodes, N.
 void add_pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, double pressure,
                          std::vector<Vec3>& forces);
 
-/// Derivative of pressure_forces (3n x 3n, n = face.count) by the positions, N/m; not symmetric.
+/// Derivative of pressure_forces with respect to the positions (3n x 3n, n = face.count), N/m; not symmetric.
 [[nodiscard]] Matrix pressure_tangent(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions,
                                       double pressure);
 

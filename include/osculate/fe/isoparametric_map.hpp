@@ -41,7 +41,7 @@ template <int n> Jacobian jacobian(const Eigen::Matrix<double, 3, n>& X, const G
     return map;
 }
 
-/// Gradients in space and volume of every quadrature point of one element.
+/// Spatial gradients and volume at every quadrature point of one element.
 template <ReferenceElement E> struct ElementPoints {
     std::array<Gradients<E::nodes>, E::points> gradients; ///< dN/dX = dN/dxi J^-1
     std::array<double, E::points> volumes;                ///< w det J, m^3

@@ -14,8 +14,9 @@ struct QuadraturePoint {
     double weight; ///< the weights of a rule sum to the volume of the reference element
 };
 
-/// What a volume element must offer: its degree, counts, natural coordinates of its nodes, N(xi), dN/dxi and two quadrature rules:
-/// one for stiffness and stress, and one for mass, body forces and volume, exact for N_a N_b on an affine element.
+/// What a volume element must provide: its degree, counts, natural coordinates of its nodes, N(xi), dN/dxi and two
+/// quadrature rules: one for stiffness and stress, and one for mass, body forces and volume, exact for N_a N_b on an
+/// affine element.
 template <class E>
 concept ReferenceElement = requires(const Vec3& xi) {
     requires E::nodes >
@@ -73,8 +74,8 @@ struct Hex8 {
     static std::array<QuadraturePoint, mass_points> mass_quadrature() { return quadrature(); }
 };
 
-/// Linear tetrahedron on 0 <= r, s, t, r + s + t <= 1; one point, exact for its constant strain, and the four of degree
-/// two for its mass.
+/// Linear tetrahedron on 0 <= r, s, t, r + s + t <= 1; one point, exact for its constant strain, and four points of
+/// degree two for its mass.
 struct Tet4 {
     static constexpr int nodes = 4;
     static constexpr int degree = 1;
@@ -108,8 +109,8 @@ struct Tet4 {
 };
 
 /// Quadratic tetrahedron on the same reference tetrahedron, midside nodes on the edges 01, 12, 20, 03, 13, 23. Four
-/// points of degree two for its stiffness, exact with straight edges; fourteen of degree five, all weights positive, for
-/// its mass.                                        [Walkington 2000, Quadrature on simplices of arbitrary dimension]
+/// points of degree two for its stiffness, exact for straight edges; fourteen of degree five, all weights positive, for
+/// its mass.                                          [Walkington 2000, Quadrature on simplices of arbitrary dimension]
 struct Tet10 {
     static constexpr int nodes = 10;
     static constexpr int degree = 2;
@@ -168,8 +169,9 @@ struct Tet10 {
     }
 };
 
-/// Linear wedge: triangle (r, s) times line t in [-1, 1]; 3 x 2 points, exact for its volume and its body forces.
-/// In VTK's order the triangle (0, 1, 2) has its normal out of the element, so node 1 lies on the s axis and 2 on r.
+/// Linear wedge: triangle (r, s) times line t in [-1, 1]; 3 x 2 points, exact for its volume and its body forces. In
+/// VTK's order the normal of the triangle (0, 1, 2) points out of the element, so node 1 is on the s axis and node 2 on
+/// r.
 struct Wedge6 {
     static constexpr int nodes = 6;
     static constexpr int degree = 1;

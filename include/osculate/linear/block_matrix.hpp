@@ -11,8 +11,8 @@ namespace osculate::linear {
 class BlockMatrix {
 public:
     BlockMatrix() = default;
-    /// Pattern of all node pairs that share an element: `elements` lists the node numbers of each.
-    /// Cost O(nonzeros log(neighbours)).
+    /// Pattern of all node pairs that share an element: `elements` lists the node numbers of each element. Cost
+    /// O(nonzeros log(neighbours)).
     BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements);
 
     [[nodiscard]] Index rows() const { return static_cast<Index>(row_start_.size()) - 1; }
@@ -21,17 +21,17 @@ public:
     [[nodiscard]] Index column(Index slot) const { return column_[slot]; }
     [[nodiscard]] const Mat3& block(Index slot) const { return block_[slot]; }
     [[nodiscard]] Mat3& block(Index slot) { return block_[slot]; }
-    /// Where the block of a pair of nodes is. @pre the pattern has it
+    /// Position of the block of a pair of nodes. @pre the pattern has it
     [[nodiscard]] Index slot(Index row, Index column) const;
     /// Adds an element matrix (3n x 3n) at its nodes.
     void add(const std::vector<Index>& nodes, const Matrix& element);
-    /// *this = a A + b B, B of the same pattern or empty.
+    /// *this = a A + b B, where B has the same pattern or is empty.
     void set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B);
     [[nodiscard]] bool empty() const { return block_.empty(); }
     /// y += A x over 3-vectors per node.
     void multiply_add(const Field& x, Field& y, int threads) const;
-    /// y_i += A_ij (x_j - x_i), which is A x where the blocks of a row add up to nothing, as in a stiffness: a translation of
-    /// all nodes changes no digit but those that x itself lost to it.
+    /// y_i += A_ij (x_j - x_i), which is A x if the blocks of each row sum to zero, as in a stiffness: a translation of
+    /// all nodes causes no further loss of digits than in x itself.
     void multiply_add_relative(const Field& x, Field& y, int threads) const;
 
 private:

@@ -10,18 +10,18 @@
 
 namespace osculate::linear {
 
-/// Over the free components of the body's nodes, in their local frames. Springs of the same stiffness along the free
-/// components of a few nodes hold a body that nothing else does; whoever asks for them has to take them away again.
+/// Works on the free components of the body's nodes, in their local frames. Springs of equal stiffness along the free
+/// components of a few nodes hold a body that has no other support; the caller must cancel their effect.
 class BodyCompliance {
 public:
     /// @param kept    nodes of the body, global, ascending
-    /// @param sprung  of these, the ones with springs
+    /// @param sprung  those of `kept` that have springs
     BodyCompliance(const Constraints& constraints, Index first_node, Index nodes, const std::vector<Index>& kept,
                    std::vector<Index> sprung);
     /// @param K       free components of all bodies, by equation number
     /// @param spring  N/m
     [[nodiscard]] solve::FactorStatus factorise(const solve::SparseMatrix& K, double spring);
-    /// The body's part of x = K^-1 b, both over all equations.
+    /// Computes the body's part of x = K^-1 b; b and x span all equations.
     void solve(const double* b, double* x) const { solver_->solve(b + first_, x + first_); }
     /// W, the inverse over equations(): kept x kept, symmetric, m/N.
     [[nodiscard]] const Matrix& W() const { return W_; }

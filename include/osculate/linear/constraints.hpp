@@ -1,5 +1,5 @@
 #pragma once
-/// Which displacement components are free, and the values of those that are not.
+/// Free displacement components, and the values of the held ones.
 
 #include "osculate/core/field.hpp"
 
@@ -13,10 +13,10 @@ struct NodeConstraint {
     Index node = -1;
     Vec3 direction = Vec3::UnitX(); ///< unit
     double target = 0;              ///< displacement along it at the end of the stage, m
-    bool driven = false;            ///< false: stays at zero whatever the time
+    bool driven = false;            ///< false: remains zero at all times
     bool symmetry = false;          ///< no contact force acts along it either
     Index set = -1;                 ///< constrained set, for messages
-    Index course = -1; ///< the displacement is `target` times this course of the stage; -1: `target` itself, in the end
+    Index course = -1; ///< the displacement is `target` times this course of the stage; -1: `target` itself, at the end
 };
 
 /// Local frames and equation numbers of every node for one stage. Directions held at one node must be parallel or
@@ -33,28 +33,29 @@ public:
     /// Equation of local component k of a node, or `held`.
     [[nodiscard]] Index equation(Index node, int k) const { return equation_[3 * static_cast<std::size_t>(node) + k]; }
     [[nodiscard]] int free_components(Index node) const;
-    /// True where the node's frame is not the global one.
+    /// True if the node's frame is not the global one.
     [[nodiscard]] bool turned(Index node) const { return entry_[node] >= 0 && entries_[entry_[node]].turned; }
     /// Columns: the local axes of the node in global components.
     [[nodiscard]] const Mat3& frame(Index node) const;
     /// The constraint on local component k, or nullptr.
     [[nodiscard]] const NodeConstraint* constraint(Index node, int k) const;
 
-    /// Writes displacements: free components from the first of `unknowns`, held ones from `prescribed` (local, same layout as u).
+    /// Writes displacements: free components from the start of `unknowns`, held ones from `prescribed` (local, same
+    /// layout as u).
     void scatter(const ConstVectorRef& unknowns, const Field& prescribed, Field& u) const;
-    /// Free local components of u, into the first of `unknowns`.
+    /// Writes the free local components of u to the start of `unknowns`.
     void gather(const Field& u, VectorRef unknowns) const;
     /// Local components of a global vector at a node, and back.
     [[nodiscard]] Vec3 to_local(Index node, const Vec3& v) const;
     [[nodiscard]] Vec3 to_global(Index node, const Vec3& v) const;
-    /// Adds force components along held directions only: what the supports carry, in global components.
+    /// Sum of the force components along held directions: the force of the supports, in global components.
     [[nodiscard]] Vec3 reaction(Index node, const Vec3& unbalanced) const;
 
 private:
     struct Entry {
         Mat3 frame = Mat3::Identity();
         bool turned = false;
-        std::vector<NodeConstraint> along; ///< three slots; node = -1 where the component is free
+        std::vector<NodeConstraint> along; ///< three slots; node = -1 if the component is free
     };
     std::vector<Index> entry_; ///< (nodes) index into entries_, -1 unconstrained
     std::vector<Entry> entries_;

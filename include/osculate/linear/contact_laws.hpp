@@ -1,5 +1,5 @@
 #pragma once
-/// Contact as its condensation takes it: linear laws between motions and forces at slave nodes.
+/// Contact in the form for condensation: linear laws between motions and forces at slave nodes.
 
 #include "osculate/core/types.hpp"
 
@@ -7,15 +7,15 @@
 
 namespace osculate::linear {
 
-/// B C u + D lambda = r, C u the motions of slave nodes relative to their facets; springs under loose bodies come last.
+/// B C u + D lambda = r, C u the motions of slave nodes relative to their facets; springs under loose bodies are last.
 struct ContactLaws {
     /// One node of the relative motion C.
     struct Term {
         Index node; ///< contact node
         Mat3 by;    ///< global components
     };
-    double dt = 0;                ///< of the step they were made for, 0 in statics, s
-    std::vector<Index> couplings; ///< of SystemMatrix, those that bear
+    double dt = 0;                ///< length of the step for which they were made, 0 in statics, s
+    std::vector<Index> couplings; ///< couplings of SystemMatrix that are in contact
     std::vector<std::vector<Term>> terms;
     std::vector<Mat3> B, D;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// The step's tangent with contact made a little soft, so that one Cholesky factorisation inverts it.
+/// The step's tangent with slightly softened contact, so that one Cholesky factorisation inverts it.
 
 #include "osculate/linear/penalty_stiffness.hpp"
 #include "osculate/linear/soft_contact.hpp"
@@ -13,30 +13,30 @@
 
 namespace osculate::linear {
 
-/// Inverse of the tangent but for four changes, each small or smooth:
-///  - contact forces act on the corners of the closest facet with its shape functions, not on all nodes of the patch;
-///  - their change as the surface bends and turns is left out;
-///  - the law gives way by a soft spring, (D + B/gamma) lambda + B w = r with gamma = 10 c, with multigrid c;
-///  - in the condensed stiffness K + W^T S B W, S = (D + B/gamma)^-1, the part of S B that couples friction with pressure,
-///    the only unsymmetric one, is left out. It is kept where contact forces follow from displacements.
+/// Inverse of the tangent with four changes, each small or smooth:
+/// - contact forces act on the corners of the closest facet with its shape functions, not on all nodes of the patch;
+/// - the change of these forces when the surface bends and rotates is left out;
+/// - a soft spring is added to the law, (D + B/gamma) lambda + B w = r with gamma = 10 c, with multigrid c;
+/// - in the condensed stiffness K + W^T S B W, S = (D + B/gamma)^-1, the part of S B that couples friction with
+///   pressure, the only unsymmetric one, is left out. It is kept when contact forces are computed from displacements.
 class ContactPreconditioner {
 public:
     /// @param K           stiffness of the bodies in a step; it must outlive this object
-    /// @param multigrid   in place of the factorisation; null: factorise
-    /// @param undeformed  stiffness of the undeformed bodies, in the pattern of K: grids of multigrid are made for it
+    /// @param multigrid   used instead of the factorisation; null: factorise
+    /// @param undeformed  stiffness of the undeformed bodies, in the pattern of K: multigrid builds its grids from it
     ContactPreconditioner(const Constraints& constraints, const BlockMatrix& K,
                           std::unique_ptr<solve::Multigrid> multigrid, std::function<BlockMatrix()> undeformed);
     /// Takes over new values of K.
     void stiffness_changed() { stiffness_.stiffness_changed(); }
-    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    /// Uses another matrix of the same pattern instead of K; it must outlive this object.
     void use(const BlockMatrix& K) { stiffness_.use(K); }
     void keep_pattern() { stiffness_.keep_pattern(); }
     void restore_pattern() { stiffness_.restore_pattern(); }
     [[nodiscard]] std::optional<std::vector<Spring>> kept_pattern() const { return stiffness_.kept_pattern(); }
     void restore_pattern(const std::vector<Spring>& springs) { stiffness_.restore_pattern(springs); }
-    /// Factorises for the contacts given, every coupling of the pairs among them.
+    /// Factorises for the given contacts, which include every coupling of the pairs.
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
-    /// z = P^-1 r; `rows` says where the rows of the residual are.
+    /// z = P^-1 r; `rows` gives the numbering of the residual's rows.
     void apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const;
     [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
 

@@ -22,20 +22,21 @@ struct Spring {
 class PenaltyStiffness {
 public:
     PenaltyStiffness(const Constraints& constraints, const BlockMatrix& K);
-    /// Takes over new values of K; they count from the next set_springs() on.
+    /// Takes over new values of K; they apply from the next set_springs() on.
     void stiffness_changed();
-    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    /// Uses another matrix of the same pattern instead of K; it must outlive this object.
     void use(const BlockMatrix& K) {
         K_ = &K;
         stiffness_changed();
     }
-    /// Rewrites the matrix for other springs; the pattern grows where it has to.
+    /// Rewrites the matrix for other springs; the pattern grows if necessary.
     void set_springs(const std::vector<Spring>& springs);
-    /// Keeps the pattern as it is, or goes back to the one last kept: the order of elimination, and with it the last digit
-    /// of a solution, follows from the pattern.
+    /// Keeps the current pattern, or restores the one last kept: the order of elimination, and therefore the last digit
+    /// of a solution, depends on the pattern.
     void keep_pattern() { kept_ = pattern_springs_; }
     void restore_pattern();
-    /// Springs, places only, that the kept pattern was made for; none before the first. And the pattern for such springs, kept.
+    /// Springs (connected nodes only) for which the kept pattern was made; no value before the first. restore_pattern()
+    /// builds and keeps the pattern for such springs.
     [[nodiscard]] std::optional<std::vector<Spring>> kept_pattern() const {
         if (block_row_start_.empty()) return std::nullopt;
         return kept_;
@@ -45,16 +46,16 @@ public:
         fill_base();
         keep_pattern();
     }
-    /// Over the free components, by equation number.
+    /// The matrix over the free components, by equation number.
     [[nodiscard]] const solve::SparseMatrix& matrix() const { return matrix_; }
-    /// (nonzeros of matrix()) values of another matrix of the pattern of K, without springs.
+    /// (nonzeros of matrix()) values of another matrix with the pattern of K, without springs.
     [[nodiscard]] std::vector<double> values_of(const BlockMatrix& K) const;
 
 private:
     void build_pattern(const std::vector<Spring>& springs);
     void fill_base() { base_ = values_of(*K_); }
     [[nodiscard]] bool covers(const std::vector<Spring>& springs) const;
-    /// Position of block (row, column) among the blocks of its row, -1 where there is none.
+    /// Position of block (row, column) among the blocks of its row, -1 if there is none.
     [[nodiscard]] Index slot(Index row, Index column) const;
     void add(Index row, Index column, const Mat3& global, std::vector<double>& into) const;
 
@@ -62,7 +63,7 @@ private:
     const BlockMatrix* K_;
     std::vector<Index> block_row_start_, block_column_, block_offset_; ///< offset of a block's columns within a row
     std::vector<double> base_;
-    std::vector<Spring> pattern_springs_, kept_; ///< the pattern was built for; where they connect counts
+    std::vector<Spring> pattern_springs_, kept_; ///< springs of the pattern; only their nodes matter
     std::uint64_t patterns_ = 0;
     solve::SparseMatrix matrix_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// A slave node's contact law as preconditioners take it.
+/// A slave node's contact law in the form for preconditioners.
 
 #include "osculate/linear/penalty_stiffness.hpp"
 

@@ -13,13 +13,13 @@
 
 namespace osculate::linear {
 
-/// One slave node and the master nodes its contact may reach while the pattern lives.
+/// One slave node and the master nodes that its contact may reach during the lifetime of the pattern.
 struct Coupling {
     Index slave = -1;           ///< global node
-    std::vector<Index> masters; ///< global nodes, ascending; empty: an open node that presses on nothing
+    std::vector<Index> masters; ///< global nodes, ascending; empty: an open node without contact forces
 };
 
-/// Rows and columns are as Unknowns says.
+/// Rows and columns are numbered by Unknowns.
 class SystemMatrix {
 public:
     /// Without couplings the matrix is the symmetric stiffness of the free components.
@@ -39,20 +39,20 @@ public:
     void expect_unsymmetric() { matrix_.symmetric_positive_definite = false; }
     /// Takes over new values of K.
     void stiffness_changed();
-    /// Another matrix of the same pattern in place of K; it must outlive this object.
+    /// Uses another matrix of the same pattern instead of K; it must outlive this object.
     void use(const BlockMatrix& K) {
         K_ = &K;
         stiffness_changed();
     }
     /// Sets the values to the stiffness and the unit columns of the contact forces.
     void reset();
-    /// Contact tangent of coupling j in global components: contact rows, derivatives A (3 x 3+3n) by (slave, masters) and
-    /// D (3 x 3) by the contact force; equilibrium rows of the first m masters, derivatives E (3m x 3) by the contact
-    /// force and G (3m x 3+3n) by (slave, masters). Only rows of nodes that `lane` owns are written.
+    /// Adds the contact tangent of coupling j in global components. Contact rows: derivatives A (3 x 3+3n) by (slave,
+    /// masters) and D (3 x 3) by the contact force. Equilibrium rows of the first m masters: derivatives E (3m x 3) by
+    /// the contact force and G (3m x 3+3n) by (slave, masters). Writes only rows of nodes that `lane` owns.
     void add_contact(Index j, std::span<const Index> masters, const Eigen::Ref<const Matrix>& A, const Mat3& D,
                      const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
                      const Eigen::Ref<const Matrix>& G, Lane lane = {});
-    /// Contact tangent of an open coupling without partner: D only.
+    /// Adds the contact tangent of an open coupling without partner: D only.
     void add_contact(Index j, const Mat3& D, Lane lane = {});
     /// Declares the values complete.
     void finish() { ++matrix_.revision; }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the unknowns and the rows of a step's equations are.
+/// Numbering of the unknowns and rows of a step's equations.
 
 #include "osculate/linear/constraints.hpp"
 
@@ -10,17 +10,18 @@
 
 namespace osculate::linear {
 
-/// Unknowns in named blocks: `displacements`, free components by their equation numbers, then `contact forces`, three local
-/// components a slave node of a pair, its coupling. A slave node's three equilibrium rows and its three contact rows change
-/// places, so that both keep a large diagonal: equilibrium is solved for the contact force, the contact law for the
-/// displacement. Where a displacement component is held it has no equilibrium row, and the contact row stays with the force.
+/// The unknowns form named blocks: `displacements`, free components by their equation numbers, then `contact forces`,
+/// three local components for each slave node of a pair (its coupling). The three equilibrium rows of a slave node are
+/// exchanged with its three contact rows, so that both keep a large diagonal: equilibrium is solved for the contact
+/// force, the contact law for the displacement. A held displacement component has no equilibrium row, and the contact
+/// row remains with the force.
 class Unknowns {
 public:
     struct Block {
         std::string_view name;
         Index first = 0, size = 0;
     };
-    /// @param slaves  (couplings) global nodes; the first coupling of a node is the one that changes rows with it
+    /// @param slaves  (couplings) global nodes; rows are exchanged only with the first coupling of a node
     Unknowns(const Constraints& constraints, std::vector<Index> slaves)
         : constraints_(&constraints), slaves_(std::move(slaves)),
           exchanged_(static_cast<std::size_t>(constraints.nodes()), -1) {
@@ -35,16 +36,16 @@ public:
     }
     [[nodiscard]] Index couplings() const { return static_cast<Index>(slaves_.size()); }
     [[nodiscard]] Index slave(Index j) const { return slaves_[j]; }
-    /// The coupling that changes rows with a node, -1 none.
+    /// The coupling whose rows are exchanged with those of a node, -1: none.
     [[nodiscard]] Index exchanged(Index node) const { return exchanged_[node]; }
 
-    /// Row of the equilibrium of local component k of a node, or Constraints::held.
+    /// Equilibrium row of local component k of a node, or Constraints::held.
     [[nodiscard]] Index equilibrium_row(Index node, int k) const {
         const Index e = constraints_->equation(node, k);
         if (e == Constraints::held || exchanged_[node] < 0) return e;
         return multiplier(exchanged_[node]) + k;
     }
-    /// Row of the contact law of coupling j.
+    /// Row of the contact law of coupling j, component k.
     [[nodiscard]] Index contact_row(Index j, int k) const {
         const Index e = constraints_->equation(slaves_[j], k);
         return exchanged_[slaves_[j]] == j && e != Constraints::held ? e : multiplier(j) + k;

@@ -5,7 +5,7 @@
 
 namespace osculate::material {
 
-/// Hooke's law. Strain and stress in Voigt order xx yy zz xy yz zx, shear strains engineering (gamma = 2 eps).
+/// Hooke's law. Strain and stress in Voigt order xx yy zz xy yz zx, with engineering shear strains (gamma = 2 eps).
 /// @pre E > 0, -1 < nu < 1/2
 struct LinearElastic {
     double E = 0;  ///< Young's modulus, Pa

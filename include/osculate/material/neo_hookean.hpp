@@ -5,9 +5,9 @@
 
 namespace osculate::material {
 
-/// psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2, infinite where the volume vanishes.
+/// psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2, infinite at zero volume.
 /// [Bonet, Wood 2008, Nonlinear Continuum Mechanics for Finite Element Analysis, eq (6.27)]
-/// @pre as LinearElastic, whose constants and small-strain response it has
+/// @pre as LinearElastic, with the same constants and the same small-strain response
 class NeoHookean {
 public:
     explicit NeoHookean(const LinearElastic& small_strain) : lambda_(small_strain.lambda()), mu_(small_strain.mu()) {}

@@ -5,9 +5,9 @@
 
 namespace osculate::material {
 
-/// psi = lambda/2 (tr E)^2 + mu E : E. For large rotations with small strains; under strong compression it softens and
-/// lets elements collapse.
-/// @pre as LinearElastic, whose constants and small-strain response it has
+/// psi = lambda/2 (tr E)^2 + mu E : E. For large rotations with small strains; it softens under strong compression, so
+/// that elements collapse.
+/// @pre as LinearElastic, with the same constants and the same small-strain response
 class SaintVenantKirchhoff {
 public:
     explicit SaintVenantKirchhoff(const LinearElastic& small_strain)

@@ -2,8 +2,8 @@
 
 namespace osculate::mesh {
 
-/// How the top (and, extruded, every horizontal layer) of a block is divided: into quadrilaterals, into triangles, or
-/// into both side by side.
+/// How the top of a block (and, by extrusion, every horizontal layer) is divided: into quadrilaterals, into triangles,
+/// or into both side by side.
 enum class BlockPattern { quad, triangle, hybrid };
 
 } // namespace osculate::mesh

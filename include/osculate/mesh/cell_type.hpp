@@ -1,6 +1,6 @@
 #pragma once
-/// The list of cell types: all that is to be known of one stands in its row, and readers, writers, surfaces and repairs
-/// follow from it. What elements compute stands in fe::with_element's list.
+/// The list of cell types: the row of a type contains all facts about it; readers, writers, surfaces and repairs use
+/// only this. What elements compute is in the list of fe::with_element.
 
 #include <array>
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace osculate::mesh {
 
-/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA). Mind the
-/// wedge: its triangle (0, 1, 2) has its right-handed normal out of the element, away from (3, 4, 5). Nodes 4 to 9 of a
-/// tet10 stand midway on the edges 01, 12, 20, 03, 13, 23.
+/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA). Note the
+/// wedge: the right-handed normal of its triangle (0, 1, 2) points out of the element, away from (3, 4, 5). Nodes 4 to
+/// 9 of a tet10 are the midpoints of the edges 01, 12, 20, 03, 13, 23.
 enum class CellType { tet4, wedge6, hex8, tet10 };
 
 inline constexpr int most_nodes_per_cell = 10;
-using NodeOrder = std::array<int, most_nodes_per_cell>; ///< entry i: another's number of node i of ours
+using NodeOrder = std::array<int, most_nodes_per_cell>; ///< entry i: number of our node i in the other order
 
 /// Local node numbers of a triangle or quadrilateral, counter-clockwise seen from outside; nodes[3] is -1 for a triangle.
 struct LocalFace {
@@ -28,15 +28,15 @@ struct CellInfo {
     std::string_view meshio; ///< in Python
     int nodes;
     int vtk;  ///< VTK's number
-    int gmsh; ///< Gmsh's, and its order
+    int gmsh; ///< Gmsh's number
     NodeOrder from_gmsh;
     std::array<std::string_view, 3> deck; ///< names in Abaqus' and CalculiX' decks, and their order
     NodeOrder from_deck;
     NodeOrder mirrored;                        ///< the same cell seen in a mirror
     std::span<const LocalFace> faces;          ///< by their corners
-    std::span<const LocalFace> facets;         ///< what surfaces are made of: a six-node face is four triangles
-    std::span<const LocalFace> deck_faces;     ///< S1, S2, ... by their corners, in local nodes of ours
-    std::span<const std::array<int, 2>> edges; ///< that the nodes behind the corners stand midway on
+    std::span<const LocalFace> facets;         ///< for surfaces: a six-node face is four triangles
+    std::span<const LocalFace> deck_faces;     ///< S1, S2, ... by their corners, in our local nodes
+    std::span<const std::array<int, 2>> edges; ///< with the midside nodes, in their order
     std::span<const std::array<int, 3>>
         corner_neighbours; ///< of every corner, ordered so that the triple product of the
                            ///< edges to them is positive in a well-shaped element. One
@@ -44,7 +44,7 @@ struct CellInfo {
                            ///< are curved
 
     [[nodiscard]] constexpr int corners() const { return nodes - static_cast<int>(edges.size()); }
-    /// Node midway between two corners; -1 where there is none.
+    /// Midside node between two corners; -1 if there is none.
     [[nodiscard]] constexpr int midway(int a, int b) const;
 };
 
@@ -78,7 +78,7 @@ constexpr int midway(std::span<const std::array<int, 2>> edges, int corners, int
     return -1;
 }
 
-/// Every triangle with midside nodes as its three corner triangles and the middle one.
+/// Divides every triangle with midside nodes into three corner triangles and the middle one.
 template <std::size_t n>
 constexpr std::array<LocalFace, 4 * n> quarters(const LocalFace (&faces)[n], std::span<const std::array<int, 2>> edges,
                                                 int corners) {
@@ -96,7 +96,7 @@ constexpr std::array<LocalFace, 4 * n> quarters(const LocalFace (&faces)[n], std
 }
 inline constexpr auto tet10_facets = quarters(tet_faces, tet_edges, 4);
 
-// A wedge of a deck and of Gmsh has its first triangle facing inward, ours outward.
+// The first triangle of a wedge in decks and in Gmsh faces inward; ours faces outward.
 inline constexpr CellInfo list[] = {
     {CellType::hex8,
      "hex8",
@@ -166,7 +166,7 @@ constexpr int CellInfo::midway(int a, int b) const {
     return cells::midway(edges, corners(), a, b);
 }
 
-/// All types, in the order in which a mesh has its blocks.
+/// All types, in the order of the blocks of a mesh.
 [[nodiscard]] constexpr std::span<const CellInfo> cell_types() {
     return cells::list;
 }
@@ -181,7 +181,7 @@ constexpr int CellInfo::midway(int a, int b) const {
     return cell_info(type).nodes;
 }
 
-/// The row that f says is the one, null where there is none.
+/// The first row for which f is true; null if there is none.
 template <class F> [[nodiscard]] constexpr const CellInfo* find_cell_type(F&& f) {
     for (const CellInfo& info : cell_types())
         if (f(info)) return &info;

@@ -14,7 +14,7 @@ namespace osculate::mesh {
 struct DeckLine {
     std::string_view text;
     int line = 0; ///< 1-based
-    int file = 0; ///< of Deck::files
+    int file = 0; ///< index into Deck::files
 };
 
 /// `*KEYWORD, PARAMETER=value, ...` and the data below it.
@@ -22,17 +22,17 @@ struct DeckCard {
     std::string keyword; ///< in capitals, without the star, one blank between words
     std::vector<std::pair<std::string, std::string>> parameters; ///< names in capitals without blanks; values trimmed
     int line = 0, file = 0;
-    std::size_t first = 0, last = 0; ///< of Deck::lines
+    std::size_t first = 0, last = 0; ///< range in Deck::lines: first, and one past the last
 
-    /// A parameter's value, empty for one without; nullptr where it is not given.
+    /// Value of a parameter, empty for a parameter without value; nullptr if the parameter is not given.
     [[nodiscard]] const std::string* parameter(std::string_view name) const;
 };
 
 struct Deck {
-    std::vector<std::string> files; ///< the deck and those that it includes
+    std::vector<std::string> files; ///< the deck and the files that it includes
     std::vector<DeckCard> cards;
     std::vector<DeckLine> lines;
-    std::vector<std::shared_ptr<const std::string>> texts; ///< what the lines are views of
+    std::vector<std::shared_ptr<const std::string>> texts; ///< the storage to which DeckLine::text refers
 
     [[nodiscard]] std::string place(int file, int line) const { return files[file] + ":" + std::to_string(line); }
     [[nodiscard]] std::string place(const DeckCard& card) const { return place(card.file, card.line); }
@@ -45,20 +45,21 @@ struct Deck {
     }
 };
 
-/// Reads a deck and the files it includes (*INCLUDE, INPUT=file, from the folder of the file that names it).
+/// Reads a deck and the files that it includes (*INCLUDE, INPUT=file; the path is relative to the folder of the
+/// including file).
 /// Throws MeshError: a file that cannot be read, inclusion deeper than 10, more than 4 GB, data before any keyword.
 [[nodiscard]] Deck read_deck(const std::filesystem::path& path);
 
-/// The same of a text that includes nothing. @param name  for messages
+/// The same for a text that includes no files. @param name  for messages
 [[nodiscard]] Deck parse_deck(std::string text, const std::string& name);
 
-/// Fields of a data line between commas, trimmed. A comma at the very end adds none.
+/// Splits a data line at its commas into trimmed fields. A comma at the very end adds no field.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::string in_capitals(std::string_view text);
 
-/// A number as Fortran reads it: signs, 1.D5, 1.E+5; false where it is none or not finite.
+/// Reads a number as Fortran does: signs, 1.D5, 1.E+5; false if the text is no number or the number is not finite.
 [[nodiscard]] bool to_number(std::string_view text, double& value);
 [[nodiscard]] bool to_integer(std::string_view text, long long& value);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A surface as a doubly connected edge list: who is next to whom, in rings, across edges and around vertices.
+/// A surface as a doubly connected edge list: neighbours in rings, across edges and around vertices.
 
 #include "osculate/mesh/mesh.hpp"
 
@@ -9,13 +9,14 @@
 
 namespace osculate::mesh {
 
-/// Edges whose facet normals differ by more than this are features, rad: coarse arcs stay smooth, corners do not.
+/// Edges whose facet normals differ by more than this angle, rad, are feature edges: coarse arcs stay smooth, corners
+/// do not.
 inline constexpr double default_feature_angle = 40 * std::numbers::pi / 180;
 
-/// One side of an edge, running along its facet's boundary with the facet on its left, seen from outside.
+/// One side of an edge, directed along the boundary of its facet; the facet is on its left, seen from outside.
 struct HalfEdge {
-    Index origin = -1; ///< local vertex it starts at
-    Index next = -1;   ///< half-edge that follows around the facet
+    Index origin = -1; ///< local vertex at its start
+    Index next = -1;   ///< next half-edge around the facet
     Index twin = -1;   ///< half-edge of the facet across the edge; -1 on the boundary
     Index facet = -1;
 };
@@ -27,8 +28,8 @@ public:
     /// @param facets         oriented facets of one surface, closed or not, connected or not
     /// @param positions      of all mesh nodes, metres; for feature edges and facet sizes only
     /// @param feature_angle  rad
-    /// Throws std::runtime_error naming the nodes of an edge with three facets or more, or with facets that disagree
-    /// about the outside, and of a facet that has the same corner twice. O(n log n).
+    /// Throws std::runtime_error, with the nodes, for an edge with three facets or more, for an edge whose facets
+    /// disagree about the outside, and for a facet that has the same corner twice. O(n log n).
     HalfEdgeSurface(std::vector<Facet> facets, const std::vector<Vec3>& positions,
                     double feature_angle = default_feature_angle);
 
@@ -44,16 +45,17 @@ public:
     [[nodiscard]] Index vertex_of(Index node) const;
 
     [[nodiscard]] const std::vector<HalfEdge>& half_edges() const { return half_edges_; }
-    /// Half-edge that leaves corner 0 of a facet; corner c's is c further.
+    /// Half-edge that starts at corner 0 of a facet; the one at corner c has this number plus c.
     [[nodiscard]] Index first_half_edge(Index facet) const { return corner_start_[facet]; }
     /// Local vertices of a facet, counter-clockwise seen from outside.
     [[nodiscard]] std::span<const Index> facet_vertices(Index facet) const;
     /// Facets around a vertex, counter-clockwise seen from outside; at a boundary from one end of the fan to the other.
-    /// Where several fans touch in the vertex only, they follow one another.
+    /// If several fans meet only in this vertex, they are listed one after another.
     [[nodiscard]] std::span<const Index> vertex_facets(Index vertex) const;
-    /// Facet across every edge of a facet, edge c from corner c to the next; -1 at a boundary and beyond the last edge.
+    /// Facet across every edge of a facet, edge c from corner c to the next; -1 at a boundary and for c past the last
+    /// edge.
     [[nodiscard]] std::array<Index, 4> edge_neighbours(Index facet) const;
-    /// Facets that share a vertex with a facet, itself left out, ascending.
+    /// Facets that share a vertex with a facet, without this facet, ascending.
     [[nodiscard]] std::vector<Index> vertex_neighbours(Index facet) const;
 
     [[nodiscard]] bool is_boundary_edge(Index half_edge) const { return half_edges_[half_edge].twin < 0; }

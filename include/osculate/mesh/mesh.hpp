@@ -19,8 +19,8 @@ struct ElementBlock {
     [[nodiscard]] Index size() const { return static_cast<Index>(connectivity.size()) / nodes_per_cell(type); }
 };
 
-/// A triangle or quadrilateral of a surface, corners counter-clockwise seen from outside the body. The six-node face of a
-/// tet10 is four triangles, so that its midside nodes are corners of facets like any other node.
+/// A triangle or quadrilateral of a surface, corners counter-clockwise seen from outside the body. The six-node face of
+/// a tet10 is divided into four triangles, so that its midside nodes are corners of facets, as all other nodes.
 struct Facet {
     std::array<Index, 4> nodes{-1, -1, -1, -1}; ///< nodes[3] is -1 for a triangle
     int count = 0;                              ///< 3 or 4
@@ -45,7 +45,7 @@ struct Mesh {
 /// O(n log n) in the number of element faces.
 [[nodiscard]] std::vector<Facet> exterior_facets(const Mesh& mesh);
 
-/// Outward vector area of a facet at given nodal positions, square metres: the integral of n dA (exact for a bilinear
+/// Outward area vector of a facet at given nodal positions, square metres: the integral of n dA (exact for a bilinear
 /// quadrilateral too).
 [[nodiscard]] Vec3 facet_area_vector(const Facet& facet, const std::vector<Vec3>& positions);
 

@@ -7,7 +7,7 @@
 
 namespace osculate::mesh {
 
-/// Every reason found, each with the file and the file's own numbers.
+/// Contains every reason found, each with the file and the numbers used in the file.
 class MeshError : public std::runtime_error {
 public:
     explicit MeshError(std::vector<std::string> reasons);

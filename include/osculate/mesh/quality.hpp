@@ -1,5 +1,5 @@
 #pragma once
-/// Checks of a mesh before anything is computed on it.
+/// Checks of a mesh before any computation.
 
 #include "osculate/mesh/mesh.hpp"
 
@@ -7,15 +7,15 @@
 
 namespace osculate::mesh {
 
-/// Volume of one cell within its facets, (bi)linear as they are, cubic metres; negative when the cell is turned inside out.
+/// Volume of one cell bounded by its (bi)linear facets, cubic metres; negative if the cell is inside out.
 [[nodiscard]] double cell_volume(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions);
 
-/// First node of a cell, by its place in `nodes`, with a Jacobian that is not positive (NaN included), or -1.
+/// First node of a cell, as index into `nodes`, at which the Jacobian is not positive (or is NaN); -1 if there is none.
 [[nodiscard]] int bad_corner(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions);
 
-/// What is wrong with the mesh, one sentence each: node numbers out of range, positions that are not finite, elements
-/// with a non-positive Jacobian at a node, nodes that no element uses. Empty for a sound mesh.
-/// @param limit  faults listed at most; a last sentence counts the others
+/// Faults of the mesh, one sentence each: node numbers out of range, positions that are not finite, elements with a
+/// non-positive Jacobian at a node, nodes that no element uses. Empty for a correct mesh.
+/// @param limit  largest number of faults listed; a last sentence gives the number of the others
 [[nodiscard]] std::vector<std::string> faults(const Mesh& mesh, std::size_t limit = 20);
 
 } // namespace osculate::mesh

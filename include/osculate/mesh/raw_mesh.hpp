@@ -1,5 +1,5 @@
 #pragma once
-/// What a mesh file holds, in the file's own numbers, before a body is made of it.
+/// Content of a mesh file, with the numbers used in the file, before a body is made of it.
 
 #include "osculate/mesh/mesh.hpp"
 
@@ -28,8 +28,8 @@ private:
     }
 };
 
-/// A face of a cell by its points, in any orientation: 3 or 4 corners, or those of a six-node triangle with the points
-/// midway on the edges 01, 12, 20 behind them.
+/// A face of a cell by its points, in any orientation: 3 or 4 corners, or the 3 corners of a six-node triangle followed
+/// by the midpoints of the edges 01, 12, 20.
 struct RawFace {
     std::array<Index, 6> nodes{-1, -1, -1, -1, -1, -1};
     int count = 0;
@@ -39,12 +39,12 @@ struct RawMesh {
     std::string file;
     std::vector<Vec3> points;
     std::vector<std::int64_t> point_ids; ///< the file's
-    std::vector<char> elsewhere;         ///< per point: a cell that is no volume uses it
+    std::vector<char> elsewhere;         ///< per point: used by a cell that is not a volume or not in this mesh
     std::vector<RawCell> cells;
     std::map<std::string, std::vector<Index>> node_sets;
     std::map<std::string, std::vector<RawFace>> surfaces;
     std::map<std::string, std::vector<Index>> parts; ///< named sets of cells
-    bool sets_are_surfaces = false; ///< the exterior facets within a node set are the surface of its name
+    bool sets_are_surfaces = false; ///< the exterior facets of a node set are the surface with its name
     const char* cell_word = "element";
     const char* point_word = "node";
 };

@@ -8,32 +8,31 @@
 
 namespace osculate::mesh {
 
-/// Distance within which a node lies on a plane, a cylinder or a box, over the diagonal of the mesh's bounding box.
-/// Wide enough for coordinates stored in single precision, far below any element's size.
+/// Distance within which a node counts as being on a plane, a cylinder or a box, divided by the diagonal of the mesh's
+/// bounding box. It is large enough for coordinates stored in single precision, and far below any element's size.
 inline constexpr double selection_tolerance = 1e-6;
 
-/// Nodes and exterior facets of a part of a body; empty when nothing fits.
+/// Nodes and exterior facets of a part of a body; empty if nothing matches.
 struct Region {
     std::vector<Index> nodes;  ///< ascending, each once
     std::vector<Facet> facets; ///< oriented outward
 };
 
-/// The surface or node set that the mesh itself names; a name that is both gives the surface's facets and the nodes of
-/// either. A node set alone gives the exterior facets it covers. Nothing when the mesh has no such name.
+/// The surface or node set with this name in the mesh. If both exist, the result has the surface's facets and the nodes
+/// of either. A node set alone gives also the exterior facets that it covers. No value if the mesh has no such name.
 [[nodiscard]] std::optional<Region> select_named(const Mesh& mesh, const std::vector<Facet>& exterior,
                                                  const std::string& name);
 
-/// Nodes on a plane, inner ones too, and the exterior facets in it.
+/// Nodes on a plane, also inside the body, and the exterior facets in it.
 [[nodiscard]] Region select_plane(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& point,
                                   const Vec3& normal);
 
-/// Nodes at `radius` from an axis, inner ones too, and the exterior facets that follow the cylinder (not the flat ends
-/// that merely have their corners on it).
+/// Nodes at `radius` from an axis, also inside the body, and the exterior facets that follow the cylinder (not facets
+/// of flat ends that only have their corners on it).
 [[nodiscard]] Region select_cylinder(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& point,
                                      const Vec3& axis, double radius);
 
-/// Nodes inside an axis-parallel box or on it, inner ones of the body too, and the exterior facets with all corners
-/// there.
+/// Nodes inside or on an axis-parallel box, also inside the body, and the exterior facets with all corners there.
 [[nodiscard]] Region select_box(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& min, const Vec3& max);
 
 /// Exterior facets whose outward normal is within `angle` (rad) of a direction, and their nodes.

@@ -1,5 +1,5 @@
 #pragma once
-/// Facets of a surface put together to the element faces that they are parts of, for integrals over them.
+/// Combines facets of a surface into the element faces to which they belong, for integrals over them.
 
 #include "osculate/mesh/mesh.hpp"
 
@@ -7,16 +7,16 @@
 
 namespace osculate::mesh {
 
-/// A face of an element: a triangle, a quadrilateral, or the face of a tet10, which is curved with its six nodes. A Facet is
-/// a plane quarter of the latter: good for pictures and for who is next to whom, not for integrals. Under a uniform pressure
-/// the corners of a straight six-node face carry nothing and its middle nodes a third each.
+/// A face of an element: a triangle, a quadrilateral, or the six-node face of a tet10, which is curved. A Facet is a
+/// plane quarter of a six-node face: suitable for pictures and for neighbourhood, but not for integrals. Under uniform
+/// pressure the corners of a straight six-node face get no force, and its midside nodes a third each.
 struct SurfaceFace {
-    /// Corners counter-clockwise seen from outside, then the nodes midway on the edges 01, 12 and 20; -1 past count.
+    /// Corners counter-clockwise seen from outside, then the midpoints of the edges 01, 12 and 20; -1 past count.
     std::array<Index, 6> nodes{-1, -1, -1, -1, -1, -1};
     int count = 0; ///< 3, 4 or 6
 
-    /// Quarters of a six-node face: those at corners 0, 1 and 2, and the middle one; part of a surface may be cut through
-    /// a face. All of it otherwise.
+    /// Quarters of a six-node face that belong to the surface: those at corners 0, 1 and 2, and the middle one; a
+    /// surface may contain only some of them. All true for other faces.
     std::array<bool, 4> quarters{true, true, true, true};
 
     [[nodiscard]] auto begin() const { return nodes.begin(); }
@@ -27,11 +27,11 @@ struct SurfaceFace {
 /// The facet as a face of three or four nodes, with straight edges.
 [[nodiscard]] SurfaceFace plane_face(const Facet& facet);
 
-/// The faces that facets of one body are parts of, each once, in the order of their first facets.
-/// @param facets      exterior facets of `mesh`, each at most once, their nodes numbered from first_node; those that name
-///                    no block are faces by themselves
-/// @param first_node  added to the mesh's node numbers in what comes back, as it is in `facets`
-/// Throws InternalError where a facet of a tet10 is no quarter of one of its element's faces. O(n log n).
+/// The faces to which facets of one body belong, each once, in the order of their first facets.
+/// @param facets      exterior facets of `mesh`, each at most once, with nodes numbered from first_node; a facet that
+///                    names no block is a face by itself
+/// @param first_node  offset of the node numbers, in `facets` and in the result, from those of the mesh
+/// Throws InternalError if a facet of a tet10 is not a quarter of a face of its element. O(n log n).
 [[nodiscard]] std::vector<SurfaceFace> surface_faces(const Mesh& mesh, const std::vector<Facet>& facets,
                                                      Index first_node = 0);
 

@@ -1,9 +1,9 @@
 #pragma once
-/// Threads of VTK.
+/// Number of threads that VTK uses.
 
 namespace osculate::mesh {
 
-/// Confines VTK to the thread that calls it, once: a run has the threads it was asked for, and no others.
+/// Confines VTK to the calling thread, once per process: a run has only the threads that the user asked for.
 void use_no_vtk_threads();
 
 } // namespace osculate::mesh

@@ -1,5 +1,6 @@
 #pragma once
-/// One contact pair: slave nodes, or the slave facets around them, against a master surface. What is fixed for a run.
+/// One contact pair: slave nodes, or the slave facets around them, against a master surface. Only data that is fixed
+/// for a run.
 
 #include "osculate/contact/coulomb.hpp"
 #include "osculate/contact/discretisation.hpp"
@@ -16,45 +17,46 @@
 
 namespace osculate::model {
 
-/// What a pair carries from one accepted step to the next.
+/// Data that a pair keeps from one accepted step to the next.
 struct ContactHistory {
     std::vector<Vec3> lambda;            ///< (slaves) contact force on each slave node, N, global components
     std::vector<contact::Status> status; ///< (slaves)
-    std::vector<Index> facet;            ///< (slaves) temporary contact facet, -1 not searched yet
-    std::shared_ptr<const contact::MasterSurface> master; ///< with the patches that have been fitted anew; never null
+    std::vector<Index> facet;            ///< (slaves) temporary facet, -1: not searched yet
+    std::shared_ptr<const contact::MasterSurface> master; ///< with all patches refitted so far; never null
 };
 
-/// Slave nodes of a pair with what belongs to each.
+/// Slave nodes of a pair and the data of each node.
 struct SlaveNodes {
     std::vector<Index> node;         ///< global
     std::vector<double> area;        ///< tributary area in the reference configuration, m^2
     std::vector<double> stiffness;   ///< c of the complementarity function, N/m
     std::vector<mesh::Facet> facets; ///< slave surface, global nodes
-    std::vector<Mat3> in_plane{};    ///< projectors on the symmetry planes a node lies on; empty: there are none
+    std::vector<Mat3> in_plane{};    ///< projectors on the symmetry planes of each node; empty: no such planes
 };
 
-/// What the vertices of a master surface are: nodes, or mirror images of nodes.
+/// Vertices of a master surface: nodes, or mirror images of nodes.
 struct MasterNodes {
     std::vector<Index> node;    ///< (vertices) global
-    std::vector<Index> image{}; ///< (vertices) into images; empty: every vertex is its node
+    std::vector<Index> image{}; ///< (vertices) index into images; empty: every vertex is its node
     std::vector<contact::Image> images{contact::Image{}};
-    std::vector<double> thickness{}; ///< (vertices) of the body behind, m; empty: not asked for
+    std::vector<double> thickness{}; ///< (vertices) thickness of the body behind, m; empty: not needed
 };
 
 struct ContactOptions {
     double friction = 0;      ///< Coulomb's mu
     double hysteresis = 0.03; ///< of the facet size, see contact::FacetSearch::track
     int changes_before_latch =
-        4; ///< facet changes of a node within one attempt, after which it stays: it is on an edge
-    double closing_tolerance = 0.02; ///< of the facet size: how near counts as touching before anything is in contact
+        4; ///< facet changes of a node in one attempt after which it keeps its facet: it is on an edge
+    double closing_tolerance = 0.02; ///< of the facet size: largest distance that counts as touching before any contact
     Discretisation discretisation = Discretisation::node;
 };
 
 class ContactPair {
 public:
-    /// @param X            reference positions of all nodes
-    /// @param master_nodes what the vertices of `surface` are
-    /// @param smooth       for mortar: surface through the slave nodes, its vertices' nodes among them; null: their facets
+    /// @param X             reference positions of all nodes
+    /// @param master_nodes  what the vertices of `surface` are
+    /// @param smooth        for mortar: surface through the slave nodes, which are nodes of its vertices; null: their
+    ///                      facets
     ContactPair(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
                 std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
                 std::shared_ptr<const contact::MasterSurface> master, const ContactOptions& options,
@@ -64,33 +66,34 @@ public:
     [[nodiscard]] Index size() const { return static_cast<Index>(slaves_.node.size()); }
     [[nodiscard]] const SlaveNodes& slaves() const { return slaves_; }
     [[nodiscard]] const mesh::HalfEdgeSurface& surface() const { return *surface_; }
-    /// As it was made; ContactHistory::master is the one of a state.
+    /// The initial master surface; that of a state is in ContactHistory::master.
     [[nodiscard]] const std::shared_ptr<const contact::MasterSurface>& master() const { return master_; }
     [[nodiscard]] const std::vector<Index>& master_nodes() const { return master_nodes_.node; }
     [[nodiscard]] const ContactOptions& options() const { return options_; }
-    /// To be cloned, and the clone evaluated.
+    /// The discretisation to clone; evaluate only the clone.
     [[nodiscard]] const contact::Discretisation& discretisation() const { return *discretisation_; }
-    /// To be copied, and the copy built.
+    /// The search to copy; build only the copy.
     [[nodiscard]] const contact::FacetSearch& search() const { return search_; }
-    /// Least thickness of the body behind a facet's vertices, m; infinite where none was given.
+    /// Least thickness of the body behind a facet's vertices, m; infinite if none was given.
     [[nodiscard]] double thickness(Index facet) const;
-    /// The smallest of all facet sizes and thicknesses, m: motions well below it leave no doubt about the side of a node.
+    /// The smallest of all facet sizes and thicknesses, m: for motions well below it, the side of a node is
+    /// unambiguous.
     [[nodiscard]] double finest() const { return finest_; }
-    /// Positions of the master's vertices, mirror images among them.
+    /// Positions of the master's vertices, including mirror images.
     [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const;
-    /// The image that a vertex is.
+    /// The image of a vertex.
     [[nodiscard]] const contact::Image& image_of(Index vertex) const {
         return master_nodes_.images[master_nodes_.image.empty() ? 0 : master_nodes_.image[vertex]];
     }
     /// Whether the master has mirror images: forces on them fold back onto its nodes.
     [[nodiscard]] bool mirrored() const { return !master_nodes_.image.empty(); }
-    /// The vertex that stands for the node itself of which `vertex` may be an image.
+    /// The vertex that is the node itself, if `vertex` is an image of this node.
     [[nodiscard]] Index own_vertex(Index vertex) const { return own_vertex_.empty() ? vertex : own_vertex_[vertex]; }
-    /// Its linear part; from surface().vertex_count() on, which are slave nodes, the unit matrix.
+    /// Linear part of the image; the unit matrix for numbers from surface().vertex_count() on, which are slave nodes.
     [[nodiscard]] const Mat3& image(Index vertex) const {
         return vertex < surface_->vertex_count() ? image_of(vertex).M : master_nodes_.images.front().M;
     }
-    /// Global node of a vertex, or of a slave node as Mortar numbers them.
+    /// Global node of a vertex, or of a slave node in the numbering of Mortar.
     [[nodiscard]] Index node(Index vertex) const {
         return vertex < surface_->vertex_count() ? master_nodes_.node[vertex]
                                                  : slaves_.node[vertex - surface_->vertex_count()];

@@ -33,55 +33,55 @@ struct Set {
 
 struct Model {
     std::vector<Body> bodies;
-    Vec3 origin = Vec3::Zero(); ///< where the scene's coordinates have X = 0, m: far from it digits would be lost
-    Field X;                    ///< reference positions of all nodes from `origin`, as those of the bodies' meshes, m
+    Vec3 origin = Vec3::Zero(); ///< position of X = 0 in the scene's coordinates, m; saves digits far from their zero
+    Field X;                    ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m
     std::vector<Set> sets;
     std::vector<std::unique_ptr<const ContactPair>> pairs;
     linear::BlockMatrix K;                        ///< constant stiffness of the linear elements, in the pattern of all
-    std::unique_ptr<NonlinearElements> nonlinear; ///< the other elements; null where there are none
+    std::unique_ptr<NonlinearElements> nonlinear; ///< the other elements; null if there are none
     linear::BlockMatrix consistent_mass,
-        lumped_mass;                      ///< of all bodies, kg, pattern of K; empty where no stage asks for it
-    std::vector<Index> kept_contact_mass; ///< bodies whose contact nodes were to have no mass and keep it, ascending
+        lumped_mass;                      ///< of all bodies, kg, pattern of K; empty if no stage needs it
+    std::vector<Index> kept_contact_mass; ///< bodies that keep their contact mass against the request, ascending
 
-    Field initial_velocity; ///< (nodes) m/s; empty where no stage is dynamic
+    Field initial_velocity; ///< (nodes) m/s; empty if no stage is dynamic
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
-/// Number of the body of a global node, and the body; -1 and null for no node.
+/// Number of the body of a global node, and the body; -1 and null for node -1.
 [[nodiscard]] Index body_index(const Model& model, Index node);
 [[nodiscard]] const Body* body_of(const Model& model, Index node);
-/// Internal forces of all bodies at the end of a step, or of a state, (nodes) N.
+/// Internal forces of all bodies at the end of a step, or in a state, (nodes) N.
 [[nodiscard]] Field internal_force(const Model& model, const BodyStep& step, int threads);
 /// Energy stored in all bodies, J.
 [[nodiscard]] double strain_energy(const Model& model, const Field& u, const MaterialHistory& history, int threads);
-/// Before anything has happened.
+/// History of the undeformed initial state.
 [[nodiscard]] MaterialHistory initial_history(const Model& model);
 /// Largest diagonal entry of the stiffness of all undeformed bodies, N/m.
 [[nodiscard]] double largest_stiffness(const Model& model);
 /// Stiffness of all undeformed bodies, in the pattern of K.
 [[nodiscard]] linear::BlockMatrix undeformed_stiffness(const Model& model, int threads);
-/// Stiffness of the bodies that are linear, in the pattern of all.
+/// Stiffness of the linear bodies, in the pattern of all bodies.
 [[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
 struct AssembledMass {
     linear::BlockMatrix M;
-    std::vector<Index> kept; ///< bodies that keep the mass of nodes marked, because nothing else has their moments
+    std::vector<Index> kept; ///< bodies that keep the mass of marked nodes: nothing else has their moments
 };
 /// Mass of all bodies, multiples of the unit matrix in the pattern of the stiffness; lumped: diagonal.
-/// @param massless  (nodes) nodes that are to have no mass: theirs goes to the other nodes of their elements, and factors
+/// @param massless  (nodes) marks nodes without mass: their mass goes to the other nodes of their elements, and factors
 ///                  near 1 on all elements keep the body's mass, centre and inertia to round-off, see moment_factors().
-///                  A body without such factors keeps its mass as it is. Empty: none
+///                  A body for which no such factors exist keeps its mass unchanged. Empty: none
 [[nodiscard]] AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
                                           const std::vector<char>& massless);
-/// (nodes) share of each node in the volume of its body, lumped; the shares of a body sum to 1.
+/// (nodes) lumped fraction of each node in the volume of its body; the fractions of a body sum to 1.
 [[nodiscard]] std::vector<double> volume_shares(const Model& model);
 /// Centre of mass of a body of uniform density in its reference configuration, m.
 [[nodiscard]] Vec3 centre_of_mass(const Body& body);
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).
 void add_body_force(const Body& body, const Vec3& b, Field& f);
 
-/// What an accepted step leaves behind, and a rejected one restores: plain values.
+/// State after an accepted step, restored after a rejected one: plain values.
 struct State {
     double time = 0;
     Field u;    ///< displacements, m
@@ -89,11 +89,11 @@ struct State {
     std::vector<ContactHistory> contact;
     MaterialHistory material{};
 
-    /// The step of no length from here to here, whose forces are those of the state.
+    /// The step of zero length from this state to itself; its forces are those of the state.
     [[nodiscard]] BodyStep at_rest() const { return {u, u, material}; }
 };
 
-/// Nodal stress of one body (nodes x 6, Pa, Voigt): element values averaged with the element volumes as weights.
+/// Nodal stress of one body (nodes x 6, Pa, Voigt): averages of element values, weighted by element volumes.
 [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index body, const State& state);
 
 } // namespace osculate::model

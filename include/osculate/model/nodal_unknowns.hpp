@@ -1,5 +1,5 @@
 #pragma once
-/// The free components of all nodes as multigrid sees them.
+/// The free components of all nodes in the form that multigrid needs.
 
 #include "osculate/linear/constraints.hpp"
 #include "osculate/model/model.hpp"
@@ -7,7 +7,8 @@
 
 namespace osculate::model {
 
-/// Equations of nodes that are free to move at all, by local component, and the rigid motions of every body, zero along held components.
+/// Equations of all nodes with a free component, by local component, and the rigid motions of every body, zero along
+/// held components.
 [[nodiscard]] solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraints& constraints);
 
 } // namespace osculate::model

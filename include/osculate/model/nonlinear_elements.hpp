@@ -1,5 +1,5 @@
 #pragma once
-/// Elements whose internal forces are no linear function of the displacements.
+/// Elements whose internal forces are a nonlinear function of the displacements.
 
 #include "osculate/core/field.hpp"
 #include "osculate/fe/element_block.hpp"
@@ -13,37 +13,38 @@ namespace osculate::model {
 
 struct Body;
 
-/// The element that is worst off, and how. Where it is not admissible the forces of that element are missing.
+/// The element with the least det F. If it is not admissible, the forces of this element are missing.
 struct WorstElement {
-    double J = 1; ///< least det F; <= 0: turned inside out, the displacements have no forces
+    double J = 1; ///< least det F; <= 0: inside out, no forces exist for these displacements
     Index body = -1, element = -1;
 
     [[nodiscard]] bool admissible() const { return J > 0; }
 };
 
-/// What elements carry from step to step: so many numbers each, as their kernels say, in the order of bodies, blocks and
-/// elements. Zeros before anything has happened; empty where no element has a past.
+/// Histories of all elements from step to step: as many numbers as their kernels say, in the order of bodies, blocks
+/// and elements. Zeros in the undeformed initial state; empty if no element has a history.
 using MaterialHistory = std::vector<double>;
 
-/// A step of all bodies, or a state: a step of no length, from itself.
+/// A step of all bodies; or a state, as a step of zero length from itself.
 struct BodyStep {
     const Field &u_start, &u; ///< (nodes) displacements at its two ends, m
     const MaterialHistory& history_start;
-    std::optional<fe::StepMean> mean{}; ///< forces averaged over the step, in dynamics; none: those at its end
+    std::optional<fe::StepMean> mean{}; ///< forces averaged over the step, in dynamics; none: forces at its end
 };
 
-/// The nonlinear elements of all bodies, with their global nodes and their places in the stiffness.
-/// Sums are in the order of the elements: bitwise the same for any number of threads.
+/// The nonlinear elements of all bodies, with their global nodes and their positions in the stiffness. Sums are made in
+/// the order of the elements: bitwise the same for any number of threads.
 class NonlinearElements {
 public:
-    /// @param pattern  holds every pair of nodes of an element; matrices of add_tangent() must have the same
+    /// @param pattern  contains every pair of nodes of an element; matrices of add_tangent() must have the same pattern
     NonlinearElements(const std::vector<Body>& bodies, const linear::BlockMatrix& pattern);
 
     /// f += internal forces of a step, see fe::ElementKernel::update. X (nodes) m, f (nodes) N.
     WorstElement add_force(const Field& X, const BodyStep& step, Field& f, int threads) const;
-    /// K += their derivative by the displacements at its end. Elements that are not admissible are left out.
+    /// K += derivative of these forces by the displacements at the step's end, without elements that are not
+    /// admissible.
     void add_tangent(const Field& X, const BodyStep& step, linear::BlockMatrix& K, int threads) const;
-    /// The histories at its end; empty where no element has a past.
+    /// The histories at the step's end; empty if no element has a history.
     [[nodiscard]] MaterialHistory history(const Field& X, const BodyStep& step, int threads) const;
     /// Energy stored in a state, J.
     [[nodiscard]] double energy(const Field& X, const Field& u, const MaterialHistory& history, int threads) const;
@@ -51,18 +52,18 @@ public:
     [[nodiscard]] double largest_stiffness() const { return largest_stiffness_; }
 
 private:
-    /// A block of equal elements.
+    /// A block of elements of the same kind.
     struct Block {
         const fe::ElementKernel* kernel = nullptr;
         Index body = -1, first_element = 0, size = 0;    ///< first_element: number in its body
-        std::size_t history_first = 0, history_size = 0; ///< of its first element, and of each
+        std::size_t history_first = 0, history_size = 0; ///< start for the first element; numbers per element
         std::vector<Index> node;                         ///< (size x n) global
         std::vector<Index> slot;                         ///< (size x n x n) of block (i, j) in the pattern, row by row
 
         [[nodiscard]] std::span<const double> history(const MaterialHistory& all, Index element) const;
     };
-    /// In batches: compute(k, element) for the k-th element of the batch, on several threads; then use(k, element), in
-    /// order.
+    /// In batches: calls compute(k, element) for the k-th element of the batch, on several threads; then use(k,
+    /// element), in order.
     template <class Compute, class Use>
     static void for_each(const Block& block, int threads, Compute&& compute, Use&& use);
     /// Calls act(fe::ElementStep) for an element of a step.
@@ -73,7 +74,7 @@ private:
     double largest_stiffness_ = 0;
 };
 
-/// Numbers that a body's elements carry, and where they are in a MaterialHistory.
+/// Position and count of the history numbers of a body's elements in a MaterialHistory.
 struct HistoryPlace {
     std::size_t first = 0, size = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Which rigid motions of a body are held by directions at its nodes.
+/// Determines which rigid motions of a body are held by directions at its nodes.
 
 #include "osculate/model/model.hpp"
 
@@ -8,15 +8,15 @@
 
 namespace osculate::model {
 
-/// About which point a body turns, and its size: what brings rotations to the scale of translations.
+/// Centre of a body for rotations, and its size, which scales rotations to translations.
 struct Extent {
     Vec3 centre = Vec3::Zero(); ///< mean of the nodes, m
-    double radius = 0;          ///< of the node farthest from it, m
+    double radius = 0;          ///< distance of the farthest node from it, m
 };
 /// @param x  (all nodes) positions, m
 [[nodiscard]] Extent extent(const Body& body, const std::vector<Vec3>& x);
 
-/// Rows d . (t + w x r) of held directions d, gathered in a Gram matrix: its rank is the number of motions they hold.
+/// Gram matrix of the rows d . (t + w x r) of held directions d: its rank is the number of motions that they hold.
 class RigidHold {
 public:
     /// @param x  (all nodes) positions, m
@@ -24,9 +24,10 @@ public:
 
     /// Holds a point of the body along a unit direction.
     void hold(const Vec3& point, const Vec3& direction);
-    /// Rigid motions nothing holds, 0 to 6.
+    /// Number of rigid motions that are not held, 0 to 6.
     [[nodiscard]] int free() const;
-    /// Those in words, "along z", "about x": coordinate axes through the body's centre, and how many there are besides.
+    /// These motions in words: "along z", "about x" for coordinate axes through the body's centre, and the number of
+    /// others.
     [[nodiscard]] std::vector<std::string> free_motions() const;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-/// What a contact pair comes to as a whole.
+/// Resultants of a contact pair.
 
 #include "osculate/output/snapshot.hpp"
 
@@ -12,7 +12,7 @@ struct ContactResultants {
     double friction = 0;        ///< sum of |lambda_T|, N
     double area = 0;            ///< of the closed nodes, in the reference configuration, m^2
     long open = 0, stick = 0, slip = 0;
-    double penetration = 0; ///< of the deepest slave node in the master, or of the bodies by the audit, >= 0, m
+    double penetration = 0; ///< of the deepest slave node in the master, or of bodies by the audit, >= 0, m
 };
 
 [[nodiscard]] ContactResultants contact_resultants(const Snapshot& snapshot, Index pair);

@@ -12,8 +12,8 @@ struct NumberTable {
     std::vector<std::vector<double>> columns; ///< an empty cell is NaN
 };
 
-/// Reads a table that holds nothing but numbers, such as history.csv. A last line without its end is left out.
-/// @throws std::runtime_error with path and line where it does not
+/// Reads a table that contains only numbers, such as history.csv. Ignores a last line without line end.
+/// @throws std::runtime_error with path and line if it contains anything else
 [[nodiscard]] NumberTable read_numbers(const std::filesystem::path& path);
 
 } // namespace osculate::output

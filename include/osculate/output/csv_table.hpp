@@ -1,5 +1,5 @@
 #pragma once
-/// Tables a run writes row by row.
+/// Tables that a run writes row by row.
 
 #include <cstdint>
 #include <cstdio>
@@ -18,17 +18,17 @@ using Cell = std::variant<double, long, std::string>;
 /// row() returns; a double is written with the fewest digits that read back as the same number.
 class CsvTable {
 public:
-    /// Starts the file anew; its folder is made when missing.
-    /// @param keep  not given; or the first bytes of the file that stay, whole rows below the same line of names
-    /// @throws std::runtime_error with path and reason, as row() does
+    /// Starts a new file; creates its folder if missing.
+    /// @param keep  first bytes of the existing file to keep, whole rows below the same line of names; not given: none
+    /// @throws std::runtime_error with path and reason, like row()
     CsvTable(std::filesystem::path path, const std::vector<std::string>& columns,
              std::optional<std::uintmax_t> keep = std::nullopt);
 
-    /// @throws InternalError when there is not one cell per column
+    /// @throws InternalError unless there is one cell per column
     void row(const std::vector<Cell>& cells);
-    /// Every row has reached the disk when it returns.
+    /// Waits until every row is on the disk.
     void sync() const;
-    /// Bytes written so far, those kept among them.
+    /// Bytes written so far, including those kept.
     [[nodiscard]] std::uintmax_t size() const { return size_; }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The fields a frame can hold, one row each.
+/// The fields that a frame can contain, one row each.
 
 #include "osculate/output/snapshot.hpp"
 #include "osculate/output/vtk_file.hpp"
@@ -18,17 +18,17 @@ struct OutputField {
     int components;
     const char* unit; ///< SI; empty for numbers without one
     bool integer;
-    /// Values point by point: of a body's nodes, a pair's slave nodes or its master's vertices.
+    /// Values point by point: at a body's nodes, a pair's slave nodes or its master's vertices.
     std::vector<double> (*values)(const Snapshot&, Index body_or_pair);
 };
 
 /// Every field, in the order of the reference.
 [[nodiscard]] std::span<const OutputField> all_fields();
 
-/// The field of that name. @throws InternalError when there is none
+/// The field with this name. @throws InternalError if there is none
 [[nodiscard]] const OutputField& field(FieldPlace where, const std::string& name);
 
-/// Its values as an array of a VTK file.
+/// Values of the field as an array of a VTK file.
 [[nodiscard]] Array evaluate(const OutputField& field, const Snapshot& snapshot, Index body_or_pair);
 
 } // namespace osculate::output

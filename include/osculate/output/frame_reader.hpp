@@ -18,15 +18,15 @@ struct Frame {
     [[nodiscard]] const Array* find(const std::string& name) const;
 };
 
-/// Reads a .vtp or .vtu file of this program. @throws std::runtime_error with the path where it is none
+/// Reads a .vtp or .vtu file of this program. @throws std::runtime_error with the path if it is not one
 [[nodiscard]] Frame read_frame(const std::filesystem::path& path);
 
-/// Polygons of such a file; of a .vtu file the exterior of its elements. Node numbers index the points of the frame.
-/// @throws std::runtime_error as read_frame()
+/// Polygons of such a file; for a .vtu file the exterior of its elements. Node numbers index the points of the frame.
+/// @throws std::runtime_error like read_frame()
 [[nodiscard]] std::vector<mesh::Facet> read_facets(const std::filesystem::path& path);
 
-/// The file of the last frame of a part ("PAIR.slave", "BODY") in the folder of a run; none where there is no frame but
-/// the initial one.
+/// The file of the last frame of a part ("PAIR.slave", "BODY") in the folder of a run; no value if there is only the
+/// initial frame.
 [[nodiscard]] std::optional<std::filesystem::path> last_frame(const std::filesystem::path& folder,
                                                               const std::string& part);
 

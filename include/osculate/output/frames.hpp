@@ -16,25 +16,26 @@ struct FrameFields {
     std::vector<std::string> body, slave, master;
 };
 
-/// Files frames/BODY_00000.vtu, frames/PAIR.slave_00000.vtp and frames/PAIR.master_00000.vtp. Points are reference
-/// positions; surfaces bring the displacement along, so that they warp as bodies do.
+/// Writes the files frames/BODY_00000.vtu, frames/PAIR.slave_00000.vtp and frames/PAIR.master_00000.vtp. Points are
+/// reference positions; surfaces include the displacement, so that viewers can warp them like bodies.
 class Frames {
 public:
-    /// Starts series.pvd anew.
-    /// @param beside  files are written on a thread of their own, the next step goes on meanwhile
-    /// @param kept    frames that stay, see written()
-    /// @throws std::runtime_error with path and reason, as write() and finish() do
+    /// Starts a new series.pvd.
+    /// @param beside  write files on a separate thread, while the next step continues
+    /// @param kept    frames to keep, see written()
+    /// @throws std::runtime_error with path and reason, like write() and finish()
     Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model, bool beside = false,
            std::vector<SeriesEntry> kept = {});
 
-    /// Files that make frame `number`, relative to the directory.
+    /// Files of frame `number`, relative to the directory.
     [[nodiscard]] std::vector<std::string> files(long number) const;
 
-    /// Writes frame number `number` and lists it in series.pvd: at the latest when the next one is written, or finish() called.
+    /// Writes frame number `number` and lists it in series.pvd, at the latest when the next frame is written or
+    /// finish() is called.
     void write(const Snapshot& snapshot, long number);
     /// Waits until every frame is written.
     void finish();
-    /// Every frame so far, written when it returns.
+    /// Waits until every frame so far is written, and returns them.
     [[nodiscard]] const std::vector<SeriesEntry>& written() {
         finish();
         return series_.entries();
@@ -62,11 +63,11 @@ private:
 
     std::filesystem::path directory_;
     std::vector<const OutputField*> body_fields_;
-    std::vector<std::string> bodies_; ///< that have files
+    std::vector<std::string> bodies_; ///< those with files
     std::vector<Surface> surfaces_;
     Series series_;
     bool beside_;
-    std::future<void> writing_; ///< last: its thread uses the rest, and its destructor waits
+    std::future<void> writing_; ///< last member: its thread uses the others, and its destructor waits
 };
 
 } // namespace osculate::output

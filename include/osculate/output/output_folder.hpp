@@ -1,5 +1,5 @@
 #pragma once
-/// The folder that a run or a study writes into, and the manifest of what it wrote there.
+/// The output folder of a run or a study, and the manifest of the files written there.
 
 #include <filesystem>
 #include <set>
@@ -8,53 +8,55 @@
 
 namespace osculate::output {
 
-/// Keeps a list of every file that Osculate writes into a folder, as a file of the folder: osculate_manifest.txt, a path a line
-/// below a line that says what it is. A path is in the list before its file is there, so that whatever ends the process, no file is
-/// unlisted. Nothing but what is listed is ever removed, and nothing outside of the folder. As long as this object lives, no other
-/// one of a process on this machine enters the folder: the manifest is locked, and the system ends the lock with the process.
+/// Keeps a list of every file that Osculate writes into a folder, in a file of this folder: osculate_manifest.txt, with
+/// a line that describes it and then one path per line. A path enters the list before its file is created, so that
+/// every file is listed even if the process is killed. Only listed files inside the folder are ever removed. While this
+/// object exists, no other object of any process on this machine can enter the folder: the manifest is locked, and the
+/// system releases the lock when the process ends.
 class OutputFolder {
 public:
     enum class Entry {
-        careful, ///< a folder that is absent, or empty, or holds a manifest; files that it does not list are not overwritten
-        adopt, ///< of a run, as a checkpoint in it shows. Where its first wanted file is unlisted, no list was kept: all are listed
-        force, ///< any folder; files that are written take the place of those of their names
-        beside, ///< a folder that is there, without a lock: another process may be at work. Without a manifest as `force`
+        careful, ///< a folder that is absent, empty, or has a manifest; never overwrites unlisted files
+        adopt, ///< a run's folder with a checkpoint. If its first wanted file is unlisted, lists all wanted files found
+        force, ///< any folder; overwrites files with the same names
+        beside, ///< an existing folder, without a lock: another process may work there. Without a manifest like `force`
     };
 
     static constexpr const char* manifest = "osculate_manifest.txt";
 
-    /// Enters a folder, which is made when absent. Files are still as they were.
-    /// @param wanted  files that will be written, `*` standing for a number: with `careful` none of them may be there unlisted
-    /// @throws SceneError where the folder holds what Osculate did not write, another process is in it, or its manifest names
-    ///         places outside; RunFailure where it cannot be written
+    /// Enters a folder, and creates it if absent. Does not change its files.
+    /// @param wanted  files to be written, `*` stands for a number: with `careful` none of them may exist unlisted
+    /// @throws SceneError if the folder contains files not written by Osculate, another process is in it, or its
+    ///         manifest names places outside; RunFailure if it cannot be written
     OutputFolder(std::filesystem::path directory, Entry entry, const std::vector<std::string>& wanted = {});
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
-    /// Relative to the folder, with '/' between names.
+    /// Listed files, relative to the folder, with '/' between names.
     [[nodiscard]] const std::set<std::string>& files() const { return files_; }
-    /// Whether files that are not in the list may be overwritten.
+    /// Whether unlisted files may be overwritten.
     [[nodiscard]] bool forced() const { return forced_; }
 
-    /// Puts files into the list, which has to be done before they are written.
-    /// @throws RunFailure where one is there that Osculate did not write
+    /// Adds files to the list; call this before writing them.
+    /// @throws RunFailure if one exists that Osculate did not write
     void claim(const std::vector<std::string>& files);
-    /// The same for one. @returns its path
+    /// The same for one file. @returns its path
     std::filesystem::path path_of(const std::string& file);
 
-    /// Removes the files that are in the list and not in `kept`, parts of files that were being written, and folders that are
-    /// empty then.
-    /// @throws SceneError where one lies behind a symbolic link, before anything is removed; RunFailure where it cannot be
+    /// Removes the listed files that are not in `kept`, unfinished temporary files, and folders that are empty then.
+    /// @throws SceneError if one is behind a symbolic link, before anything is removed; RunFailure if it cannot be
+    ///         removed
     void remove_all_but(const std::set<std::string>& kept);
-    /// Removes all that is in the list and the manifest, and the folder where nothing else is in it. The last thing to be done.
+    /// Removes all listed files, the manifest, and the folder if it is empty then. Must be the last call.
     void remove_everything();
 
-    /// Whether a folder holds a manifest.
+    /// Whether a folder contains a manifest.
     [[nodiscard]] static bool has_manifest(const std::filesystem::path& directory);
-    /// `directory`, or where something is in it the first of `directory`-2, `directory`-3, ... that is not there; made.
-    /// @throws RunFailure where none can be made
+    /// Creates `directory` or, if that is not empty, the first of `directory`-2, `directory`-3, ... that is absent or
+    /// empty.
+    /// @throws RunFailure if none can be created
     [[nodiscard]] static std::filesystem::path numbered(std::filesystem::path directory);
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-/// post_mortem.json, and what it says in words.
+/// post_mortem.json, and its content in words.
 
 #include "osculate/time/post_mortem.hpp"
 
@@ -8,15 +8,15 @@
 
 namespace osculate::output {
 
-constexpr const char* post_mortem_file = "post_mortem.json"; ///< in the folder of a run that gave up
+constexpr const char* post_mortem_file = "post_mortem.json"; ///< in the folder of a failed run
 
-/// Writes the post-mortem, whole or not at all. Numbers that are not finite become null.
+/// Writes the post-mortem, completely or not at all. Numbers that are not finite become null.
 /// @throws std::runtime_error with path and reason
 void write_post_mortem(const std::filesystem::path& path, const time::PostMortem& found);
-/// @throws std::runtime_error with path and reason where the file cannot be read or is none of ours
+/// @throws std::runtime_error with path and reason if the file cannot be read or is not a post-mortem
 [[nodiscard]] time::PostMortem read_post_mortem(const std::filesystem::path& path);
 
-/// For people: several lines, the last ones what to try.
+/// For human readers: several lines, the last ones with advice.
 [[nodiscard]] std::string in_words(const time::PostMortem& found);
 
 } // namespace osculate::output

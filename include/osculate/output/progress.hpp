@@ -1,5 +1,5 @@
 #pragma once
-/// Where a run stands, for the person waiting for it.
+/// Progress of a run, for the waiting user.
 
 #include <chrono>
 #include <cstdio>
@@ -20,12 +20,12 @@ struct ProgressStep {
 /// @param elapsed     wall time since then, s; the ETA takes the rest of the scene to cost as much per second of its time
 [[nodiscard]] std::string progress_line(const ProgressStep& step, double start, double end, double elapsed);
 
-/// One line kept up to date on a terminal, a line per step elsewhere, nothing when quiet.
+/// One updated line on a terminal, one line per step otherwise, nothing if quiet.
 class Progress {
 public:
     enum class Style { quiet, plain, live };
 
-    /// live on a terminal, plain elsewhere
+    /// live for a terminal, otherwise plain
     [[nodiscard]] static Style style_of(std::FILE* stream);
 
     /// @param start, end  time of the scene at the start of the run and at its end, s
@@ -35,7 +35,7 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     void update(const ProgressStep& step);
-    /// Shows any line in place of the last one.
+    /// Shows any line instead of the last one.
     void show(std::string line);
 
     /// Ends the live line, so that other text may follow; the next update starts a new one.
@@ -47,7 +47,7 @@ private:
     Style style_;
     std::FILE* stream_;
     clock::time_point begun_ = clock::now();
-    bool open_ = false; ///< the cursor stands on a live line
+    bool open_ = false; ///< the cursor is on a live line
 };
 
 } // namespace osculate::output

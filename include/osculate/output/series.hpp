@@ -13,14 +13,14 @@ struct SeriesEntry {
     std::string part, file; ///< body or surface; file relative to the series' folder
 };
 
-/// series.pvd: which file holds which part at which time. The file is whole and valid at any moment of the run.
+/// series.pvd: the file of each part at each time. The file is complete and valid at any moment of the run.
 class Series {
 public:
-    /// Makes the folder when missing and writes a series of these frames alone, so that none other stays.
-    /// @throws std::runtime_error with path and reason, as flush() does
+    /// Creates the folder if missing and writes a series of only these frames.
+    /// @throws std::runtime_error with path and reason, like flush()
     explicit Series(std::filesystem::path directory, std::vector<SeriesEntry> earlier = {});
 
-    /// Notes a file; it is listed from the next flush() on.
+    /// Adds a file; the next flush() lists it.
     /// @param time           s
     /// @param part_name      body or surface; parts are numbered in the order of their first appearance
     /// @param relative_file  relative to the series' folder
@@ -28,7 +28,7 @@ public:
     /// Every file added so far.
     [[nodiscard]] const std::vector<SeriesEntry>& entries() const { return entries_; }
 
-    /// Replaces series.pvd by one with every file added so far. O(files)
+    /// Replaces series.pvd by one with all files added so far. O(files)
     void flush();
 
 private:

@@ -8,7 +8,8 @@
 
 namespace osculate::output {
 
-/// Entries in the order of the file, which is that of time. @throws std::runtime_error with the path where it is no series
+/// Entries in the order of the file, which is the order of time. @throws std::runtime_error with the path if it is no
+/// series
 [[nodiscard]] std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
 
 } // namespace osculate::output

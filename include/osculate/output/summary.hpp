@@ -1,5 +1,5 @@
 #pragma once
-/// What a run was and what it cost: summary.json.
+/// Content and cost of a run: summary.json.
 
 #include "osculate/core/timing.hpp"
 
@@ -11,9 +11,9 @@
 
 namespace osculate::output {
 
-/// Members carry the names they have in the file; see write_summary for the two that differ.
+/// Members have the same names as in the file; see write_summary for the two that differ.
 struct Summary {
-    std::filesystem::path folder; ///< of the run's files, of which summary.json is one; not in the file
+    std::filesystem::path folder; ///< of the run's files, including summary.json; not in the file
 
     struct Body {
         std::string name;
@@ -26,36 +26,36 @@ struct Summary {
     };
     struct Steps {
         long accepted = 0, rejected = 0;
-        long stabilised = 0; ///< of those accepted: bodies leant on springs on the way, see time::StabilisationOptions
+        long stabilised = 0; ///< accepted steps solved with supporting springs, see time::StabilisationOptions
         long at_round_off =
-            0; ///< of those accepted: the tolerance was below what can be told, see equilibrium::Equilibrium
+            0; ///< accepted steps whose tolerance was below the round-off of rows, see equilibrium::Equilibrium
     };
 
-    /// Worst over the accepted steps, see app::RunChecks.
+    /// Worst values over the accepted steps, see app::RunChecks.
     struct Checks {
-        double force_balance = 0;                            ///< of the forces that act
+        double force_balance = 0;                            ///< fraction of the acting forces
         double penetration = 0, penetration_m = 0;           ///< in facet sizes; m
-        std::optional<double> energy_balance, energy_growth; ///< of the largest energy; without a dynamic step none
-        std::optional<double> closing_loss;                  ///< alike: taken by gaps that closed
+        std::optional<double> energy_balance, energy_growth; ///< of the largest energy; none without dynamic step
+        std::optional<double> closing_loss;                  ///< likewise: lost in closing gaps
     };
-    /// The deepest place at which a body lay inside another in an accepted step, see contact::SurfaceAudit.
+    /// The deepest place at which a body was inside another in an accepted step, see contact::SurfaceAudit.
     struct Audit {
-        bool on = true;                             ///< false: nobody looked
+        bool on = true;                             ///< false: not audited
         double depth = 0, excess = 0, relative = 0; ///< m; m; of the facet size
-        std::string body, other;                    ///< empty: none lay inside another
+        std::string body, other;                    ///< empty: no penetration
         long node = -1;                             ///< of `body`
         double time = 0;
         std::array<double, 3> place{};
     };
-    /// Whether the run came to what its scene expects.
+    /// Whether the run met the expectation of its scene.
     struct Expectation {
-        std::vector<std::string> misses; ///< in words; none: met
+        std::vector<std::string> misses; ///< in words; empty: met
         [[nodiscard]] bool met() const { return misses.empty(); }
     };
 
     std::string version, scene;
-    std::string status;  ///< how the run stands or ended
-    std::string failure; ///< why it gave up; left out of the file when empty
+    std::string status;  ///< current or final state of the run
+    std::string failure; ///< why it failed; left out of the file if empty
     long dofs = 0;
     std::vector<Body> bodies;
     std::vector<Pair> pairs;
@@ -68,12 +68,12 @@ struct Summary {
     int threads = 1;
     std::vector<std::string> plan;
     std::optional<Checks> checks;
-    std::optional<Audit> audit;             ///< none: one body that meets nothing
-    std::vector<std::string> warnings;      ///< sentences; left out of the file when there are none
-    std::optional<Expectation> expectation; ///< where the scene has one, when the run has ended
+    std::optional<Audit> audit;             ///< none: one body without contact
+    std::vector<std::string> warnings;      ///< sentences; left out of the file if there are none
+    std::optional<Expectation> expectation; ///< if the scene has one, after the end of the run
 };
 
-/// Writes summary.json, whole or not at all; total_seconds, cpu_seconds and timings together are its `seconds`.
+/// Writes summary.json, completely or not at all; total_seconds, cpu_seconds and timings together are its `seconds`.
 /// @throws std::runtime_error with path and reason
 void write_summary(const std::filesystem::path& path, const Summary& summary);
 

@@ -15,13 +15,13 @@ struct Array {
     std::string name;
     int components = 1;         ///< 1, 3, or 6: a symmetric tensor in Voigt order xx, yy, zz, xy, yz, zx
     std::vector<double> values; ///< (points * components), SI
-    bool integer = false;       ///< values are whole numbers and are written as Int32
+    bool integer = false;       ///< values are integers, written as Int32
     std::string unit{};         ///< SI, the array's UNITS_LABEL; empty: none
 };
 
-/// Writes a volume mesh, appended raw data with LZ4; `time` (s) becomes the field array TimeValue.
-/// A reader sees the file of before or the whole new one, never a part; the file's folder is made when missing.
-/// @throws std::runtime_error with path and reason when the file cannot be written
+/// Writes a volume mesh, appended raw data with LZ4; `time` (s) becomes the field array TimeValue. A reader sees the
+/// previous file or the complete new one, never a part; creates the file's folder if missing.
+/// @throws std::runtime_error with path and reason if the file cannot be written
 /// @throws InternalError for an array that does not fit the points
 void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& points,
                const std::vector<mesh::ElementBlock>& blocks, const std::vector<Array>& point_data, double time);

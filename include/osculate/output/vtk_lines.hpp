@@ -5,8 +5,8 @@
 
 namespace osculate::output {
 
-/// Writes polylines, whose numbers index `points`; `line_data` holds a tuple for every line.
-/// @throws std::runtime_error with path and reason when the file cannot be written
+/// Writes polylines; their numbers index `points`; `line_data` has one tuple per line.
+/// @throws std::runtime_error with path and reason if the file cannot be written
 /// @throws InternalError for an array that does not fit the lines
 void write_lines(const std::filesystem::path& path, const std::vector<Vec3>& points,
                  const std::vector<std::vector<Index>>& lines, const std::vector<Array>& line_data);

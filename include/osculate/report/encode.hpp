@@ -1,5 +1,5 @@
 #pragma once
-/// Bytes made small, and made fit for the text of a page.
+/// Compression of bytes, and their encoding as text of a page.
 
 #include <cstdint>
 #include <string>
@@ -9,9 +9,9 @@ namespace osculate::report {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// In zlib's format, which browsers call "deflate". Same bytes, same result.
+/// Compresses to zlib's format, which browsers call "deflate". The same bytes give the same result.
 [[nodiscard]] Bytes deflated(const Bytes& bytes);
-/// @throws std::runtime_error where the bytes are none of deflated()
+/// @throws std::runtime_error if the bytes are not from deflated()
 [[nodiscard]] Bytes inflated(const Bytes& bytes);
 
 [[nodiscard]] std::string base64(const Bytes& bytes);

@@ -1,5 +1,5 @@
 #pragma once
-/// What a run's frames show of its bodies from outside, over time.
+/// The exterior of a run's bodies over time, from its frames.
 
 #include "osculate/core/types.hpp"
 #include "osculate/report/pack.hpp"
@@ -23,9 +23,9 @@ struct PartField {
 struct MovingPart {
     std::string name; ///< of the body, or of the pair
     PartKind kind = PartKind::body;
-    std::string body;         ///< that a contact surface is part of; empty where it is not known
-    std::vector<Vec3> points; ///< reference positions, m
-    std::vector<Index> nodes; ///< the body's node of every point
+    std::string body;                                 ///< body of a contact surface; empty if unknown
+    std::vector<Vec3> points;                         ///< reference positions, m
+    std::vector<Index> nodes;                         ///< the body's node of every point
     std::vector<std::array<std::uint32_t, 4>> facets; ///< of points; a triangle repeats its last one
     std::vector<PartField> fields;
 
@@ -33,22 +33,22 @@ struct MovingPart {
 };
 
 struct MovingSurfaces {
-    std::vector<double> times; ///< s, a frame each
+    std::vector<double> times; ///< s, of every frame
     std::vector<MovingPart> parts;
-    std::vector<std::string> notes; ///< what was left out and why, sentences
+    std::vector<std::string> notes; ///< omissions and their reasons, sentences
 };
 
-/// How much of a run is taken.
+/// Limits on the data taken from a run.
 struct FrameBudget {
     std::size_t frames = 1200;
     std::size_t values = 16'000'000; ///< numbers of all frames together
 };
 
-/// Reads what series.pvd lists; frames are thinned out evenly where there are too many, the first and the last one stay.
-/// Nothing but a note where the run has no frames, or where they cannot be read.
+/// Reads the files in series.pvd; if there are too many frames, drops some evenly, but keeps the first and the last.
+/// The result has only a note if the run has no frames, or they cannot be read.
 [[nodiscard]] MovingSurfaces read_moving_surfaces(const std::filesystem::path& run_folder, const FrameBudget& budget);
 
-/// Keeps `count` frames, first and last among them. @param count  at least 2
+/// Keeps `count` frames, including first and last. @param count  at least 2
 void thin_out(MovingSurfaces& surfaces, std::size_t count);
 
 } // namespace osculate::report

@@ -1,5 +1,5 @@
 #pragma once
-/// The report of a run: one HTML page that needs nothing beside it.
+/// The report of a run: one self-contained HTML page.
 
 #include "osculate/report/moving_surfaces.hpp"
 #include "osculate/time/attempt.hpp"
@@ -11,25 +11,25 @@
 
 namespace osculate::report {
 
-/// What is known beside the files of the run.
+/// Data besides the files of the run.
 struct PageOptions {
-    std::string version;                                        ///< of the program that writes the page
+    std::string version;                                        ///< version of the program that writes the page
     std::vector<std::pair<std::string, std::string>> libraries; ///< name, version
     std::vector<time::Attempt> attempts;                        ///< of steps.csv
-    std::string diary;                                          ///< the attempts' summary in words, lines
-    std::vector<std::string> notes;                             ///< what is missing, sentences
+    std::string diary;                                          ///< summary of the attempts in words, lines
+    std::vector<std::string> notes;                             ///< missing data, sentences
     FrameBudget frames;
-    std::size_t largest_view = 12'000'000; ///< bytes of the three-dimensional view in the page
+    std::size_t largest_view = 12'000'000; ///< largest size of the three-dimensional view in the page, bytes
 };
 
 struct Page {
     std::string html;
     std::vector<std::pair<std::string, std::string>> pictures; ///< file name and content, PNG and SVG
-    std::vector<std::string> notes;                            ///< what the page leaves out and why, sentences
+    std::vector<std::string> notes;                            ///< omissions of the page and their reasons, sentences
 };
 
-/// Makes the page of a run that has ended in whatever way, or still goes on. What is missing is named in the page.
-/// @throws std::runtime_error with the path where summary.json is there and cannot be read
+/// Makes the page of a run that has ended for any reason, or still continues. The page names missing data.
+/// @throws std::runtime_error with the path if summary.json exists but cannot be read
 [[nodiscard]] Page make_page(const std::filesystem::path& run_folder, const PageOptions& options);
 
 } // namespace osculate::report

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of the bodies, drawn without any display.
+/// Pictures of the bodies, drawn without a display.
 
 #include "osculate/report/encode.hpp"
 #include "osculate/report/moving_surfaces.hpp"
@@ -10,11 +10,11 @@
 
 namespace osculate::report {
 
-/// Colours from the least to the largest value, evenly spaced: viridis, perceptually uniform, without its darkest fifth,
-/// which a dark ground would swallow.
+/// Colours from the smallest to the largest value, evenly spaced: viridis, perceptually uniform, without its darkest
+/// fifth, which would be invisible on a dark background.
 [[nodiscard]] const std::vector<std::array<std::uint8_t, 3>>& colour_map();
 
-/// What pictures and the page show at first: a field of the bodies as a number.
+/// Field that pictures and the page show first: a scalar field of the bodies.
 struct ShownField {
     std::string name; ///< empty: bodies in plain colour
     std::string unit;
@@ -28,11 +28,11 @@ struct PictureOptions {
     ShownField field;
 };
 
-/// The deformed bodies in a frame, parallel projection, hidden parts hidden, as a PNG file with a transparent ground. The
-/// same view for every frame. Empty where the bodies have no displacement to draw.
+/// Draws the deformed bodies of a frame in parallel projection, without hidden parts, as a PNG file with transparent
+/// background. The view is the same for every frame. Empty if the bodies have no displacement.
 [[nodiscard]] Bytes draw(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptions& options);
 
-/// An SVG file: the picture with a title and its colours' legend.
+/// An SVG file: the picture with a title and a colour legend.
 [[nodiscard]] std::string with_legend(const Bytes& png, const PictureOptions& options, const std::string& title);
 
 } // namespace osculate::report

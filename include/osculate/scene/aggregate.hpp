@@ -26,20 +26,20 @@ struct Numbers {
     }
 };
 
-/// max, min, sum, mean, rms, first, last and count of a single argument go over all rows; what stands around them is a
+/// max, min, sum, mean, rms, first, last and count with a single argument are taken over all rows; the rest is a
 /// formula of single numbers.
 class Aggregate {
 public:
-    /// @param row_variables  columns of the tables it will see
-    /// @param numbers        names of what is the same for all rows
+    /// @param row_variables  column names of the tables to evaluate
+    /// @param numbers        names of values that are the same for all rows
     Aggregate(const std::string& text, const std::vector<std::string>& row_variables,
               const std::vector<std::string>& numbers, const NamedFunctions& functions);
 
     [[nodiscard]] const std::string& problem() const { return problem_; } ///< empty when the text is a formula
     [[nodiscard]] const std::string& nearest() const { return nearest_; }
 
-    /// @param numbers  values in the order of the names given; the columns of `rows` are those given
-    /// @returns NaN where it has no value, as max has none of no row
+    /// @param numbers  values in the order of the given names; `rows` has the given columns
+    /// @returns NaN if there is no value, such as max of no row
     [[nodiscard]] double operator()(const Rows& rows, std::span<const double> numbers) const;
 
 private:
@@ -54,11 +54,11 @@ private:
     std::string problem_, nearest_;
 };
 
-/// A reduction by its name, of values in their order. @throws std::invalid_argument for a name that is none
+/// Reduces values, in their order, by the reduction with this name. @throws std::invalid_argument for an unknown name
 [[nodiscard]] double reduce(const std::string& reduction, const std::vector<double>& values);
 [[nodiscard]] const std::vector<std::string>& aggregate_names();
 
-/// A formula of (row variables, numbers) for every row.
+/// Evaluates a formula of (row variables, numbers) for every row.
 [[nodiscard]] std::vector<double> evaluate_rows(const ParsedFormula& formula, const Rows& rows,
                                                 std::span<const double> numbers);
 

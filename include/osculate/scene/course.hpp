@@ -9,7 +9,7 @@
 
 namespace osculate::scene {
 
-/// Linear between its rows, constant before the first and beyond the last.
+/// Linear between its rows, constant before the first and after the last.
 struct Table {
     std::vector<std::array<double, 2>> rows; ///< time since the stage's start, s, ascending; value, SI
     [[nodiscard]] double at(double t) const; ///< @pre there is a row
@@ -19,12 +19,12 @@ struct Table {
 /// A formula in t, seconds since the stage's start, with the constants pi and e.
 struct Expression {
     std::string text{};
-    std::string unit{}; ///< of its values, as written
-    double size = 1;    ///< of the unit, SI
+    std::string unit{}; ///< unit of its values, as written
+    double size = 1;    ///< value of the unit, SI
     bool operator==(const Expression&) const = default;
 };
 
-/// A plain value, or one that changes in the course of its stage.
+/// A constant value, or one that changes during its stage.
 struct Course {
     std::variant<double, Table, Expression> form;
 
@@ -34,9 +34,9 @@ struct Course {
 
     [[nodiscard]] bool is_value() const { return std::holds_alternative<double>(form); }
     [[nodiscard]] double value() const { return std::get<double>(form); } ///< @pre is_value()
-    /// Value, SI, at a time since the stage's start, s; what an expression has no value for is NaN. Not for several
-    /// threads at once.
-    /// @throws std::invalid_argument where an expression cannot be read
+    /// Value, SI, as function of the time since the stage's start, s; NaN where an expression has no value. Not for
+    /// simultaneous use by several threads.
+    /// @throws std::invalid_argument if an expression cannot be parsed
     [[nodiscard]] std::function<double(double)> function() const;
     /// Times at which it may have a kink, s, ascending.
     [[nodiscard]] std::vector<double> corners() const;
@@ -45,7 +45,7 @@ struct Course {
 
 struct ParsedExpression {
     std::function<double(double)> function{}; ///< of t, without a unit
-    std::string problem{};                    ///< why the text is no expression; empty when it is one
+    std::string problem{};                    ///< why the text is no expression; empty if it is one
     std::string nearest{};                    ///< the known name nearest to an unknown one
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Places of faults that were found after a scene was read.
+/// Places of faults that are found after a scene was read.
 
 #include "osculate/scene/reader.hpp"
 
@@ -8,8 +8,8 @@
 
 namespace osculate::scene {
 
-/// Gives every fault without a file the place of its key: that of the deepest part of the key path that the scene file,
-/// or an override, names.
+/// Sets the place of every fault without a file: that of the deepest part of its key path that the scene file, or an
+/// override, contains.
 [[nodiscard]] std::vector<Fault> locate(std::vector<Fault> faults, const std::string& path,
                                         const std::vector<Override>& overrides = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The name that was meant.
+/// The name that the user probably meant.
 
 #include <string>
 #include <string_view>
@@ -7,8 +7,8 @@
 
 namespace osculate::scene {
 
-/// The candidate at most two edits (insertion, deletion, substitution, transposition) from `word`, one for words of two
-/// or three letters; empty when there is none. The first of equals.
+/// The candidate at most two edits (insertion, deletion, substitution, transposition) from `word`, one edit for words
+/// of two or three letters; empty if there is none. The first of equals.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 } // namespace osculate::scene

@@ -1,5 +1,5 @@
 #pragma once
-/// A scene for people: its keys as a tree of words, with units and prefixes in place of SI numbers.
+/// A scene for human readers: its keys as a tree of words, with units and prefixes instead of SI numbers.
 
 #include "osculate/scene/scene.hpp"
 
@@ -10,7 +10,7 @@ namespace osculate::scene {
 
 struct OutlineItem {
     std::string key;
-    std::string text;               ///< "30 MPa"; empty where there are items
+    std::string text;               ///< "30 MPa"; empty if there are items
     std::vector<OutlineItem> items; ///< of a group
 
     /// The item of that name, or nullptr.
@@ -20,9 +20,10 @@ struct OutlineItem {
 /// The resolved scene; the root has neither key nor text.
 [[nodiscard]] OutlineItem outline(const Scene& scene);
 
-/// "30 MPa", "50 mm", "2 kN/m³": a number of SI units with the prefix that leaves 1 to 1000 before it.
-/// Zero, and what is next to it, keeps the unit itself.
-/// @param unit  a product of powers of SI units; a prefix is put before Pa, N, J, W, s and m, and before kN/m^3 and the like
+/// "30 MPa", "50 mm", "2 kN/m³": a number of SI units with the prefix that gives a number from 1 to 1000. Zero, and
+/// numbers next to it, keep the unit itself.
+/// @param unit  a product of powers of SI units; a prefix is put before Pa, N, J, W, s and m, and before kN/m^3 and the
+///              like
 [[nodiscard]] std::string engineering(double value, const std::string& unit);
 
 } // namespace osculate::scene

@@ -1,5 +1,5 @@
 #pragma once
-/// What a run writes: fields of frames, probes, plots.
+/// Output of a run: fields of frames, probes, plots.
 
 #include "osculate/core/types.hpp"
 #include "osculate/scene/named.hpp"
@@ -29,10 +29,10 @@ struct LineProbe {
     bool operator==(const LineProbe&) const = default;
 };
 
-/// Fields of a pair's slave surface below a straight line.
+/// Fields of a pair's slave surface along a straight line.
 struct ContactLineProbe {
     std::string pair;
-    Vec3 from = Vec3::Zero(), to = Vec3::UnitX(); ///< m; every sample is taken at the closest point of the surface
+    Vec3 from = Vec3::Zero(), to = Vec3::UnitX(); ///< m; every sample uses the closest point of the surface
     int samples = 51;
     std::vector<std::string> fields{"normal_stress"};
     bool operator==(const ContactLineProbe&) const = default;
@@ -69,11 +69,11 @@ struct Probe {
 
 // ---- plots: drawn at the end of a run, in plots/NAME.{csv,gp,svg,png} ----------------------------------------------------
 
-/// Formulas over the columns of a table. `pair.*.normal` stands for every column that fits: a curve each.
+/// Formulas over the columns of a table. `pair.*.normal` stands for every matching column: one curve each.
 struct Curve {
     std::string rows = "history"; ///< or the name of a probe
     std::string x = "time", y;
-    std::string where; ///< rows where it is not 0; empty: all
+    std::string where; ///< uses only rows where this formula is not 0; empty: all
     bool last = false; ///< only the rows of the last time
     bool operator==(const Curve&) const = default;
 };
@@ -85,19 +85,19 @@ struct Plot {
 };
 
 struct Output {
-    std::string template_name = "contact";  ///< or the absolute path of a template that is not a shipped one
+    std::string template_name = "contact";  ///< or the absolute path of a user's template
     std::vector<std::string> body_fields;   ///< see output::all_fields
     std::vector<std::string> slave_fields;  ///< of the slave surfaces
     std::vector<std::string> master_fields; ///< of the masters
     bool history_pairs = true;
     bool history_reactions = true;
     bool iterations = false; ///< write iterations.csv
-    int frame_every = 1;     ///< accepted steps between frames; 0 writes none
+    int frame_every = 1;     ///< accepted steps between frames; 0: none
     Named<Probe> probes;
     Named<Plot> plots;
-    bool paraview = false;      ///< write show_in_paraview.py beside the series
+    bool paraview = false;      ///< write show_in_paraview.py next to the series
     bool report = false;        ///< write report.html at the end
-    bool failed_iterate = true; ///< write the last iterate of a run that gives up
+    bool failed_iterate = true; ///< write the last iterate of a failed run
     bool operator==(const Output&) const = default;
 };
 

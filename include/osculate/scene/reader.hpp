@@ -16,12 +16,12 @@ struct Override {
 };
 
 /// Reads and validates a scene file.
-/// @param overrides  replace or add values before the scene is validated, in the order given; the short form
-///                   contact.PAIR.surface stands for contact.PAIR.master.surface
-/// @throws SceneError with all faults, sorted by place; a fault of an override names the file "--set"
+/// @param overrides  replace or add values before validation, in the given order; the short form contact.PAIR.surface
+///                   stands for contact.PAIR.master.surface
+/// @throws SceneError with all faults, sorted by place; a fault of an override has "--set" as file
 [[nodiscard]] Scene read_scene(const std::string& path, const std::vector<Override>& overrides = {});
 
-/// The same for a text; `name` stands for the file in faults, relative paths start at the current folder.
+/// The same for a text; faults use `name` as file, relative paths start at the current folder.
 [[nodiscard]] Scene parse_scene(const std::string& yaml_text, const std::string& name,
                                 const std::vector<Override>& overrides = {});
 

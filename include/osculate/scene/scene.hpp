@@ -1,5 +1,5 @@
 #pragma once
-/// A validated scene in SI units: what the user asked for, every default filled in, nothing else.
+/// A validated scene in SI units: the user's input with every default filled in, nothing else.
 
 #include "osculate/core/choices.hpp"
 #include "osculate/core/types.hpp"
@@ -61,7 +61,7 @@ struct BallMesh {
     std::array<int, 3> divisions{8, 4, 8}; ///< around a quarter of the equator, radial, inner cube along z
     Portion portion = Portion::full;
     double grading = 1;
-    double pole_refinement = 1; ///< how much smaller the elements at the lowest point are
+    double pole_refinement = 1; ///< factor by which elements at the lowest point are smaller
     bool operator==(const BallMesh&) const = default;
 };
 
@@ -83,9 +83,9 @@ struct TubeMesh {
 };
 
 struct FileMesh {
-    std::string path;                ///< of a format that mesh::read_mesh_file knows; the reader makes it absolute
+    std::string path;                ///< in a format of mesh::read_mesh_file; the reader makes it absolute
     std::string part;                ///< element set, block, physical volume; empty: all of the file
-    int piece = 0;                   ///< connected piece of it, from 1; 0: all
+    int piece = 0;                   ///< connected piece of the part, from 1; 0: all
     std::vector<std::string> repair; ///< mesh::repair_words() or `all`
     bool operator==(const FileMesh&) const = default;
 };
@@ -95,7 +95,7 @@ struct CadMesh {
     std::string path;       ///< STEP, IGES or BREP file; the reader makes it absolute
     double size = 0;        ///< largest edge length, m; 0: a tenth of the diagonal of the geometry's box
     double smallest = 0;    ///< smallest edge length, m
-    int per_circle = 0;     ///< elements around a full circle; 0: curvature does not count
+    int per_circle = 0;     ///< elements around a full circle; 0: ignores curvature
     bool quadratic = false; ///< tet10; false: tet4
     std::string part;
     int piece = 0;
@@ -122,7 +122,7 @@ struct MeshSpec {
 struct ElasticConstants {
     double E = 0;       ///< Young's modulus, Pa
     double nu = 0;      ///< Poisson's ratio
-    double density = 0; ///< kg/m^3; 0: none, which statics does not need
+    double density = 0; ///< kg/m^3; 0: none, sufficient for statics
     bool operator==(const ElasticConstants&) const = default;
 };
 struct LinearElastic : ElasticConstants { ///< small strain
@@ -151,7 +151,7 @@ struct Body {
 // ---- sets: parts of a body's exterior, or of its nodes ---------------------------------------------------------------
 
 struct SelectNamed {
-    std::string name;   ///< a surface or node set that the mesh brings along
+    std::string name;   ///< a surface or node set of the mesh
     bool nodes = false; ///< a node set; false: a surface
     bool operator==(const SelectNamed&) const = default;
 };
@@ -182,10 +182,10 @@ struct SetSpec {
 
 // ---- supports: constraints that hold for the whole run ---------------------------------------------------------------
 
-/// Displacement components of a set held at zero or driven by the stages.
+/// Displacement components of a set that are held at zero or driven by the stages.
 struct Support {
     std::array<bool, 3> fixed{false, false, false}; ///< held at zero along axes[0..2]
-    Mat3 axes = Mat3::Identity();                   ///< columns: the directions that "x", "y", "z" mean for this set
+    Mat3 axes = Mat3::Identity();                   ///< columns: directions "x", "y", "z" for this set
     bool symmetry = false; ///< mirror plane: fixed is {true, false, false} and column 0 of the axes is its normal
     bool operator==(const Support&) const = default;
 };
@@ -193,7 +193,7 @@ struct Support {
 // ---- contact ---------------------------------------------------------------------------------------------------------
 
 struct FacetsSurface {
-    double hysteresis = 0.03; ///< a facet is left only for one closer by this fraction of its size
+    double hysteresis = 0.03; ///< of the facet size: overhang, or lead of another facet, at which a node changes
     bool operator==(const FacetsSurface&) const = default;
 };
 
@@ -210,7 +210,7 @@ struct RpimSurface {
 };
 
 struct BlendSurface {
-    int ring = 2; ///< rings of facets around a vertex that make its patch
+    int ring = 2; ///< rings of facets around a vertex that form its patch
     RadialBasis basis = RadialBasis::multiquadric;
     double R = 1.42, q = 1.03; ///< of the multiquadric
     int m = 6;
@@ -229,10 +229,10 @@ struct Pair {
     MasterSpec master;
     Discretisation discretisation = Discretisation::node;
     double friction = 0;                ///< Coulomb's coefficient mu
-    double closing_tolerance = 0.02;    ///< of the facet size: a first solve closes nodes with a smaller gap
+    double closing_tolerance = 0.02;    ///< of the facet size: the first solve closes nodes with a smaller gap
     double initial_overlap_limit = 0.1; ///< of the facet size: a deeper initial overlap is a fault
     double stiffness_scale =
-        1; ///< c of the complementarity function over its local estimate; results do not depend on it
+        1; ///< factor on the estimated c of the complementarity function; results do not depend on it
     bool operator==(const Pair&) const = default;
 };
 
@@ -268,7 +268,7 @@ struct DynamicAnalysis {
     bool operator==(const DynamicAnalysis&) const = default;
 };
 
-/// A length, or a fraction of another one that depends on the place.
+/// A length, or a fraction of a local length.
 struct RelativeLength {
     double value = 0;    ///< m, or the fraction
     bool metres = false; ///< written with a unit
@@ -277,22 +277,23 @@ struct RelativeLength {
 
 enum class StepSize { controlled, fixed };
 
-/// What an attempted step must keep to; one that does not is repeated with a smaller dt.
+/// Criteria for an attempted step; if it violates one, it is repeated with a smaller dt.
 struct StepControl {
-    /// A fraction is one of the facet size. Not given: 0.05 in dynamics, 0.5 in statics.
+    /// A fraction is relative to the facet size. Default: 0.05 in dynamics, 0.5 in statics.
     std::optional<RelativeLength> allowed_interpenetration;
-    /// Whether dynamic steps are cut for what they lose: velocity_error and closing_energy, or error_tolerance.
+    /// Whether dynamic steps are cut to limit their errors: by velocity_error and closing_energy, or by
+    /// error_tolerance.
     StepSize step_size = StepSize::controlled;
-    double velocity_error = 0.002; ///< of the bodies' centres in one step, of the speed that all energy would give
-    double closing_energy = 0.001; ///< that gaps which close may take in one dynamic step, of all energy there has been
-    std::optional<double> error_tolerance; ///< of the displacement, in one dynamic step, m; given: not velocity_error
-    double energy_tolerance = 0.01; ///< rise beyond external work in one dynamic step, of kinetic plus strain energy
-    double growth = 2;              ///< of dt after an easy step, up to the stage's step
+    double velocity_error = 0.002; ///< of bodies' centres per step, divided by the speed if all energy were kinetic
+    double closing_energy = 0.001; ///< energy lost in closing gaps per dynamic step, of all energy so far
+    std::optional<double> error_tolerance; ///< of the displacement per dynamic step, m; replaces velocity_error
+    double energy_tolerance = 0.01; ///< rise beyond external work per dynamic step, of kinetic plus strain energy
+    double growth = 2;              ///< factor on dt after an easy step, up to the stage's step
     bool operator==(const StepControl&) const = default;
 };
 
-/// Every plain value is reached at the end of the stage; values not named keep theirs, those with a course over time its
-/// last.
+/// Every constant value is reached at the end of the stage. Values that the stage does not name stay; those with a
+/// course over time stay at its last value.
 struct Stage {
     std::variant<StaticAnalysis, DynamicAnalysis> analysis;
     double duration = 1; ///< s
@@ -307,14 +308,14 @@ struct Stage {
 };
 
 struct Solver {
-    double tolerance = 1e-9;     ///< largest residual over the step's reference force
+    double tolerance = 1e-9;     ///< largest residual, divided by the step's reference force
     int max_iterations = 30;     ///< Newton iterations of one solve
-    double smallest_step = 1e-3; ///< of the stage's step: a smaller one is given up
+    double smallest_step = 1e-3; ///< fraction of the stage's step below which the run fails
     bool predictor = true;       ///< move driven bodies rigidly by the prescribed increment before the first iteration
     LinearSolver linear_solver = LinearSolver::automatic;
-    bool stabilisation = true;  ///< springs under bodies that nothing holds yet, gone before a step is accepted
-    bool audit = true;          ///< look for bodies inside one another after every solved step
-    double audited_depth = 0.1; ///< how deep they may lie, beyond the sagitta of smooth surfaces, of the facet size
+    bool stabilisation = true;  ///< springs under bodies that nothing holds yet, removed before a step is accepted
+    bool audit = true;          ///< look for penetration of bodies after every solved step
+    double audited_depth = 0.1; ///< allowed depth beyond the sagitta of smooth surfaces, of the facet size
     bool operator==(const Solver&) const = default;
 };
 
@@ -322,28 +323,29 @@ struct Solver {
 
 enum class Outcome { completed, gives_up };
 
-/// What a run is expected to come to, held against the checks of a run.
+/// The expected result of a run, compared with its checks.
 struct Expectation {
-    /// Penetration, of the facet size, in statics. Contact is exact: on a closed node the solver leaves a gap
-    /// of the order of tolerance * force / c, with c ~ E A / h some 1e-9 of the elastic strain. A thousand times that.
+    /// Penetration, of the facet size, in statics. Contact is exact: on a closed node the solver leaves a gap of the
+    /// order of tolerance * force / c, with c ~ E A / h about 1e-9 of the elastic strain. This is a thousand times
+    /// more.
     static constexpr double exact = 1e-6;
 
     Outcome outcome = Outcome::completed;
-    std::string cause; ///< words that the message of a run that gives up holds
-    /// Of the forces that act. The solver leaves solver.tolerance of a reference force in the mean square over n degrees of
-    /// freedom, sqrt(n) of it in a sum: 1e-6 for 1e-9 and a million.
+    std::string cause; ///< words in the message of a run that fails
+    /// Fraction of the acting forces. The solver leaves a residual of solver.tolerance times a reference force in the
+    /// mean square over n degrees of freedom, sqrt(n) times that in a sum: 1e-6 for 1e-9 and a million.
     double force_balance = 1e-6;
-    /// Of the largest energy, over the whole run: what one step may do by itself, see StepControl.
+    /// Fraction of the largest energy, over the whole run: as much as one step may cause, see StepControl.
     double energy_growth = StepControl{}.energy_tolerance;
     std::optional<double>
-        penetration; ///< of the facet size; not given: the stage's bound in dynamics, `exact` in statics
+        penetration; ///< of the facet size; default: the stage's bound in dynamics, `exact` in statics
     bool operator==(const Expectation&) const = default;
 };
 
 struct Scene {
-    std::string name;            ///< fit for a file name: letters, digits, _ and -
+    std::string name;            ///< valid as file name: letters, digits, _ and -
     std::string description;     ///< free text
-    std::string directory;       ///< of the scene file, absolute
+    std::string directory;       ///< folder of the scene file, absolute
     Vec3 gravity = Vec3::Zero(); ///< m/s^2, on every body with a density, in every stage
     Named<Body> bodies;
     Named<SetSpec> sets;
@@ -352,7 +354,7 @@ struct Scene {
     Named<Stage> stages;
     Solver solver;
     Output output;
-    std::optional<Expectation> expect; ///< not given: nothing is judged
+    std::optional<Expectation> expect; ///< not given: no judgement
     bool operator==(const Scene&) const = default;
 };
 

@@ -1,16 +1,17 @@
 #pragma once
-/// What a scene, a study or an output template may hold as a JSON Schema (draft 7), for editors.
+/// JSON Schema (draft 7) of a scene, a study or an output template, for editors.
 
 #include <string>
 #include <vector>
 
 namespace osculate::scene {
 
-/// Types, units, bounds, words, choices, required keys, meanings and defaults of every key, from the same description that
-/// reader and writer follow. Names that refer to others, bounds of texts with units and rules across keys are not in it.
+/// Types, units, bounds, words, choices, required keys, meanings and defaults of every key, from the same description
+/// that reader and writer use. Not included: names that refer to others, bounds of texts with units, and rules across
+/// keys.
 [[nodiscard]] std::string scene_schema();
 [[nodiscard]] std::string template_schema();
-/// Of studies of runs, and of surfaces.
+/// For studies of runs and of surfaces.
 /// @param methods  approximations of surfaces that a study may list
 [[nodiscard]] std::string study_schema(const std::vector<std::string>& methods);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a study of error against run time asks for, read from a YAML file.
+/// A study of error against run time, read from a YAML file.
 
 #include "osculate/scene/aggregate.hpp"
 #include "osculate/scene/reader.hpp"
@@ -10,7 +10,7 @@
 
 namespace osculate::scene {
 
-/// A formula as written, and where.
+/// A formula as written, and its place.
 struct StudyText {
     std::string text{};
     int line = 0, column = 0;
@@ -24,7 +24,7 @@ struct StudySetting {
 
 struct AxisValue {
     std::string name;
-    std::string scene; ///< absolute path; empty: that of the study
+    std::string scene; ///< absolute path; empty: the study's scene
     std::vector<StudySetting> settings;
     Named<double> parameters;
 };
@@ -43,13 +43,13 @@ struct StudyQuantity {
     std::string part;                 ///< the pair or body
     StudyText value;                  ///< an Aggregate; or
     StudyText of;                     ///< a formula of a row, with
-    std::string reduce = "last";      ///< how it becomes a number, or
-    StudyText exact;                  ///< what it should be in every row
-    ErrorNorm norm = ErrorNorm::rms;  ///< of their difference
-    bool area = false;                ///< nodes weigh by their area
+    std::string reduce = "last";      ///< the reduction of its rows to a number; or
+    StudyText exact;                  ///< the exact value in every row
+    ErrorNorm norm = ErrorNorm::rms;  ///< norm of the difference
+    bool area = false;                ///< weights nodes by their area
     StudyText where, order_by, scale; ///< scale divides the norm
     StudyText reference;              ///< a formula of numbers, or "finest"
-    bool relative = true;             ///< error over |reference|, where that is not 0
+    bool relative = true;             ///< error divided by |reference|, unless that is 0
     bool plot = true;
 
     [[nodiscard]] bool finest() const { return reference.text == "finest"; }
@@ -63,64 +63,64 @@ struct Study {
     std::string name; ///< the file's stem
     std::string path; ///< as given
     std::string title, problem, source, defects;
-    std::string scene; ///< absolute path; may be empty where an axis gives it
+    std::string scene; ///< absolute path; may be empty if an axis gives it
     std::vector<StudySetting> settings;
     Named<StudyText> constants;
     std::vector<StudyAxis> axes;
-    std::vector<std::vector<std::vector<std::size_t>>> leave_out; ///< by axis: values; empty stands for all
+    std::vector<std::vector<std::vector<std::size_t>>> leave_out; ///< for each axis its values; empty: all
     std::vector<StudyQuantity> quantities;
     int refine = -1; ///< axis; -1: none
     StudyText abscissa;
     std::string abscissa_label;
     std::vector<std::size_t> colour_by; ///< axes
-    std::vector<std::size_t> problems;  ///< axes whose values are other problems, not other ways to solve one
+    std::vector<std::size_t> problems;  ///< axes whose values are different problems, not different methods for one
     int repeats = 1;
 
-    /// Everything that is to be run, the last axis fastest.
+    /// All combinations to run; the last axis changes fastest.
     [[nodiscard]] std::vector<Combination> combinations() const;
-    /// "surface=blend,mesh=fine": fit for a folder's name.
+    /// "surface=blend,mesh=fine": valid as folder name.
     [[nodiscard]] std::string id(const Combination& combination) const;
     [[nodiscard]] std::string scene_of(const Combination& combination) const;
-    /// Settings of a combination in the order of their application, without those of the command line.
+    /// Settings of a combination in the order in which they apply, without those of the command line.
     [[nodiscard]] std::vector<StudySetting> settings_of(const Combination& combination) const;
-    /// The same and what the study needs to see of a run, which comes last.
+    /// The same with those of the command line; last come settings for the output that the study needs from a run.
     [[nodiscard]] std::vector<Override> overrides_of(const Combination& combination,
                                                      const std::vector<Override>& command_line) const;
-    /// Values of the axes `problems`: errors are compared where they are the same.
+    /// Values of the axes `problems`: errors are compared only between combinations where these are equal.
     [[nodiscard]] Combination problem_of(const Combination& combination) const;
-    /// Parameters and <axis>_index of a combination, in an order that is that of every other.
+    /// Parameters and <axis>_index of a combination, in the same order for every combination.
     [[nodiscard]] Named<double> parameters_of(const Combination& combination) const;
 };
 
-/// Columns of the rows of a contact or body quantity, and the numbers of every run.
+/// Column names of a contact or a body quantity, and names of the numbers of every run.
 [[nodiscard]] const std::vector<std::string>& contact_columns();
 [[nodiscard]] const std::vector<std::string>& body_columns();
 [[nodiscard]] const std::vector<std::string>& run_numbers();
-/// Columns of history.csv that a run of the scene may write, as formulas know them: '_' for '-'.
+/// Columns of history.csv that a run of the scene may write, with '_' for '-' as in formulas.
 [[nodiscard]] std::vector<std::string> history_columns(const Scene& scene);
 
-/// What every formula of the study knows besides columns: run_numbers(), parameters, constants; where two have one name,
-/// the later one.
+/// Values that every formula of the study knows besides columns: run_numbers(), parameters, constants; if two have the
+/// same name, the later one.
 /// @param run  values of run_numbers()
-/// @pre the study's formulas can be read
+/// @pre the study's formulas can be parsed
 [[nodiscard]] Numbers numbers_of(const Study& study, const Combination& combination, const NamedFunctions& functions,
                                  const std::vector<double>& run);
-/// Columns of a quantity's rows that no number hides.
+/// Columns of a quantity's rows, without those whose name is also that of a number.
 /// @param scene  of any combination
 [[nodiscard]] std::vector<std::string> visible_columns(const StudyQuantity& quantity, const Scene& scene,
                                                        const std::vector<std::string>& numbers);
 
-/// Whether the file is a study of this kind; one of surfaces is not.
+/// Whether the file is a study of runs, not one of surfaces.
 [[nodiscard]] bool is_run_study(const std::string& path);
 
 /// Reads a study and the scene of every combination.
 /// @param functions     that formulas may call
 /// @param command_line  settings of every run
-/// @throws SceneError with all faults; those of a setting name its place in the study
+/// @throws SceneError with all faults; those of a setting contain its place in the study
 [[nodiscard]] Study read_study(const std::string& path, const NamedFunctions& functions,
                                const std::vector<Override>& command_line = {});
 
-/// Gives the fault of a setting the place of that setting in the study.
+/// Sets the place of a setting's fault to that of the setting in the study.
 [[nodiscard]] Fault placed(Fault fault, const Study& study, const Combination& combination);
 
 } // namespace osculate::scene

@@ -1,5 +1,5 @@
 #pragma once
-/// What a study of surface approximations asks for, read from a YAML file.
+/// A study of surface approximations, read from a YAML file.
 
 #include "osculate/core/error.hpp"
 #include "osculate/mesh/mesh.hpp"
@@ -27,7 +27,7 @@ struct SaddleShape {
     double rise = 1, fall = 1;
 };
 
-/// Ratios of a published method's errors to those of the facets, to stand beside the study's own.
+/// Ratios of a published method's errors to those of the facets, for comparison with the study's own.
 struct PublishedRatios {
     std::optional<double> position, normal;
 };
@@ -56,13 +56,13 @@ struct SurfaceStudy {
     int points = 12;
 };
 
-/// A mesh of the x1x2 plane; facets turn counter-clockwise.
+/// A mesh of the x1x2 plane; facets are counter-clockwise.
 struct PlaneMesh {
     std::vector<Vec2> nodes;
     std::vector<mesh::Facet> facets;
 };
 
-/// @param methods  names that `methods` may list
+/// @param methods  allowed names in `methods`
 /// @throws SceneError with all faults
 [[nodiscard]] SurfaceStudy read_surface_study(const std::string& path, const std::vector<std::string>& methods);
 [[nodiscard]] std::vector<PlaneMesh> read_plane_meshes(const std::string& path);

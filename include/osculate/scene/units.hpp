@@ -6,7 +6,8 @@
 
 namespace osculate::scene {
 
-/// Exponents of the base units m, kg, s and rad. An angle is a dimension of its own, so that no angle passes as a number.
+/// Exponents of the base units m, kg, s and rad. The angle is a separate dimension, so that an angle is not accepted as
+/// a number.
 struct Dimension {
     int length = 0, mass = 0, time = 0, angle = 0;
     bool operator==(const Dimension&) const = default;
@@ -27,7 +28,7 @@ inline constexpr Dimension acceleration{1, 0, -2, 0};
 inline constexpr Dimension force_per_volume{-2, 1, -2, 0};
 } // namespace dimension
 
-/// "pressure", "force per volume"; the SI unit itself where the dimension has no name, "number" where it has no unit.
+/// "pressure", "force per volume"; the SI unit if the dimension has no name, "number" if it has no unit.
 [[nodiscard]] std::string name_of(Dimension dimension);
 
 /// SI unit: "Pa", "N/m^3"; empty for a plain number.
@@ -37,7 +38,7 @@ struct Quantity {
     double value = 0; ///< SI; may be infinite or NaN, as written
     Dimension dimension;
     bool has_unit = false;
-    std::string problem; ///< why the text is no quantity; empty when it is one
+    std::string problem; ///< why the text is no quantity; empty if it is one
     std::string nearest; ///< the known unit nearest to an unknown one
 };
 

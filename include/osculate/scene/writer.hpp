@@ -1,5 +1,5 @@
 #pragma once
-/// From a Scene back to YAML.
+/// Writes a Scene as YAML.
 
 #include "osculate/scene/scene.hpp"
 

@@ -7,10 +7,10 @@
 
 namespace osculate::solve {
 
-/// LAPACK's, with partial pivoting.
+/// LAPACK's LU factorisation with partial pivoting.
 class DenseLu {
 public:
-    /// False where A (n x n) is singular to working precision.
+    /// False if A (n x n) is singular to working precision.
     [[nodiscard]] bool factorise(Matrix A);
     /// b (n) becomes A^-1 b. @pre factorise() returned true
     void solve(double* b) const;

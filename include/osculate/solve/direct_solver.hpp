@@ -1,5 +1,5 @@
 #pragma once
-/// Sparse direct factorisation behind one interface.
+/// Sparse direct factorisation with one interface.
 
 #include "osculate/solve/sparse_matrix.hpp"
 
@@ -14,22 +14,23 @@ namespace osculate::solve {
 
 enum class FactorStatus {
     ok,
-    singular,   ///< a pivot is zero or negligible: something is held by nothing
-    indefinite, ///< Cholesky met a negative pivot
+    singular,   ///< a pivot is zero or negligible: some motion is not held
+    indefinite, ///< Cholesky found a negative pivot
 };
 
 class DirectSolver {
 public:
     virtual ~DirectSolver() = default;
-    /// Factorises A, analysing its pattern first when that is new. A must stay alive and unchanged until the last solve().
+    /// Factorises A, after analysis of its pattern if this is new. A must stay alive and unchanged until the last
+    /// solve().
     [[nodiscard]] virtual FactorStatus factorise(const SparseMatrix& A) = 0;
     /// x = A^-1 b; b and x (rows) must not overlap.
     virtual void solve(const double* b, double* x) = 0;
-    /// Equation of the smallest pivot, where the last factorisation failed; -1 unknown.
+    /// Equation of the smallest pivot, if the last factorisation failed; -1: unknown.
     [[nodiscard]] virtual SparseIndex failing_equation() const { return -1; }
 };
 
-/// Factors that hold the inverse of the matrix on some of its unknowns, too.
+/// Factorisation that also gives the inverse of the matrix on some of its unknowns.
 class CondensingSolver : public DirectSolver {
 public:
     /// (A^-1)_kk over the kept unknowns k, in their order; both triangles. @pre factorise() returned ok
@@ -38,10 +39,10 @@ public:
 
 /// CHOLMOD supernodal LL^T with METIS ordering, for symmetric positive definite matrices.
 [[nodiscard]] std::unique_ptr<DirectSolver> make_cholesky();
-/// The same with the unknowns `kept` (equations, each once) eliminated last: their Schur complement stands in the last
-/// columns of the factor, and its inverse costs no further solves.
+/// The same, but eliminates the unknowns `kept` (equations, each once) last: the last columns of the factor contain
+/// their Schur complement, whose inverse needs no further solves.
 [[nodiscard]] std::unique_ptr<CondensingSolver> make_condensing_cholesky(std::vector<SparseIndex> kept);
-/// UMFPACK LU, symmetric strategy with METIS ordering, for everything else.
+/// UMFPACK LU, symmetric strategy with METIS ordering, for all other matrices.
 [[nodiscard]] std::unique_ptr<DirectSolver> make_lu();
 
 } // namespace osculate::solve

@@ -1,5 +1,5 @@
 #pragma once
-/// SUNDIALS' GMRES for linear maps that are no matrices.
+/// SUNDIALS' GMRES for linear maps without a matrix.
 
 #include "osculate/core/types.hpp"
 
@@ -11,7 +11,8 @@ namespace osculate::solve {
 /// y = A x
 using LinearMap = std::function<void(const double* x, double* y)>;
 
-/// SPGMR without restarts, preconditioned from the right where at all, so that it measures the residual b - A x itself.
+/// SPGMR without restarts. A preconditioner, if any, is applied from the right, so that the measured residual is b - A
+/// x itself.
 class Gmres {
 public:
     static constexpr int most_iterations = 60;
@@ -26,8 +27,8 @@ public:
     Gmres(const Gmres&) = delete;
     Gmres& operator=(const Gmres&) = delete;
 
-    /// x with |b - A x| <= tolerance in the 2-norm.
-    /// @param M  inverse of a map near A; empty: none
+    /// Computes x with |b - A x| <= tolerance in the 2-norm.
+    /// @param M  approximate inverse of A; empty: none
     [[nodiscard]] Result solve(const LinearMap& A, const LinearMap& M, const double* b, double* x, double tolerance);
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-/// SUNDIALS' KINSOL as the owner of the nonlinear solve, with our matrix and our factorisations behind its seams.
+/// Nonlinear solver: SUNDIALS' KINSOL, with our matrix and our factorisations behind its interfaces.
 
 #include "osculate/solve/direct_solver.hpp"
 
@@ -13,7 +13,7 @@ class Timings;
 
 namespace osculate::solve {
 
-/// A matrix P near the tangent that is cheaper to invert.
+/// A matrix P that approximates the tangent and is cheaper to invert.
 class Preconditioner {
 public:
     virtual ~Preconditioner() = default;
@@ -21,21 +21,21 @@ public:
     [[nodiscard]] virtual FactorStatus factorise() = 0;
     /// z = P^-1 r
     virtual void precondition(const ConstVectorRef& r, VectorRef z) = 0;
-    /// Equation where factorise() failed, -1 unknown.
+    /// Equation at which factorise() failed, -1: unknown.
     [[nodiscard]] virtual SparseIndex failing_equation() const = 0;
 };
 
-/// The tangent J by what it does, without having it as a matrix.
+/// The tangent J as products with vectors, without its matrix.
 class Tangent {
 public:
     virtual ~Tangent() = default;
-    /// Takes J at the z of the last residual.
+    /// Linearises: J at the z of the last residual.
     virtual void linearise() = 0;
     /// y = J x
     virtual void multiply(const ConstVectorRef& x, VectorRef y) = 0;
-    /// Whether it knows a way of its own to solve with J.
+    /// Whether it has its own method to solve with J.
     [[nodiscard]] virtual bool solves() const { return false; }
-    /// x with |b - J x| <= allowed. False where it cannot: it is then solved as any other. @pre solves()
+    /// Computes x with |b - J x| <= allowed. False if it cannot: J is then solved by the general method. @pre solves()
     [[nodiscard]] virtual bool solve(const ConstVectorRef& b, VectorRef x, double allowed) {
         (void)b, (void)x, (void)allowed;
         return false;
@@ -44,25 +44,25 @@ public:
     [[nodiscard]] virtual int factorisations() const { return 0; }
 };
 
-/// F(z) = 0 with n unknowns, as KINSOL sees it.
+/// F(z) = 0 with n unknowns, in the form for KINSOL.
 class NonlinearProblem {
 public:
     enum class Verdict {
         proceed,
         shorten, ///< F cannot be evaluated here (recoverable): KINSOL halves the step
-        stop,    ///< this solve must end now, by our own decision
+        stop,    ///< this solve must end now, by the problem's own decision
     };
     virtual ~NonlinearProblem() = default;
     [[nodiscard]] virtual Index size() const = 0;
-    /// F (n) at z (n). KINSOL calls it once per Newton iterate, and more often within a line search.
+    /// F (n) at z (n). KINSOL calls it once per Newton iterate, and more often during a line search.
     [[nodiscard]] virtual Verdict residual(const ConstVectorRef& z, VectorRef F) = 0;
     /// J = dF/dz at the z of the last residual.
     [[nodiscard]] virtual const SparseMatrix& jacobian() = 0;
-    /// How to invert about J, where the problem knows better than to factorise it.
+    /// The problem's preconditioner, if it has one that is cheaper than to factorise J; else null.
     [[nodiscard]] virtual Preconditioner* preconditioner() { return nullptr; }
-    /// J without its matrix, where the problem has that: jacobian() is then asked for only to be factorised.
+    /// J without its matrix, if the problem has that; jacobian() is then called only for factorisation.
     [[nodiscard]] virtual Tangent* tangent() { return nullptr; }
-    /// Whether jacobian() may be factorised where GMRES gets nowhere.
+    /// Whether jacobian() may be factorised if GMRES fails.
     [[nodiscard]] virtual bool factorisable() const { return true; }
 };
 
@@ -77,12 +77,12 @@ struct KinsolOptions {
 enum class KinsolOutcome {
     converged,
     max_iterations,
-    stopped,       ///< the problem said stop
+    stopped,       ///< the problem requested a stop
     singular,      ///< the tangent could not be factorised
-    unsolved,      ///< GMRES got nowhere, and the tangent is too large to factorise
+    unsolved,      ///< GMRES failed, and the tangent is too large to factorise
     no_descent,    ///< line search failed
     not_evaluable, ///< F had no value along the step
-    not_finite,    ///< F or the step held NaN or infinity
+    not_finite,    ///< F or the step contained NaN or infinity
 };
 
 struct KinsolResult {
@@ -95,15 +95,15 @@ struct KinsolResult {
 };
 
 [[nodiscard]] std::string describe(KinsolOutcome outcome);
-/// Whether the tangent has no inverse, as far as could be found out.
+/// Whether the tangent is singular, as far as this is known.
 [[nodiscard]] inline bool is_singular(KinsolOutcome outcome) {
     return outcome == KinsolOutcome::singular || outcome == KinsolOutcome::unsolved;
 }
 
-/// One solver per problem size. Every Newton step is solved with the tangent at the iterate: by its factors, or, where the
-/// problem offers a preconditioner, by GMRES, to a fraction of the residual that shrinks with it; factors are kept as long
-/// as they serve, within one call of solve().
-/// What KINSOL's return codes are taken to mean: 0 and 1 converged; 2 (step test) only if the residual test holds too.
+/// One solver per problem size. Every Newton step is solved with the tangent at the iterate: by its factors or, if the
+/// problem has a preconditioner, by GMRES, to a fraction of the residual that decreases with it. Factors are kept while
+/// they are useful, within one call of solve().
+/// Interpretation of KINSOL's return codes: 0 and 1 converged; 2 (step test) only if the residual test holds too.
 class KinsolSolver {
 public:
     KinsolSolver(Index size, Timings& timings);
@@ -111,12 +111,12 @@ public:
     KinsolSolver(const KinsolSolver&) = delete;
     KinsolSolver& operator=(const KinsolSolver&) = delete;
 
-    /// Solves F(z) = 0 from the start value in z (n), which holds the last iterate afterwards.
-    /// Rethrows whatever the problem's callbacks threw.
+    /// Solves F(z) = 0 from the start value in z (n), which contains the last iterate afterwards. Rethrows whatever the
+    /// problem's callbacks threw.
     [[nodiscard]] KinsolResult solve(NonlinearProblem& problem, Vector& z, const KinsolOptions& options);
-    /// Factorisations over the life of this solver.
+    /// Number of factorisations during the life of this solver.
     [[nodiscard]] long factorisations() const;
-    /// GMRES iterations on the whole tangent over the life of this solver.
+    /// Number of GMRES iterations on the whole tangent during the life of this solver.
     [[nodiscard]] long gmres_iterations() const;
 
 private:

@@ -9,28 +9,29 @@
 
 namespace osculate::solve {
 
-/// What multigrid has to know of a matrix beside its entries.
+/// What multigrid needs to know of a matrix besides its entries.
 struct NodalUnknowns {
-    std::vector<SparseIndex> equation; ///< (3 nodes) of each component, ascending; -1 held. No node with three of those
-    Matrix near_kernel;                ///< (3 nodes x 6) motions that strain nothing, body by body in the same columns
+    std::vector<SparseIndex> equation; ///< (3 nodes) of each component, ascending; -1: held, at most two per node
+    Matrix near_kernel;                ///< (3 nodes x 6) motions without strain, body by body in the same columns
 };
 
-/// V-cycles of smoothed aggregation, PETSc's GAMG. Grids are built once from matrices of bodies apart, so that no coarse
-/// unknown joins two of them; what couples them enters the coarse matrices only.
+/// V-cycles of smoothed aggregation, PETSc's GAMG. Grids are built once from matrices of uncoupled bodies, so that no
+/// coarse unknown joins two bodies; the coupling enters only the coarse matrices.
 class Multigrid {
 public:
     virtual ~Multigrid() = default;
     /// @param A      symmetric positive definite; must stay alive and unchanged until the last cycle()
-    /// @param apart  asked when the pattern of A is new, for values (nonzeros of A) to build grids from: without what couples
-    ///               the bodies, and the same whenever it is asked, so that a solution does not depend on when that was
+    /// @param apart  called when the pattern of A is new, for the values (nonzeros of A) from which grids are built:
+    ///               without the coupling of bodies, and the same at every call, so that a solution does not depend on
+    ///               the time of the call
     [[nodiscard]] virtual FactorStatus factorise(const SparseMatrix& A,
                                                  const std::function<std::vector<double>()>& apart) = 0;
-    /// x, near A^-1 b: linear and symmetric in b; b and x (rows) must not overlap.
+    /// x approximates A^-1 b: linear and symmetric in b; b and x (rows) must not overlap.
     virtual void cycle(const double* b, double* x) = 0;
 };
 
-/// PETSc stays unloaded until the first call.
-/// @throws RunFailure where the module cannot be loaded
+/// Loads PETSc at the first call.
+/// @throws RunFailure if the module cannot be loaded
 [[nodiscard]] std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns);
 
 } // namespace osculate::solve

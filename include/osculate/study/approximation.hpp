@@ -1,5 +1,5 @@
 #pragma once
-/// Surfaces through the nodes of a mesh, all asked in the same way: facet by facet.
+/// Surfaces through the nodes of a mesh, with one common interface: facet by facet.
 
 #include "osculate/contact/radial_basis.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
@@ -11,7 +11,7 @@
 
 namespace osculate::study {
 
-/// Topology and positions of its vertices, local numbering.
+/// Topology and vertex positions, in local numbering.
 struct SurfaceMesh {
     mesh::HalfEdgeSurface topology;
     std::vector<Vec3> x;
@@ -26,28 +26,29 @@ struct SurfacePoint {
 class Approximation {
 public:
     virtual ~Approximation() = default;
-    /// Point that the approximation has for the point u of a facet (natural coordinates of contact::FacetPatch); nothing
-    /// where it has none.
+    /// Point of the approximation for the point u of a facet (natural coordinates of contact::FacetPatch); no value if
+    /// it has none.
     [[nodiscard]] virtual std::optional<SurfacePoint> at(Index facet, const Vec2& u) const = 0;
-    /// Facets or vertices that had to take a smaller patch.
+    /// Number of facets or vertices that use a smaller patch.
     [[nodiscard]] virtual Index fallbacks() const { return 0; }
 };
 
 /// The facets themselves.
 [[nodiscard]] std::unique_ptr<Approximation> make_facets(const SurfaceMesh& surface);
 
-/// Quadratic patches whose edges meet the vertex normals at right angles; X = sum L_i x_i - sum c_ij L_i L_j on triangles,
-/// the serendipity form of the same on quadrilaterals.                                  [Nagata 2005, CAGD 22, eqs (5)-(20)]
-/// Vertex normals are the facets' averaged with the angles at the vertex: a mesh brings none of its own.
+/// Quadratic patches whose edges are orthogonal to the vertex normals; X = sum L_i x_i - sum c_ij L_i L_j on triangles,
+/// the corresponding serendipity form on quadrilaterals.                           [Nagata 2005, CAGD 22, eqs (5)-(20)]
+/// Vertex normals are averages of the facet normals, weighted by the angles at the vertex, because a mesh has none of
+/// its own.
 [[nodiscard]] std::unique_ptr<Approximation> make_nagata(const SurfaceMesh& surface);
 
-/// A height x3(x1, x2) on the k-ring of every facet by radial point interpolation with a linear polynomial basis, m = 3.
-/// The point is the one above u's.                                                      [Qian 2014, eq (9)]
-/// @pre  no facet stands upright in the x1x2 plane
+/// A height x3(x1, x2) on the k-ring of every facet, m = 3: radial point interpolation with a linear polynomial basis.
+/// The result is the point above that of u.                                                         [Qian 2014, eq (9)]
+/// @pre no facet is perpendicular to the x1x2 plane
 [[nodiscard]] std::unique_ptr<Approximation> make_height_patches(const SurfaceMesh& surface, int ring);
 
-/// The master surfaces `rpim` and `blend` of contact, m = 6 and equal lengths. The point is the foot that s <- s - g n
-/// reaches from the facet's point.
+/// The master surfaces `rpim` and `blend` of contact, m = 6 and equal lengths. The result is the foot to which s <- s -
+/// g n converges from the facet's point.
 [[nodiscard]] std::unique_ptr<Approximation> make_rpim(const SurfaceMesh& surface, int ring);
 [[nodiscard]] std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level,
                                                         const contact::Multiquadric& basis = {});

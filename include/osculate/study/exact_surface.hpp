@@ -1,5 +1,5 @@
 #pragma once
-/// Surfaces known in closed form, against which approximations from their nodes are measured.
+/// Surfaces in closed form, as reference for approximations through their nodes.
 
 #include "osculate/core/types.hpp"
 
@@ -10,7 +10,7 @@ namespace osculate::study {
 /// Point of an exact surface closest to another point.
 struct ExactPoint {
     Vec3 point = Vec3::Zero();
-    Vec3 normal = Vec3::Zero(); ///< out of the ball, out of the tube, upward on the saddle
+    Vec3 normal = Vec3::Zero(); ///< out of the sphere, out of the tube, upward on the saddle
     double mean_curvature = 0;  ///< H = 1/2 div n, 1/m; 1/radius on a sphere
 };
 
@@ -21,10 +21,10 @@ struct Sphere {
     [[nodiscard]] ExactPoint closest(const Vec3& x) const;
 };
 
-/// Around the z axis.
+/// A torus around the z axis.
 struct Torus {
     Vec3 centre = Vec3::Zero();
-    double ring_radius = 2; ///< of the circle in the middle of the tube, m
+    double ring_radius = 2; ///< of the circle at the centre of the tube, m
     double tube_radius = 1; ///< m
 
     [[nodiscard]] ExactPoint closest(const Vec3& x) const;
@@ -36,7 +36,8 @@ struct Saddle {
     double rise = 1, fall = 1;  ///< 1/m
 
     [[nodiscard]] double height(double x1, double x2) const;
-    /// By Newton's method from the point above or below x.  @pre  x lies well within the radii of curvature
+    /// By Newton's method from the point above or below x.  @pre  the distance of x is well below the radii of
+    /// curvature
     [[nodiscard]] ExactPoint closest(const Vec3& x) const;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes of triangles and quadrilaterals whose nodes lie on an exact surface.
+/// Meshes of triangles and quadrilaterals whose nodes are on an exact surface.
 
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/study/approximation.hpp"
@@ -8,16 +8,16 @@
 namespace osculate::study {
 
 /// Lifts a mesh of the x1x2 plane onto the surface: onto the upper half of a sphere, the upper outer half of a torus.
-/// Facets must turn counter-clockwise, seen from above.
-/// Throws std::runtime_error where a node does not lie below the surface.
+/// Facets must be counter-clockwise, seen from above.
+/// Throws std::runtime_error if a node is not below the surface.
 [[nodiscard]] SurfaceMesh lift(const std::vector<Vec2>& plane, std::vector<mesh::Facet> facets,
                                const ExactSurface& exact);
 
-/// Hybrid mesh: a closed sphere (n x n a side of a cube) or torus (2n along the ring, n around the tube), or of the saddle
-/// the part above a square of edge 2 m about its centre (n x n).
+/// Hybrid mesh: a closed sphere (n x n per side of a cube) or torus (2n along the ring, n around the tube); for the
+/// saddle, the part above a square of edge 2 m about its centre (n x n).
 /// @param n             at least 3
-/// @param irregularity  largest displacement of the nodes along the surface, in edge lengths; below 0.25. Nodes of the
-///                      saddle's boundary stay.
+/// @param irregularity  largest displacement of the nodes along the surface, in edge lengths; below 0.25. Nodes on the
+///                      saddle's boundary do not move.
 [[nodiscard]] SurfaceMesh refined_mesh(const ExactSurface& exact, int n, double irregularity);
 
 } // namespace osculate::study

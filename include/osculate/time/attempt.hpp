@@ -1,5 +1,5 @@
 #pragma once
-/// What is known of one attempted step, for the diary.
+/// Record of one attempted step, for steps.csv.
 
 #include "osculate/core/types.hpp"
 
@@ -17,9 +17,9 @@ struct Attempt {
     double dt = 0;   ///< s
     Verdict verdict = Verdict::accept;
     Reason reason = Reason::none;
-    std::string body;  ///< of the governing node; empty when there is none
+    std::string body;  ///< of the governing node; empty if there is none
     Index node = -1;   ///< local to the body
-    double value = 0;  ///< what decided: the relative residual for `solver`
+    double value = 0;  ///< deciding value: the relative residual for `solver`
     double lambda = 1; ///< fraction of dt proposed for the next attempt
     int iterations = 0;
     std::string cause; ///< in words, for messages

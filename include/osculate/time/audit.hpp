@@ -1,5 +1,5 @@
 #pragma once
-/// The last look at a solved step: whether bodies lie inside one another, whatever contact says.
+/// Last check of a solved step: whether bodies penetrate each other, independently of contact.
 
 #include "osculate/contact/surface_audit.hpp"
 #include "osculate/model/model.hpp"
@@ -11,16 +11,16 @@
 
 namespace osculate::time {
 
-/// Audits displacements by contact::SurfaceAudit. Bodies that no pair keeps apart may overlap as deep as they do in the
-/// reference configuration: that is how they were drawn.
+/// Audits displacements with contact::SurfaceAudit. Bodies without a common pair may overlap as deeply as they do in
+/// the reference configuration, because the user placed them so.
 class Audit {
 public:
     explicit Audit(const model::Model& model);
 
-    /// Of the state with displacements u, all nodes, m. Kept until the next one.
+    /// Audits the state with displacements u, all nodes, m. The result is valid until the next call.
     const contact::AuditResult& examine(const Field& u);
-    /// The deepest place of the last examination beyond what was drawn, its excess reduced by that; nothing where there is
-    /// none.
+    /// The deepest place of the last examination after its excess is reduced by the initial one; no value if there is
+    /// no intrusion.
     [[nodiscard]] std::optional<contact::Intrusion> deepest() const;
 
 private:
@@ -31,7 +31,7 @@ private:
     std::map<std::pair<Index, Index>, double> drawn_; ///< excess in the reference configuration, m
 };
 
-/// Who lies where in whom, in words.
+/// Describes an intrusion in words.
 [[nodiscard]] std::string in_words(const contact::Intrusion& intrusion, const model::Model& model);
 
 } // namespace osculate::time

@@ -1,5 +1,5 @@
 #pragma once
-/// All that a run needs to go on from between two steps as if it had never stopped: plain values.
+/// All data to continue a run after an accepted step as if it had never stopped: plain values.
 
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/equilibrium/equilibrium_memory.hpp"
@@ -16,8 +16,8 @@ struct Checkpoint : Progress {
     std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs) of the state's masters
 };
 
-/// What in a checkpoint cannot belong to a model, in words: sizes, numbers of nodes and facets out of range, values that are
-/// not finite. Empty where all fits.
+/// Reason why a checkpoint cannot belong to a model, in words: sizes, numbers of nodes and facets out of range, values
+/// that are not finite. Empty if it fits.
 [[nodiscard]] std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std::size_t stages);
 
 } // namespace osculate::time

@@ -1,5 +1,5 @@
 #pragma once
-/// What the geometry of contact says against an attempted step: gaps at its end, and paths that lead through a master.
+/// Geometric objections to an attempted step: gaps at its end, and paths that lead through a master.
 
 #include "osculate/core/timing.hpp"
 #include "osculate/model/contact_evaluation.hpp"
@@ -11,51 +11,52 @@
 
 namespace osculate::time {
 
-/// Who speaks for which slave node of a pair:
-/// - *Gap at the end*, of the nodes open at the start: (27) and (28). It can be trusted where the node still sees the sheet
-///   it started above, so it can where nothing moves farther than `reach`.
-/// - *Motion along the normal at the start*, where that sheet is lost at the end, or another one seen: of closed nodes, and of
-///   open ones so near the surface that facets cannot tell which side of a smooth surface they are on.
-/// - *Path* of all other open nodes, against the moving facets, where the motion could have taken them there: at least as
-///   far as the closest facet, and farther than `reach` or with a sheet lost, changed or found. Paths are straight, so that
-///   closed nodes, which follow the surface round its bends, have none.
-/// A node farther from every facet than it moves costs one comparison; with none else, no facet is looked at.
+/// Criteria, by slave node of a pair:
+/// - *Gap at the end*, for nodes open at the start: (27) and (28). It is reliable if the node still sees the sheet
+///   above which it started; this is certain if nothing moves farther than `reach`.
+/// - *Motion along the normal at the start*, if the node no longer sees that sheet at the end, or sees another one: for
+///   closed nodes, and for open nodes so near the surface that facets cannot tell their side of a smooth surface.
+/// - *Path* against the moving facets, for all other open nodes whose motion could lead through a facet: it is at least
+///   the distance of the closest facet, and is longer than `reach` or the node has lost, changed or found a sheet.
+///   Paths are straight. Closed nodes follow a curved surface and therefore have no path.
+/// A node that moves less than its distance to every facet costs one comparison; if all nodes do, no facet is examined.
 class CollisionCheck {
 public:
-    /// Part of the smallest facet size or thickness of a master's body. A node that moves no farther relative to the master
-    /// ends, if it ends inside, nearer to the facets it has gone through than to those on the far side, even in a body squeezed
-    /// to half its thickness, and no farther than next to the facet it started from.
+    /// Fraction of the smallest facet size or thickness of a master's body. A node that moves no farther relative to
+    /// the master and ends inside is nearer to the facets it has passed than to those on the far side, even if the body
+    /// is compressed to half its thickness. It is then at most one facet away from the facet where it started.
     static constexpr double reach = 0.25;
-    /// No interpenetration beyond this part of the thickness is allowed, whatever the limit: it must not end in the far half.
+    /// Largest allowed interpenetration as fraction of the thickness, whatever the limit: it must not end in the far
+    /// half.
     static constexpr double deepest = 0.25;
 
-    /// @param paths  follow paths at all
-    /// @param contact  of the attempts: begin_step() takes it as scratch
+    /// @param paths    whether to follow paths
+    /// @param contact  of the attempts: begin_step() uses it as scratch
     CollisionCheck(const model::Model& model, model::ContactEvaluations& contact, const StepLimits& limits, bool paths,
                    Timings& timings, int threads);
 
-    /// Locates every slave node at the accepted state a step starts from.
+    /// Locates every slave node at the accepted state from which a step starts.
     void begin_step(const model::State& state);
-    /// Adds what there is to say of a trial that leads to displacements u, at which contact has been evaluated last.
+    /// Adds the evidence of a trial with displacements u, at which contact was last evaluated.
     void add_trial(const Field& u, StepEvidence& evidence);
-    /// The same for a solution with contact, whose gaps need no proof.
+    /// The same for a solution with contact, whose gaps need no check.
     void add_solution(const Field& u, StepEvidence& evidence);
-    /// Paths followed since it was asked last.
+    /// Number of paths followed since the last call.
     [[nodiscard]] long take_paths_followed() { return std::exchange(followed_, 0); }
 
 private:
     /// A slave node at the accepted state.
     struct Start {
-        bool found = false; ///< the master has a point for it
+        bool found = false; ///< whether it has a contact point on the master
         bool closed = false;
         double gap = 0;
-        double distance = 0; ///< to the closest facet, at least, m
+        double distance = 0; ///< lower bound of the distance to the closest facet, m
         Vec3 normal = Vec3::Zero();
         Index facet = -1;
     };
     [[nodiscard]] bool speaks_by_normal(std::size_t p, const Start& start) const;
     [[nodiscard]] bool sheet_lost(std::size_t p, Index j) const;
-    /// GapEvidence::length at a facet, and what it allows, m.
+    /// GapEvidence::length at a facet, and the allowed interpenetration there, m.
     [[nodiscard]] double length(std::size_t p, Index facet) const;
     [[nodiscard]] double allowed(std::size_t p, Index facet) const;
     void add_normal_motions(const Field& u, StepEvidence& evidence) const;

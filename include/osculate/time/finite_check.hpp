@@ -1,5 +1,6 @@
 #pragma once
-/// Whether all numbers of a state are finite: comparisons let NaN pass, so what is to be accepted is looked at as a whole.
+/// Checks that all numbers of a state are finite. Comparisons let NaN pass, so the whole state is checked before it is
+/// accepted.
 
 #include "osculate/time/attempt.hpp"
 #include "osculate/time/ledger.hpp"
@@ -9,20 +10,20 @@
 
 namespace osculate::time {
 
-/// A number that is none.
+/// A number that is NaN or infinite.
 struct NotFinite {
     std::string what; ///< "velocity", "gap", "energy.strain" ...
-    Index node = -1;  ///< whose, -1: of no node
+    Index node = -1;  ///< its node, -1: none
     double value = 0;
 };
 
-/// The first of a state about to be accepted: displacements, velocities and accelerations of all nodes, contact force and
-/// gap of every slave node that has a contact partner, open or not; then the ledger.
+/// The first such number of a state before it is accepted: displacements, velocities and accelerations of all nodes,
+/// contact force and gap of every slave node that has a contact partner, open or not; then the ledger.
 /// @param contact  at `state`
-/// @param ledger  null in statics
+/// @param ledger   null in statics
 [[nodiscard]] std::optional<NotFinite> find_not_finite(const model::ContactEvaluations& contact,
                                                        const model::State& state, const Ledger* ledger);
-/// Puts it into words, and its body and node into the attempt's row of the diary.
+/// Describes it in words in the attempt's row of steps.csv, with its body and node.
 void explain(const NotFinite& found, const model::Model& model, Attempt& attempt);
 
 } // namespace osculate::time

@@ -1,21 +1,21 @@
 #pragma once
-/// Whether the forces of an accepted step balance.
+/// Checks that the forces of an accepted step balance.
 
 #include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/model/model.hpp"
 
 namespace osculate::time {
 
-/// Forces of a step, N. Of every body, supports, loads, contact and inertia add up to nothing where internal forces do;
-/// of every pair, the forces on both sides where contact neither pushes nor pulls the whole.
+/// Forces of a step, N. For every body, the forces of supports, loads, contact and inertia sum to zero if internal
+/// forces do; for every pair, the forces on both sides sum to zero if contact causes no net force.
 struct ForceBalance {
     double left_over = 0; ///< largest sum of a body or pair
-    double acting = 0;    ///< sum of the magnitudes of all nodal forces, at least the solver's reference force
+    double acting = 0;    ///< sum of the magnitudes of all nodal forces, not less than the solver's reference force
 };
 
-/// @param equilibrium  at its last residual, the one of `state`, and not committed to another step
-/// @param state        what that step ended in. A pair with mirror images is judged by its bodies alone: what a symmetry
-///                     plane carries does not show in the forces on nodes
+/// @param equilibrium  at its last residual, that of `state`, with no other step opened since
+/// @param state        result of that step. For a pair with mirror images only the bodies are checked: the nodal forces
+///                     do not contain the force of a symmetry plane
 [[nodiscard]] ForceBalance force_balance(const model::Model& model, const equilibrium::Equilibrium& equilibrium,
                                          const model::State& state);
 

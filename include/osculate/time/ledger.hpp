@@ -1,5 +1,5 @@
 #pragma once
-/// Where the energy of a dynamic run is and where it has gone.
+/// The energy balance of a dynamic run.
 
 #include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/model/model.hpp"
@@ -7,28 +7,28 @@
 
 namespace osculate::time {
 
-/// Energies now, work and dissipation since the first dynamic stage began, J; momenta, kg m/s and kg m^2/s.
+/// Current energies; work and dissipation since the start of the first dynamic stage, J; momenta, kg m/s and kg m^2/s.
 ///     kinetic + strain - (both at the start) = external + contact - friction - damping - algorithmic + balance
-/// Every share of a step is the work of one term of the discrete equations of motion over the step's displacement Du, so
-/// that `balance` is what the solver left unsolved, Du . F.
+/// The contribution of each step to a member is the work of one term of the discrete equations of motion over the
+/// step's displacement Du, so that `balance` is the work of the solver's residual, Du . F.
 struct Ledger {
     double kinetic = 0, strain = 0;
     double external = 0; ///< loads, supports and driven motions
     double friction = 0; ///< dissipated, >= 0
     double damping = 0;  ///< dissipated
     double algorithmic =
-        0;              ///< dissipated by the integrator: what inertia and stiffness do beyond their energies' change
-    double contact = 0; ///< work of normal contact forces; 0 where bodies stay in touch, > 0 is energy out of nowhere
+        0;              ///< dissipated by the integrator: work of inertia and stiffness beyond their energies' change
+    double contact = 0; ///< work of normal contact forces; 0 while bodies stay in contact, > 0 is spurious energy
     double balance = 0;
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero(); ///< momenta, angular about the origin in current positions
 };
 
-/// The ledger of a state nothing has happened to yet.
+/// The ledger of the initial state.
 [[nodiscard]] Ledger opened(const model::Model& model, const equilibrium::Dynamics& dynamics,
                             const model::State& state);
 
 /// The ledger after a step.
-/// @param equilibrium  at its last residual, the one of `to`
+/// @param equilibrium  at its last residual, that of `to`
 /// @param force        (nodes) external forces of the step's equations, N
 [[nodiscard]] Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
                               const equilibrium::Equilibrium& equilibrium, const model::State& from,

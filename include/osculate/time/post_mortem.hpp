@@ -1,5 +1,5 @@
 #pragma once
-/// Why a run gave up: everything known of its last attempt, and what to change.
+/// Diagnosis of a failed run: all data of its last attempt, and advice.
 
 #include "osculate/core/error.hpp"
 #include "osculate/time/attempt.hpp"
@@ -14,50 +14,50 @@
 namespace osculate::time {
 
 enum class Cause {
-    unsupported_body,     ///< nothing holds a body at the last iterate
-    singular_tangent,     ///< every body is held, and yet the tangent has no inverse
-    linear_system,        ///< GMRES with multigrid does not solve it
-    diverged,             ///< the iterates run away from the last equilibrium
-    status_cycle,         ///< statuses come back to what they were
-    stalled,              ///< statuses rest, and the residual does not fall
-    iterations_exhausted, ///< solver.max_iterations
+    unsupported_body,     ///< a body is not held at the last iterate
+    singular_tangent,     ///< every body is held, but the tangent is singular
+    linear_system,        ///< GMRES with multigrid does not converge
+    diverged,             ///< the iterates diverge from the last equilibrium
+    status_cycle,         ///< statuses repeat
+    stalled,              ///< statuses are constant, and the residual does not decrease
+    iterations_exhausted, ///< solver.max_iterations reached
     no_descent,           ///< a line search found no smaller residual
     not_evaluable,        ///< no residual along the step
-    not_finite,           ///< residual or step held NaN or infinity
-    inside_out,           ///< an element has no volume left
+    not_finite,           ///< residual or step contained NaN or infinity
+    inside_out,           ///< an element has det F <= 0
     interpenetration,
-    unseen_contact, ///< bodies inside one another where no contact node sees it
+    unseen_contact, ///< bodies penetrate each other where no contact node detects it
     collision,
     time_error,
     energy,
     load_not_finite, ///< a table or an expression
 };
 
-/// A slave node whose status changed within the last attempt.
+/// A slave node whose status changed during the last attempt.
 struct StatusChanges {
     std::string pair, body;
     Index node = -1;                       ///< local to the body
-    std::vector<contact::Status> sequence; ///< without repetitions, in their order
+    std::vector<contact::Status> sequence; ///< without repetitions, in temporal order
 };
 
-/// What holds a body.
+/// How a body is held.
 struct BodyHold {
     std::string body;
-    int free_by_supports = 0;              ///< rigid motions that supports and driven motions leave it
-    int free_with_contact = 0;             ///< and contact as well, as if what it touches stood still
-    std::vector<std::string> free_motions; ///< these in words, see model::RigidHold
+    int free_by_supports = 0;              ///< rigid motions that supports and driven motions leave free
+    int free_with_contact = 0;             ///< rigid motions that contact with fixed partners leaves free, too
+    std::vector<std::string> free_motions; ///< these motions in words, see model::RigidHold
     bool in_pair = false;
     Index touching = 0;                ///< closed slave nodes on either side of it, at the last iterate
-    Index pressed = 0;                 ///< those of them that contact does not pull
-    Index touched = 0;                 ///< closed ones at the last accepted state
-    std::string nearest_pair;          ///< with the smallest gap at the last accepted state; empty: no partner anywhere
-    double nearest_gap = 0, facet = 0; ///< that gap and the size of the facet, m
+    Index pressed = 0;                 ///< number of these without tensile contact force
+    Index touched = 0;                 ///< closed slave nodes at the last accepted state
+    std::string nearest_pair;          ///< of the smallest gap at the last accepted state; empty: no partner
+    double nearest_gap = 0, facet = 0; ///< that gap and the facet's size, m
 };
 
-/// The slave node in question and what it faces.
+/// The slave node in question and the master facet that it faces.
 struct ContactPlace {
     std::string pair, master_body;
-    Index master_facet = -1;        ///< of the pair's master surface; -1: nothing faces the node
+    Index master_facet = -1;        ///< of the pair's master surface; -1: the node faces none
     std::vector<Index> facet_nodes; ///< local to the master's body
     contact::Status status = contact::Status::open;
     double gap = 0; ///< m
@@ -69,11 +69,11 @@ struct ElementPlace {
     double J = 0; ///< det F
 };
 
-/// One thing to change.
+/// One recommended change.
 struct Advice {
     std::string key;                ///< of the scene
-    std::string text;               ///< to what, and why
-    std::vector<std::string> set{}; ///< KEY=VALUE as `--set` takes them, which do as it says; empty: in words alone
+    std::string text;               ///< new value and reason
+    std::vector<std::string> set{}; ///< KEY=VALUE as for `--set`, with the same effect; empty: text only
 };
 
 /// A load or a motion without a value.
@@ -83,41 +83,41 @@ struct MissingLoad {
     double duration = 0; ///< of the stage, s
 };
 
-/// What is known of a failure. `advice` and `no_remedy` are for whoever knows the keys of a scene to fill in.
+/// Data of a failure. `advice` and `no_remedy` are filled in by code that knows the keys of a scene.
 struct PostMortem {
     Cause cause = Cause::iterations_exhausted;
-    std::string message; ///< the run's own sentence
+    std::string message; ///< error message of the run
     std::string stage;
-    double time = 0, last_time = 0;      ///< aimed at, and of the last accepted state, s
+    double time = 0, last_time = 0;      ///< end of the attempt, and of the last accepted step, s
     double dt = 0, smallest_dt = 0;      ///< of the last attempt, and the smallest allowed, s
-    std::string limit;                   ///< why it was not cut any further, in words
+    std::string limit;                   ///< why it was not cut further, in words
     std::vector<Attempt> attempts;       ///< of this step
-    std::string body;                    ///< of the node; empty: there is none
+    std::string body;                    ///< of the node; empty: none
     Index node = -1;                     ///< local to the body
-    Vec3 X = Vec3::Zero(), x = X;        ///< where it was at first, and is at the last iterate, m
-    std::optional<ContactPlace> contact; ///< of that node, or of one whose status went to and fro
+    Vec3 X = Vec3::Zero(), x = X;        ///< reference position, and position at the last iterate, m
+    std::optional<ContactPlace> contact; ///< of that node, or of one with alternating status
     std::optional<ElementPlace> element;
     std::optional<MissingLoad> missing_load{};
     double residual = 0;                                  ///< of the last solve, relative
-    double reference_force = 0;                           ///< what it is relative to, N
-    Vec3 out_of_balance = Vec3::Zero();                   ///< force that nothing balances at the node, N
-    std::string rung;                                     ///< of the ladder, that came last
+    double reference_force = 0;                           ///< reference of `residual`, N
+    Vec3 out_of_balance = Vec3::Zero();                   ///< unbalanced force at the node, N
+    std::string rung;                                     ///< last rung of the ladder
     std::vector<equilibrium::IterationRecord> iterations; ///< of the last attempt
-    std::vector<StatusChanges> changes;                   ///< those that changed most often first
-    Index changing = 0;                                   ///< nodes in all; `changes` has the first few
+    std::vector<StatusChanges> changes;                   ///< most frequent changes first
+    Index changing = 0;                                   ///< number of such nodes; `changes` has the first few
     std::vector<BodyHold> bodies;
     std::vector<Advice> advice;
-    std::string no_remedy; ///< why none is known; empty: `advice` holds one
+    std::string no_remedy; ///< why no advice is known; empty: there is some
 };
 
 [[nodiscard]] std::string name(Cause cause);
 [[nodiscard]] std::string in_words(Cause cause);
 [[nodiscard]] std::string name(contact::Status status);
-/// Of the enumerations; nothing where no cause or status has that name.
+/// The enumerator with a name; no value if there is none.
 [[nodiscard]] std::optional<Cause> cause_of(const std::string& name);
 [[nodiscard]] std::optional<contact::Status> status_of(const std::string& name);
 
-/// The last attempt of a run, as the stepper has it.
+/// The last attempt of a run, with references to the stepper's data.
 struct FailedAttempt {
     const model::Model& model;
     const Stage& stage;
@@ -129,12 +129,13 @@ struct FailedAttempt {
     const std::vector<Attempt>& attempts; ///< of this step, the failed one last
 };
 
-/// Examines it. Evaluates `equilibrium` once more, at z with the statuses it has, where z is finite.
+/// Examines the failed attempt. Evaluates `equilibrium` once more at z, with its statuses, if z is finite.
 [[nodiscard]] PostMortem examine(const FailedAttempt& failed, equilibrium::Equilibrium& equilibrium);
-/// A load or a motion without a value: the step cannot even be tried.
+/// Error: a load or a motion has no finite value, so that the step cannot even be tried.
 class LoadNotFinite : public RunFailure {
 public:
-    /// @param course   its name, as in Course  @param elapsed  time since the stage's start at which it has no value, s
+    /// @param course  its name, as in Course  @param elapsed  time since the stage's start at which there is no value,
+    ///                s
     LoadNotFinite(const std::string& message, std::string course, double elapsed)
         : RunFailure(message), course_(std::move(course)), elapsed_(elapsed) {}
     [[nodiscard]] const std::string& course() const { return course_; }
@@ -148,10 +149,10 @@ private:
 /// @param t_start    of the stage, s  @param last_time  of the last accepted state, s
 [[nodiscard]] PostMortem examine(const LoadNotFinite& failure, const model::Model& model, const Stage& stage,
                                  double t_start, double last_time);
-/// A failed solve in one sentence; fills in the attempt's body, node and value.
+/// Describes a failed solve in one sentence; fills in the attempt's body, node and value.
 [[nodiscard]] std::string explain(const model::Model& model, const LadderResult& result,
                                   const equilibrium::Equilibrium& equilibrium, Attempt& attempt);
-/// Fills in body and local number of a node.
+/// Sets the body and the local number of a node in the attempt.
 void name_node(const model::Model& model, Index node, Attempt& attempt);
 
 } // namespace osculate::time

@@ -1,5 +1,5 @@
 #pragma once
-/// One stage as the stepper sees it.
+/// One stage in the form for the stepper.
 
 #include "osculate/equilibrium/dynamics.hpp"
 #include "osculate/equilibrium/tangent_choice.hpp"
@@ -14,24 +14,24 @@
 
 namespace osculate::time {
 
-/// A load's or a motion's value over the time of a stage.
+/// Value of a load or a motion over the time of a stage.
 struct Course {
     std::string name;                 ///< for messages
     std::function<double(double)> at; ///< value at a time since the stage's start, s
-    std::vector<double> corners;      ///< times since the stage's start that steps must hit, s
+    std::vector<double> corners;      ///< times since the stage's start at which steps must end, s
 };
 
 /// External forces that follow a course.
 struct CourseForce {
     Index course = -1; ///< of the stage
-    Field pattern;     ///< (nodes) forces where the course is 1, N
+    Field pattern;     ///< (nodes) forces at course value 1, N
 };
 
 /// A pressure on the current area, along the current normal.
 struct FollowerPressure {
     std::vector<mesh::SurfaceFace> faces; ///< global nodes
-    double start = 0, end = 0;            ///< Pa, ramped as the stage says
-    Index course = -1;                    ///< of the stage, that it follows instead
+    double start = 0, end = 0;            ///< Pa, ramped like the stage
+    Index course = -1;                    ///< course of the stage that it follows instead; -1: none
 };
 
 struct Stage {
@@ -39,14 +39,14 @@ struct Stage {
     double duration = 1; ///< s
     int steps = 1;
     std::optional<equilibrium::Dynamics> dynamics;   ///< absent: static
-    equilibrium::TangentChoice tangent;              ///< how its linear systems are solved
+    equilibrium::TangentChoice tangent;              ///< method for its linear systems
     StepLimits limits;                               ///< g_p in facet sizes; dt_max is the stage's step
-    bool follow_paths = false;                       ///< of slave nodes, see CollisionCheck
+    bool follow_paths = false;                       ///< follow paths of slave nodes, see CollisionCheck
     bool ramp = true;                                ///< linear from the last value; false: full value at once
     std::vector<linear::NodeConstraint> constraints; ///< every direction held during this stage
     Field force_start, force_end;                    ///< (nodes) external forces at its two ends, N
     std::vector<Course> courses;
-    std::vector<CourseForce> course_forces; ///< on top of these
+    std::vector<CourseForce> course_forces; ///< added to these forces
     std::vector<FollowerPressure> follower_pressures;
 };
 

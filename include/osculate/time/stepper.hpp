@@ -1,5 +1,5 @@
 #pragma once
-/// Takes the stages of a run step by step. A step is a transaction: it is accepted whole or leaves no trace.
+/// Runs the stages of a run step by step. A step is a transaction: it is accepted as a whole or leaves no trace.
 
 #include "osculate/equilibrium/equilibrium.hpp"
 #include "osculate/time/attempt.hpp"
@@ -22,14 +22,14 @@ struct PostMortem;
 struct StepperOptions {
     double tolerance = 1e-9;
     int max_iterations = 30;
-    int reject_every = 0; ///< rejects every k-th attempt on purpose, to see that it leaves no trace; 0 none
+    int reject_every = 0; ///< rejects every k-th attempt on purpose, to test that it leaves no trace; 0: none
     bool predictor = true;
     bool stabilisation = true; ///< see StabilisationOptions
     int threads = 1;
-    bool audit = false; ///< of every solved step, see Audit
+    bool audit = false; ///< audit every solved step, see Audit
 };
 
-/// An accepted step, valid during StepObserver::accepted only.
+/// An accepted step, valid only during StepObserver::accepted.
 struct AcceptedStep {
     const model::State& state;
     const equilibrium::Equilibrium& equilibrium; ///< evaluated at `state`
@@ -37,14 +37,14 @@ struct AcceptedStep {
     int iterations = 0;
     const Stage& stage;
     const Ledger* ledger = nullptr;              ///< null in statics
-    const contact::AuditResult* audit = nullptr; ///< null: there was none
+    const contact::AuditResult* audit = nullptr; ///< null: no audit
 };
 
-/// The last iterate of the attempt at which a run gave up, valid during StepObserver::gave_up only.
+/// The last iterate of the attempt at which a run failed, valid only during StepObserver::gave_up.
 struct FailedIterate {
     const FailedAttempt& attempt;
-    const model::State& state;                   ///< time: what the attempt aimed at
-    const equilibrium::Equilibrium& equilibrium; ///< evaluated at `state` where that is finite
+    const model::State& state;                   ///< its time is the planned end of the attempt
+    const equilibrium::Equilibrium& equilibrium; ///< evaluated at `state` if that is finite
 };
 
 class StepObserver {
@@ -52,10 +52,10 @@ public:
     virtual ~StepObserver() = default;
     virtual void attempted(const Attempt& attempt, const std::vector<equilibrium::IterationRecord>& iterations) = 0;
     virtual void accepted(const AcceptedStep& step) = 0;
-    /// After every accepted step, when all that belongs to it is done: what it throws ends the run there.
-    /// @param checkpoint  takes one; not to be called later
+    /// After every accepted step, when all its data is complete: an exception here ends the run.
+    /// @param checkpoint  returns a checkpoint; must not be called later
     virtual void between_steps(const std::function<Checkpoint()>& checkpoint) { (void)checkpoint; }
-    /// Before the run ends with a RunFailure. @param iterate  null where there was none: a load without a value
+    /// Before the run ends with a RunFailure. @param iterate  null if there was none: a load without a value
     virtual void gave_up(const PostMortem& post_mortem, const FailedIterate* iterate) {
         (void)post_mortem, (void)iterate;
     }
@@ -66,11 +66,11 @@ public:
     Stepper(const model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings);
     ~Stepper();
 
-    /// Runs every stage. Throws RunFailure with the cause in words when a step cannot be solved at its smallest size;
-    /// everything accepted before has been observed.
+    /// Runs every stage. Throws RunFailure with the cause in words if a step cannot be solved at its smallest size; the
+    /// observer has then seen all accepted steps.
     void run(StepObserver& observer);
-    /// run() is to go on from there. To be called before it, with a checkpoint of the same model, stages and options.
-    /// @throws RunFailure where it cannot be one
+    /// Makes run() continue from a checkpoint of the same model, stages and options. Call it before run().
+    /// @throws RunFailure if the checkpoint does not fit
     void resume(Checkpoint checkpoint);
 
     [[nodiscard]] const model::State& state() const {
@@ -83,7 +83,7 @@ private:
     std::vector<Stage> stages_;
     std::unique_ptr<RunContext> context_;
     Progress progress_;
-    std::unique_ptr<const Checkpoint> resumed_; ///< until run() has gone on from it
+    std::unique_ptr<const Checkpoint> resumed_; ///< until run() has continued from it
 };
 
 } // namespace osculate::time

@@ -125,7 +125,7 @@ TEST_F(Check, SaysWhenBodiesAreFreeTogether) {
 TEST_F(Check, NamesFacetsThatLookTheWrongWay) {
     // the cap's top as slave of the ground: its facets look up, as those of the ground do
     EXPECT_THAT(checked(press, {"contact.joint.slave=top"}),
-                HasSubstr("warning: contact.joint.master.set: 9 of 9 slave facets do not look towards the master"));
+                HasSubstr("warning: contact.joint.master.set: 9 of 9 slave facets do not face the master"));
     EXPECT_THAT(checked(press), Not(HasSubstr("look")));
 }
 

@@ -170,12 +170,12 @@ void describe(Visitor& v, StepControl& s) {
                      "(or error_tolerance) and closing_energy. fixed: they are as long as contact and the solver "
                      "allow, and summary.json warns of the energy that closing gaps take."},
          sizes, s.step_size);
-    v.number(
-        {.name = "velocity_error",
-         .meaning = "Estimated error that one dynamic step may make in the velocities of the bodies' centres, as a "
-                    "fraction of the speed that all energy so far would give; a step with a larger error is cut.",
-         .range = range::positive},
-        s.velocity_error);
+    v.number({.name = "velocity_error",
+              .meaning =
+                  "Estimated error that one dynamic step may make in the velocities of the bodies' centres, as a "
+                  "fraction of the speed that all energy so far would give; a step with a larger error is cut.",
+              .range = range::positive},
+             s.velocity_error);
     v.number({.name = "closing_energy",
               .meaning = "Energy that closing gaps may take in one dynamic step, as a fraction of all energy so far; a "
                          "step that takes more is cut.",

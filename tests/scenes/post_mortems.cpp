@@ -253,7 +253,7 @@ TEST_F(NoRemedy, IsKnownForABodyThatPassesThroughItself) {
     EXPECT_EQ(post_mortem["cause"], "unseen_contact");
     EXPECT_THAT(post_mortem["no_remedy"], HasSubstr("osculate does not model contact of a body with itself"));
     EXPECT_THAT(post_mortem["advice"], testing::IsEmpty());
-    EXPECT_THAT(outcome.err, HasSubstr("try         no remedy is known: body 'ring' meets itself"));
+    EXPECT_THAT(outcome.err, HasSubstr("try         no remedy is known: body 'ring' touches itself"));
 }
 
 class FailedIterate : public Program {};

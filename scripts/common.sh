@@ -20,7 +20,7 @@ refuse() { # WHAT IS WRONG with the command line
 }
 
 takes_nothing_else() { # what is left of the arguments
-    [ $# -eq 0 ] || refuse "not known: $*"
+    [ $# -eq 0 ] || refuse "unknown option or argument: $*"
 }
 
 build_in() { # DEFAULT, a folder of the repository: where OSCULATE_BUILD names none

@@ -364,27 +364,27 @@ def main(program):
     tolerance = {scene: model.scene["solver"]["tolerance"] for scene, model in models.items()}
     page = f"""\
 Written by `scripts/measure/calculix`: CalculiX {calculix} (`ccx`, Debian's, with its default solver SPOOLES) and Osculate
-{blend[HALF_TUBE]['version']} on the meshes, loads and supports of `configs/paper`, one thread, one after the other. Each ran {REPETITIONS} times, by turns; the
-run with the least CPU time is shown. CPU is user and system time, memory the largest resident set, both as the operating
-system counts them, reading and writing included. *Over* is CPU time over that of the Osculate run of that name.
+{blend[HALF_TUBE]['version']} on the meshes, loads and supports of `configs/paper`, one thread, one after the other. Each ran {REPETITIONS} times, by turns; the run with the
+least CPU time is shown. CPU is user and system time, and memory is the largest resident set. The operating system counts both,
+and they include reading and writing. *Over* is CPU time divided by that of the Osculate run of that name.
 
 - Osculate: the scenes as shipped (`blend, nodes`), with `contact.<pair>.surface=facets`, and with
-  `contact.<pair>.discretisation=mortar` too, on facets as CalculiX's contact is: `nodes` is what node-to-surface does,
-  `mortar` what comes closest to surface-to-surface. It writes the bodies and both surfaces after every step
+  `contact.<pair>.discretisation=mortar` too, on facets like CalculiX's contact. `nodes` does the same as node-to-surface;
+  `mortar` comes closest to surface-to-surface. Osculate writes the bodies and both surfaces after every step
   ({100 * blend[HALF_TUBE]['output']:.0f} % of its time on the half-tube with blend, {100 * blend[FOUNDATION]['output']:.0f} % on the foundation).
-- CalculiX: C3D8, no NLGEOM, pressures as nodal forces, so dead; `*STATIC, DIRECT` with the scene's steps as increments.
+- CalculiX: C3D8, no NLGEOM, pressures as nodal forces, so they are dead loads; `*STATIC, DIRECT` with the scene's steps as increments.
   `PRESSURE-OVERCLOSURE=LINEAR`, its slope {' and '.join(str(p) for p in PENALTIES)} times E of the softer body over h, the side of a slave facet; stick slope
   {STICK_SLOPE} of that. It prints totals of reactions, and displacements of the loaded face after the press; no fields.
 - Osculate's contact is exact, without a penalty. CalculiX converges by its default criteria, which left residuals of up to
   {residual:.2f} % of the mean force; Osculate's are below `solver.tolerance`, {tolerance[HALF_TUBE]:.0e} (half-tube) and {tolerance[FOUNDATION]:.0e} (foundation) of the
   step's reference force.
-- Without contact, slave surface held, displacements of the loaded face differ by {same[HALF_TUBE]:.0e} (half-tube) and {same[FOUNDATION]:.0e}
+- Without contact and with the slave surface held, displacements of the loaded face differ by {same[HALF_TUBE]:.0e} (half-tube) and {same[FOUNDATION]:.0e}
   (foundation) of the largest: elements, loads and supports are the same. CalculiX prints seven digits.
 
 ## Half-tube: pressed, then slid by 3 m in 30 steps
 D is the force that drives the contactor, its mean and peak-to-peak ripple over slides {MEAN_FROM} to 30; settlements are those of
-the loaded face after the press. The contactor settles furthest on `blend`: facets of the tube lie up to 22 mm, their sagitta,
-inside the cylinder through its nodes.
+the loaded face after the press. The contactor settles furthest on `blend`, because facets of the tube lie inside the
+cylinder through its nodes, by up to their sagitta of 22 mm.
 
 """ + "\n".join(table(HALF_TUBE, models[HALF_TUBE], runs[HALF_TUBE])) + """
 

@@ -346,7 +346,7 @@ def decks(program):
         node, surface = variant(text, "NODE TO SURFACE"), variant(text, "SURFACE TO SURFACE")
         stiff = variant(text, "SURFACE TO SURFACE", STIFFER)
         ours = by_osculate(program, f"{name}_node", node)
-        notes += [f"- `{name}`, {what}: without contact, slave nodes held, the programs' displacements differ by {same:.0e} of the largest. "
+        notes += [f"- `{name}`, {what}: without contact and with the slave nodes held, the programs' displacements differ by {same:.0e} of the largest. "
                   f"Not as in the deck: {'; '.join(re.sub('^[^:]*:', 'line ', line) for line in ours['left_out']) or 'nothing'}."]
         (pair,) = [re.sub(r":$", "", line.strip()) for line in (OUT / f"{name}_node/scene.yaml").read_text().split("contact:\n")[1].splitlines()[:1]]
         mortar = by_osculate(program, f"{name}_mortar", surface, [f"contact.{pair}.surface=facets"])
@@ -371,31 +371,33 @@ def main(program):
     table, notes = decks(program)
     times = speed(program)
     page = f"""\
-Written by `scripts/measure/foreign_meshes`. One thread; seconds are wall time on a machine that does other things too, but those of the
-million elements, which are CPU time.
+`scripts/measure/foreign_meshes` writes this page. The programs use one thread. Seconds are wall time on a machine that also does other
+things; those of the million elements are CPU time.
 
 ## Meshes that ship with Debian's packages
-By `osculate mesh FILE`. What needs a repair is refused without, every fault by the file's own numbers.
+Read by `osculate mesh FILE`. A file that needs a repair is refused without it, and every fault is listed with the file's own numbers.
 
 {chr(10).join(meshes)}
 
 ## Geometry meshed
-By `mesh: {{cad: {{path: FILE}}}}`, elements a tenth of the geometry's diagonal; each meshed by two processes, of one and two threads.
+Meshed by `mesh: {{cad: {{path: FILE}}}}`, with elements of a tenth of the geometry's diagonal, by two processes each, with one and with two threads.
 
 {chr(10).join(geometry)}
 
 ## Contact decks of CalculiX's tests
-Of `calculix-ccx-test`: imported by `osculate import`, checked and run, and solved by CalculiX with either kind of contact, same mesh
-and loads. Numbers are in the deck's units. Contact force: ours the sum of normal forces, CalculiX's the reaction of the lower body.
-Differences are those of nodal displacements from the first row's, of the largest. Osculate's contact is exact, CalculiX's a penalty, which
-in these decks gives by about a tenth of the displacement; with one {STIFFER} times as stiff what is left is seen, but for friction1, whose stick slope stays the deck's. Seconds are the best of {REPETITIONS}, starting and writing included.
+The decks of `calculix-ccx-test` are imported by `osculate import`, checked and run, and solved by CalculiX with both kinds of
+contact, with the same mesh and loads. Numbers are in the deck's units. Osculate's contact force is the sum of normal forces,
+CalculiX's is the reaction of the lower body. Differences are those of nodal displacements from the first row's, divided by the
+largest displacement. Osculate's contact is exact. CalculiX's is a penalty, which in these decks gives
+way by about a tenth of the displacement; with one {STIFFER} times as stiff, the remaining difference is seen, except for friction1, whose stick slope stays the deck's. Seconds are the best of {REPETITIONS} runs, and
+include starting and writing.
 
 {chr(10).join(notes)}
 
 {chr(10).join(table)}
 
 ## A million elements
-`osculate mesh` on a block of hexahedra: reading, looking for every fault, surfaces. CPU seconds; power: of the growth.
+`osculate mesh` on a block of hexahedra: it reads the file, looks for every fault and finds the surfaces. The table shows CPU seconds and the power with which they grow.
 
 {chr(10).join(times)}
 """

@@ -15,11 +15,11 @@ SECONDS = 300  # of one run
 GAVE_UP = 3  # exit code
 HEAD = """# Failures
 
-Written by `scripts/pages/failures`; edit nothing here. Small scenes that cannot be run, on purpose, and what the program says to each:
-first the sentence of the failure, then its post-mortem, which `osculate diary DIR` repeats. It is in `post_mortem.json` too, and
-the last iterate is a frame in the folder `failed`. Below each, what came of the advice: overrides are run on the scene as they
-are printed, advice in words alone is not. Tests expect that some override helps, or do what the words say and expect the run to
-end well, or find that no remedy is known.
+`scripts/pages/failures` writes this page; do not edit it. It shows small scenes that cannot be run, on purpose, and what the
+program says about each: first the sentence of the failure, then the post-mortem, which `osculate diary DIR` repeats. The
+post-mortem is also in `post_mortem.json`, and the last iterate is a frame in the folder `failed`. A table below each scene
+shows the effect of the advice: overrides are run on the scene as they are printed; advice in words alone is not tried. Tests
+expect that some override helps, or do what the words say and expect the run to end well, or find that no remedy is known.
 """
 
 

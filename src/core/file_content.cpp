@@ -1,7 +1,10 @@
 #include "osculate/core/file_content.hpp"
 
+#include "osculate/core/error.hpp"
+
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 
 namespace osculate {
@@ -26,6 +29,13 @@ std::string file_content(const std::filesystem::path& path, std::error_code& err
     while (const std::size_t count = std::fread(part, 1, sizeof part, file.get())) content.append(part, count);
     if (std::ferror(file.get()) != 0) error.assign(errno, std::generic_category());
     return content;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw RunFailure("cannot write " + path.string());
 }
 
 std::string file_content(const std::filesystem::path& path) {

@@ -114,7 +114,7 @@ private:
             body.section == nullptr ? model_.materials.end() : model_.materials.find(body.section->material);
         if (found == model_.materials.end()) {
             model_.lose(body.section == nullptr ? model_.mesh.raw.file : body.section->place, "body " + body.name,
-                        "it has no material: E = 1 stands in");
+                        "it has no material: E = 1 is used instead");
         } else {
             const DeckMaterial& m = found->second;
             density = m.density;
@@ -126,8 +126,8 @@ private:
                 law = "neo_hookean";
             } else {
                 model_.lose(m.place, "material " + m.name,
-                            m.neo_hookean ? "C10 and D1 must be positive: E = 1 stands in"
-                                          : "no elastic constants that have a counterpart: E = 1 stands in");
+                            m.neo_hookean ? "C10 and D1 must be positive: E = 1 is used instead"
+                                          : "no elastic constants that have a counterpart: E = 1 is used instead");
             }
             if (!(elastic[0] > 0) || !(elastic[1] > -1 && elastic[1] < 0.5))
                 model_.lose(m.place, "material " + m.name, "E must be positive, nu between -1 and 0.5");
@@ -238,13 +238,14 @@ private:
                     }
                     if (of_six_node_faces(a, pair.slave) || of_six_node_faces(b, pair.master)) {
                         model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
-                                    "faces of C3D10 are in no contact: mesh the body with C3D4");
+                                    "faces of C3D10 cannot be in contact: mesh the body with C3D4");
                         continue;
                     }
                     const bool mortar = pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave));
                     if (pair.mortar && !mortar)
-                        model_.note(pair.place, "surface to surface from the nodes of " + pair.slave,
-                                    "nodes alone have no facets to take averages over: node to surface stands in");
+                        model_.note(
+                            pair.place, "surface to surface from the nodes of " + pair.slave,
+                            "nodes alone have no facets to take averages over: node to surface is used instead");
                     // nodes of a deck meet the facets of the mesh; averages over facets go well with a smooth master
                     text += "  " + fresh_name(slave + "_on_" + master, taken) + ":\n    slave: " + slave +
                             "\n    master: {set: " + master + (mortar ? "" : ", surface: facets") + "}\n";

@@ -164,8 +164,9 @@ private:
 
     void check_element_type(const DeckCard& card) {
         if (card.keyword == "ELEMENT" && capitals_of(card, "TYPE") == "C3D8R")
-            model_.note(deck_.place(card), "*ELEMENT, TYPE=C3D8R",
-                        "hexahedra are integrated in full; incompatible_modes stands in, which does not lock either");
+            model_.note(
+                deck_.place(card), "*ELEMENT, TYPE=C3D8R",
+                "hexahedra are integrated in full; incompatible_modes is used instead, which does not lock either");
     }
 
     void begin_material(const DeckCard& card) {
@@ -189,8 +190,7 @@ private:
             if (!type.empty() && type != "ISO" && type != "ISOTROPIC") return lose(card, "materials are isotropic");
             found->second.elastic = {v[0], v[1]};
         } else {
-            if (card.parameter("NEOHOOKE") == nullptr)
-                return lose(card, "NEO HOOKE is the only one that has a counterpart");
+            if (card.parameter("NEOHOOKE") == nullptr) return lose(card, "only NEO HOOKE has a counterpart");
             found->second.neo_hookean = {v[0], v[1]};
             note(card, "neo_hookean has the same moduli at small strain; at large strain its volumetric part differs");
         }
@@ -250,7 +250,7 @@ private:
         const std::string type = without_blanks(capitals_of(card, "TYPE"));
         p.mortar = type == "SURFACETOSURFACE" || type == "MORTAR" || type == "LINMORTAR" || type == "PGLINMORTAR";
         if (!p.mortar && !type.empty() && type != "NODETOSURFACE" && type != "MASSLESS")
-            lose(card, "TYPE=" + type + " is not known: node to surface stands in");
+            lose(card, "TYPE=" + type + " is not known: node to surface is used instead");
         p.place = deck_.place(card);
         for (const char* name : {"ADJUST", "SMALLSLIDING"})
             if (card.parameter(name) != nullptr)

@@ -362,7 +362,7 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
                                                                        : "";
     if (format.empty())
         throw MeshError(options->file,
-                        "no geometry has the ending '" + ending + "'; read are .step .stp .iges .igs .brep");
+                        "no geometry has the ending '" + ending + "'; osculate reads .step .stp .iges .igs .brep");
     const double unit =
         format == "brep" ? 1 : millimetre; // lengths in which Gmsh works: its tolerances fit millimetres
     guarded(options->file, [&] {

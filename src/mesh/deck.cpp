@@ -41,7 +41,7 @@ public:
         const std::uintmax_t size = std::filesystem::file_size(path, error);
         if (error) fail("cannot be read");
         if ((total_ += size) > largest) fail("decks of more than 4 GB are not read");
-        if (depth > deepest) fail("files that include files, deeper than 10");
+        if (depth > deepest) fail("*INCLUDE nested deeper than 10");
         auto content = std::make_shared<const std::string>(file_content(path, error));
         if (error) fail("cannot be read");
         text(std::move(content), path.string(), path.parent_path(), depth);
@@ -75,7 +75,7 @@ public:
             while (words.ends_with(',') && !rest.empty()) { // continued
                 one = next();
                 if (one.starts_with('*') && !one.starts_with("**"))
-                    throw MeshError(deck.place(number, line), "a keyword where the one before is to be continued");
+                    throw MeshError(deck.place(number, line), "a keyword, although the one before has to be continued");
                 if (!one.starts_with("**")) words += one;
                 if (one.empty()) break;
             }

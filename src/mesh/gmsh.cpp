@@ -15,10 +15,9 @@ void* load(const char* name, const std::string& file) {
     void* symbol = module == nullptr ? nullptr : dlsym(module, name);
     if (symbol == nullptr) {
         const char* reason = dlerror();
-        throw MeshError(file,
-                        std::string("needs Gmsh's library, and this build has none that can be loaded; install the "
-                                    "package libgmsh-dev and build again (") +
-                            (reason != nullptr ? reason : "not found") + ")");
+        throw MeshError(file, std::string("needs Gmsh's library, and this build cannot load it; install the package "
+                                          "libgmsh-dev and build again (") +
+                                  (reason != nullptr ? reason : "not found") + ")");
     }
     return symbol;
 }

@@ -69,7 +69,7 @@ RawMesh select(const RawMesh& raw, const MeshFileOptions& options) {
             if (numbers[k] == options.piece) picked.push_back(cells[k]);
         cells = std::move(picked);
         if (cells.empty())
-            throw MeshError(raw.file, "no piece " + std::to_string(options.piece) + ": what is asked for consists of " +
+            throw MeshError(raw.file, "no piece " + std::to_string(options.piece) + ": the number of pieces is " +
                                           std::to_string(pieces));
     }
     if (cells.size() == raw.cells.size()) return part;
@@ -201,7 +201,7 @@ RawMesh read_mesh_file(const std::filesystem::path& path) {
             return format.read(path);
     std::string known;
     for (const std::string& one : mesh_file_endings()) known += " " + one;
-    throw MeshError(path.string(), "no mesh format has the ending '" + ending + "'; read are" + known);
+    throw MeshError(path.string(), "no mesh format has the ending '" + ending + "'; osculate reads" + known);
 }
 
 Mesh make_mesh(const RawMesh& raw, const MeshFileOptions& options, std::vector<std::string>* mended) {

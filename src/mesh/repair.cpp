@@ -134,8 +134,8 @@ void merge_coincident(RawMesh& raw, bool wanted, MeshFaults& all) {
             noted.add(std::to_string(raw.point_ids[p]) + " at " + std::to_string(raw.point_ids[first[p]]));
         }
     noted.finish(all, raw,
-                 std::string(raw.point_word) + (wanted ? "s merged with another at their place"
-                                                       : "s at the place of another, not merged (repair: "
+                 std::string(raw.point_word) + (wanted ? "s merged with another at the same place"
+                                                       : "s at the same place as another, not merged (repair: "
                                                          "[coincident_nodes] does)"));
     if (!any || !wanted) return;
     const auto merge = [&](Index& node) {
@@ -206,7 +206,7 @@ void check_shapes(RawMesh& raw, const Repairs& repairs, MeshFaults& all) {
     for (MeshFaults* some : {&degenerate_faults, &inverted_faults, &tangled_faults})
         all.faults.insert(all.faults.end(), some->faults.begin(), some->faults.end());
     dropped.finish(all, raw, std::string(raw.cell_word) + "s without volume left out");
-    wedges.finish(all, raw, "hexahedra with two edges run together made wedges");
+    wedges.finish(all, raw, "hexahedra with two collapsed edges turned into wedges");
     turned.finish(all, raw, std::string("inverted ") + raw.cell_word + "s turned over");
 }
 

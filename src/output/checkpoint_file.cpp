@@ -403,7 +403,7 @@ std::string sealed(std::string_view cbor) {
 
 CheckpointFile decode(std::string_view bytes) {
     const std::string_view name = format.substr(0, format.find_last_of(' ') + 1);
-    if (!bytes.starts_with(name)) throw std::runtime_error("it is no checkpoint of osculate");
+    if (!bytes.starts_with(name)) throw std::runtime_error("it is not a checkpoint of osculate");
     if (!bytes.starts_with(format)) throw std::runtime_error("it is of another format, by another version of osculate");
     bytes.remove_prefix(format.size());
     if (bytes.size() < checksum_length) throw std::runtime_error("it is cut off");

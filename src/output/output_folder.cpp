@@ -147,11 +147,10 @@ void OutputFolder::refuse_strangers() const {
     std::error_code none;
     if (!fs::is_directory(directory_, none)) return; // absent, or a file, which cannot be written into
     if (const std::vector<std::string> names = strangers(directory_); !names.empty())
-        refuse(
-            directory_, fmt::format("a folder that is absent, is empty or holds the {} of an earlier run", manifest),
-            fmt::format("{}; -o names another folder, --new takes {}-2 or the next one that is free, --force goes in "
-                        "and deletes nothing that osculate did not write",
-                        some_of(names), printable(directory_.lexically_normal().string())));
+        refuse(directory_, fmt::format("a folder that is absent, is empty or holds the {} of an earlier run", manifest),
+               fmt::format("{}; -o names another folder, --new takes {}-2 or the next one that is free, --force writes "
+                           "into this folder and deletes nothing that osculate did not write",
+                           some_of(names), printable(directory_.lexically_normal().string())));
 }
 
 /// Files that are there, fit one of the patterns and are not in the list; sorted.
@@ -170,7 +169,8 @@ void OutputFolder::refuse_overwriting(const std::vector<std::string>& wanted) co
     std::vector<std::string> names;
     for (const std::string& file : unlisted(wanted)) names.push_back("'" + printable(file) + "'");
     if (!names.empty())
-        refuse(directory_, fmt::format("no file of a name that is to be written but those of its {}", manifest),
+        refuse(directory_,
+               fmt::format("no file with a name that osculate will write, except those listed in its {}", manifest),
                fmt::format("{}; -o names another folder, --new takes the next one that is free, --force overwrites",
                            some_of(names)));
 }
@@ -194,9 +194,9 @@ void OutputFolder::lock() {
                            ? fmt::format("process {} at work in it; -o names another folder, --new takes the next one "
                                          "that is free",
                                          theirs->process)
-                           : "one at work in it");
+                           : "another process at work in it");
             }
-            fmt::print(stderr, "{} cannot be locked on this file system: see that no second run writes into it\n",
+            fmt::print(stderr, "{} cannot be locked on this file system: make sure that no second run writes into it\n",
                        directory_.string());
         }
         struct stat mine {

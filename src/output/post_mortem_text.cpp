@@ -27,7 +27,7 @@ void say(std::string& text, const std::string& label, const std::string& line) {
 }
 
 void say_step(std::string& text, const time::PostMortem& f) {
-    say(text, "step", fmt::format("stage '{}', to {:.9g} s by {:.6g} s; {}", f.stage, f.time, f.dt, f.limit));
+    say(text, "step", fmt::format("stage '{}', a step of {:.6g} s to {:.9g} s; {}", f.stage, f.dt, f.time, f.limit));
     say(text, "last good", fmt::format("{:.9g} s; everything up to there is kept", f.last_time));
     const std::size_t shown = std::min(f.attempts.size(), most_attempts);
     for (std::size_t i = f.attempts.size() - shown; i < f.attempts.size(); ++i) {

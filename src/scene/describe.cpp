@@ -60,7 +60,7 @@ void describe(Visitor& v, MasterSpec& master) {
                 one_of(v, tags,
                        {"The finite element surface as it is.",
                         "Smooth patches by radial point interpolation with a polynomial basis, one per facet.",
-                        "The same around every vertex, their gaps blended: smooth over all edges."},
+                        "Such patches around every vertex, with their gaps blended: smooth over all edges."},
                        true, master.surface, [&v](auto& alternative) { describe(v, alternative); });
             });
 }
@@ -82,11 +82,11 @@ void describe(Visitor& v, Pair& pair) {
          discretisations, pair.discretisation);
     v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
     v.number({.name = "closing_tolerance",
-              .meaning = "Of the facet size: a first solve closes nodes with a smaller gap.",
+              .meaning = "The first solve closes nodes whose gap is smaller than this fraction of the facet size.",
               .range = range::fraction},
              pair.closing_tolerance);
     v.number({.name = "initial_overlap_limit",
-              .meaning = "Of the facet size: a deeper initial overlap is a fault.",
+              .meaning = "An initial overlap deeper than this fraction of the facet size is a fault.",
               .range = range::fraction},
              pair.initial_overlap_limit);
     v.number({.name = "stiffness_scale",
@@ -100,7 +100,7 @@ namespace {
 void describe(Visitor& v, GeneralisedAlpha& s) {
     v.number(
         {.name = "rho_inf",
-         .meaning = "Spectral radius at infinite frequency: 1 keeps all vibrations, 0 damps the fastest out at once.",
+         .meaning = "Spectral radius at infinite frequency: 1 keeps all vibrations, 0 damps the fastest ones at once.",
          .range = range::fraction},
         s.rho_inf);
 }
@@ -136,9 +136,8 @@ void describe(Visitor& v, DynamicAnalysis& s) {
     static const Words places{"kept", "redistributed"};
     word(v,
          {.name = "contact_mass",
-          .meaning =
-              "Mass of slave nodes: kept, or given to the nodes behind them, so that contact neither adds nor eats "
-              "energy and its forces do not ring. The same in all dynamic stages."},
+          .meaning = "Mass of slave nodes: kept, or given to the nodes behind them, so that contact neither adds nor "
+                     "removes energy and its forces do not oscillate. The same in all dynamic stages."},
          places, s.contact_mass);
     v.number({.name = "mass_damping",
               .meaning = "Rayleigh damping proportional to mass.",
@@ -158,44 +157,45 @@ namespace {
 void describe(Visitor& v, StepControl& s) {
     v.optional_relative_length(
         {.name = "allowed_interpenetration",
-         .meaning = "A number is one of facet sizes: a step that takes an open slave node deeper in its trial is "
-                    "cut. In dynamics never more than a quarter of the thickness of the master's body.",
+         .meaning =
+             "A step whose trial takes an open slave node deeper than this is cut. A number without unit counts facet "
+             "sizes. In dynamics the depth is never more than a quarter of the thickness of the master's body.",
          .range = {.low = 0, .high = 1, .open_low = true},
          .default_text = "0.05 in dynamics, 0.5 in statics"},
         s.allowed_interpenetration);
     static const Words sizes{"controlled", "fixed"};
     word(v,
          {.name = "step_size",
-          .meaning = "Dynamic steps are cut, down to solver.smallest_step, until they keep velocity_error (or "
-                     "error_tolerance) and closing_energy, or they are as long as contact and the solver allow; what "
-                     "closing gaps then take of the energy is a warning in summary.json."},
+          .meaning = "controlled: dynamic steps are cut, down to solver.smallest_step, until they keep velocity_error "
+                     "(or error_tolerance) and closing_energy. fixed: they are as long as contact and the solver "
+                     "allow, and summary.json warns of the energy that closing gaps take."},
          sizes, s.step_size);
     v.number({.name = "velocity_error",
-              .meaning = "Estimated error that a dynamic step may make by itself in the velocities of the bodies' "
-                         "centres, of the speed that all energy there has been would give; more cuts the step.",
+              .meaning =
+                  "Estimated error that one dynamic step may make in the velocities of the bodies' centres, as a "
+                  "fraction of the speed that all energy so far would give; a step with a larger error is cut.",
               .range = range::positive},
              s.velocity_error);
     v.number({.name = "closing_energy",
-              .meaning = "Energy that gaps which close may take in one dynamic step, of all there has been; more cuts "
-                         "the step.",
+              .meaning = "Energy that closing gaps may take in one dynamic step, as a fraction of all energy so far; a "
+                         "step that takes more is cut.",
               .range = range::positive},
              s.closing_energy);
-    v.optional_number({.name = "error_tolerance",
-                       .meaning = "Estimated error of the displacement of any node that a dynamic step may make by "
-                                  "itself; more cuts the step, and gives up at the smallest. It takes the place of "
-                                  "velocity_error.",
-                       .unit = dimension::length,
-                       .range = range::positive,
-                       .default_text = "no bound"},
-                      s.error_tolerance);
+    v.optional_number(
+        {.name = "error_tolerance",
+         .meaning = "Estimated error that one dynamic step may make in the displacement of any node; a step with a "
+                    "larger error is cut, and at the smallest step the run gives up. It replaces velocity_error.",
+         .unit = dimension::length,
+         .range = range::positive,
+         .default_text = "no bound"},
+        s.error_tolerance);
     v.number({.name = "energy_tolerance",
-              .meaning =
-                  "Rise of kinetic plus strain energy beyond external work that contact may cause in one dynamic step, "
-                  "of that energy; more cuts the step.",
+              .meaning = "Rise of kinetic plus strain energy beyond external work that contact may cause in one "
+                         "dynamic step, as a fraction of that energy; a step with a larger rise is cut.",
               .range = range::positive},
              s.energy_tolerance);
     v.number({.name = "growth",
-              .meaning = "Of dt after an easy step, up to the stage's step.",
+              .meaning = "Factor by which dt grows after an easy step, up to the stage's step.",
               .range = {.low = 1, .high = 10}},
              s.growth);
 }
@@ -285,7 +285,7 @@ void describe(Visitor& v, Solver& solver) {
                .range = {.low = 1, .high = 1000}},
               solver.max_iterations);
     v.number({.name = "smallest_step",
-              .meaning = "Of the stage's step: a run that needs a smaller one gives up.",
+              .meaning = "Fraction of the stage's step: a run that needs a smaller step gives up.",
               .range = {.low = 0, .high = 1, .open_low = true}},
              solver.smallest_step);
     v.flag({.name = "predictor",
@@ -295,26 +295,22 @@ void describe(Visitor& v, Solver& solver) {
     word(v,
          {.name = "linear_solver",
           .meaning =
-              "How Newton's linear systems are solved: on the contact nodes alone, bodies factorised once; by GMRES "
-              "with the whole tangent, preconditioned by a factorisation or by multigrid; by a factorisation of the "
-              "tangent in every iteration. Automatic is multigrid above 50 000 nodes, else the first where it costs "
-              "less, else multigrid above 20 000 nodes, else the second."},
+              "How Newton's linear systems are solved. condensed: on the contact nodes alone, with bodies factorised "
+              "once; iterative or multigrid: by GMRES with the whole tangent, preconditioned by a factorisation or by "
+              "multigrid; direct: by a factorisation of the tangent in every iteration. automatic: multigrid above 50 "
+              "000 nodes, else condensed if it costs less, else multigrid above 20 000 nodes, else iterative."},
          linear_solvers, solver.linear_solver);
-    v.flag(
-        {.name = "stabilisation",
-         .meaning =
-             "In statics, let bodies that nothing holds lean on springs until contact does; no step is accepted with "
-             "springs in place."},
-        solver.stabilisation);
+    v.flag({.name = "stabilisation",
+            .meaning = "In statics, springs hold bodies that nothing else holds, until contact does; no step is "
+                       "accepted with springs in place."},
+           solver.stabilisation);
     v.flag({.name = "audit",
-            .meaning =
-                "After every solved step, look for nodes and edges inside another body or their own, by geometry "
-                "alone, whatever contact says; the summary says where it is off."},
+            .meaning = "After every solved step, look for nodes and edges inside another body or their own, by "
+                       "geometry alone, independent of contact; the summary says if it is off."},
            solver.audit);
     v.number({.name = "audited_depth",
-              .meaning =
-                  "Of the facet size: how deep a body may lie inside another, beyond what facets of smooth surfaces "
-                  "bulge by, before the audit has the step cut.",
+              .meaning = "Fraction of the facet size: how deep a body may lie inside another, beyond what facets of "
+                         "smooth surfaces bulge by, before the audit cuts the step.",
               .range = {.low = 0, .high = 1, .open_low = true}},
              solver.audited_depth);
 }
@@ -356,9 +352,8 @@ void describe(Visitor& v, Scene& scene) {
     });
     bool expected = scene.expect.has_value();
     Expectation expect = scene.expect.value_or(Expectation{});
-    v.optional_group(
-        {.name = "expect", .meaning = "What the run is expected to come to; its summary says whether it did."},
-        expected, [&] { describe(v, expect); });
+    v.optional_group({.name = "expect", .meaning = "How the run is expected to end; its summary says whether it did."},
+                     expected, [&] { describe(v, expect); });
     if (expected) scene.expect = std::move(expect);
 }
 

@@ -31,7 +31,7 @@ void describe(Visitor& v, mesh::Focus& f) {
               .range = {.low = 0, .high = 1e9}},
              f.extent);
     v.number({.name = "growth",
-              .meaning = "Each element beyond is at most so many times longer than the one before.",
+              .meaning = "Each further element is at most this many times longer than the one before.",
               .range = {.low = 1, .high = 10}},
              f.growth);
     std::vector<std::string> axes;
@@ -172,8 +172,9 @@ void describe(Visitor& v, CylinderMesh& m) {
 void describe(Visitor& v, TubeMesh& m) {
     v.number({.name = "inner_radius", .meaning = "Inner radius.", .unit = dimension::length, .range = range::size},
              m.inner_radius);
-    v.number({.name = "thickness", .meaning = "Of the wall.", .unit = dimension::length, .range = range::size},
-             m.thickness);
+    v.number(
+        {.name = "thickness", .meaning = "Thickness of the wall.", .unit = dimension::length, .range = range::size},
+        m.thickness);
     v.number(
         {.name = "length", .meaning = "Length along z, from z = 0.", .unit = dimension::length, .range = range::size},
         m.length);
@@ -211,7 +212,7 @@ void describe(Visitor& v, FileMesh& m) {
         return words;
     }();
     v.words({.name = "repair",
-             .meaning = "Faults of the mesh that are mended, others are refused; all, or true for the list: all but "
+             .meaning = "Faults of the mesh that are repaired, others are refused; all, or true for the list: all but "
                         "coincident_nodes.",
              .default_text = "[]"},
             repairs, m.repair);
@@ -235,7 +236,7 @@ void describe(Visitor& v, CadMesh& m) {
               .range = {.low = 0, .high = 1e9}},
              m.smallest);
     v.integer({.name = "per_circle",
-               .meaning = "Elements that a full circle of a curved face has at least; 0: curvature does not count.",
+               .meaning = "Least number of elements along a full circle of a curved face; 0: curvature does not count.",
                .range = {.low = 0, .high = 1000}},
               m.per_circle);
     v.flag({.name = "quadratic",

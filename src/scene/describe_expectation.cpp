@@ -7,24 +7,22 @@ void describe(Visitor& v, Expectation& expect) {
                                      " in statics where it is not given";
     static const Words outcomes{"completed", "gives_up"};
     word(v, {.name = "outcome", .meaning = "How the run ends."}, outcomes, expect.outcome);
-    v.text({.name = "cause", .meaning = "Words that the message of a run that gives up holds."}, expect.cause);
+    v.text({.name = "cause", .meaning = "Words that the message contains when the run gives up."}, expect.cause);
     v.number({.name = "force_balance",
-              .meaning = "Most that the forces on a body may leave over, of the forces that act.",
+              .meaning = "Largest imbalance of the forces on a body, as a fraction of the forces that act.",
               .range = range::positive},
              expect.force_balance);
     v.number({.name = "energy_growth",
-              .meaning = "Most that kinetic plus strain energy may rise beyond external work in dynamics, of the "
-                         "largest energy.",
+              .meaning = "Largest rise of kinetic plus strain energy beyond external work in dynamics, as a fraction "
+                         "of the largest energy.",
               .range = range::positive},
              expect.energy_growth);
-    v.optional_number(
-        {.name = "penetration",
-         .meaning =
-             "Deepest interpenetration of any slave node in an accepted state, in facet sizes; given, also of any "
-             "body inside another that the audit finds.",
-         .range = range::positive,
-         .default_text = bound.c_str()},
-        expect.penetration);
+    v.optional_number({.name = "penetration",
+                       .meaning = "Deepest interpenetration of any slave node in an accepted state, in facet sizes; if "
+                                  "given, also of any body inside another that the audit finds.",
+                       .range = range::positive,
+                       .default_text = bound.c_str()},
+                      expect.penetration);
 }
 
 } // namespace osculate::scene

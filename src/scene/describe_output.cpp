@@ -30,10 +30,11 @@ void fields(Visitor& v, const Words& vocabulary, std::vector<std::string>& names
     v.words({.name = "fields", .meaning = "Fields, see docs/output.md.", .default_text = usual}, vocabulary, names);
 }
 void reduce(Visitor& v, std::vector<std::string>& names, const char* usual) {
-    v.words({.name = "reduce",
-             .meaning = "What becomes of the nodes' values; area_mean weighs them with the areas that belong to them.",
-             .default_text = usual},
-            reductions, names);
+    v.words(
+        {.name = "reduce",
+         .meaning = "How the nodes' values are combined; area_mean weights them with the areas that belong to them.",
+         .default_text = usual},
+        reductions, names);
 }
 void samples(Visitor& v, int& count) {
     v.integer({.name = "samples", .meaning = "Places, both ends among them.", .range = {.low = 2, .high = 100000}},
@@ -48,7 +49,7 @@ void describe(Visitor& v, PointProbe& p) {
 void describe(Visitor& v, LineProbe& p) {
     body(v, p.body);
     place(v, "from", "Reference position of the first sample.", p.from);
-    place(v, "to", "Of the last one; samples outside of the body have no values.", p.to);
+    place(v, "to", "Reference position of the last sample; samples outside of the body have no values.", p.to);
     samples(v, p.samples);
     fields(v, body_fields, p.fields, "[displacement, stress]");
 }
@@ -89,7 +90,7 @@ void describe(Visitor& v, Probe& probe) {
             "Force and moment through a plane cut of a body, from the forces of the elements beside it."},
            true, probe.kind, [&](auto& kind) { describe(v, kind); });
     v.integer({.name = "every",
-               .meaning = "Accepted steps between rows; the last step has one always.",
+               .meaning = "Accepted steps between rows; the last step always has one.",
                .range = {.low = 1, .high = 1e6}},
               probe.every);
 }
@@ -98,7 +99,7 @@ void describe(Visitor& v, Curve& curve) {
     v.text({.name = "rows", .meaning = "history, or the name of a probe."}, curve.rows);
     v.text({.name = "x", .meaning = "Formula over the columns of that table."}, curve.x);
     v.text({.name = "y",
-            .meaning = "Formula; pair.*.normal in it stands for every column that fits: a curve each, or none.",
+            .meaning = "Formula; pair.*.normal in it stands for every matching column: one curve for each, or none.",
             .required = true},
            curve.y);
     v.text({.name = "where", .meaning = "Formula: rows where it is not 0.", .default_text = "all rows"}, curve.where);
@@ -160,14 +161,13 @@ void describe_output(Visitor& v, Output& output) {
     v.flag({.name = "report", .meaning = "Write a report at the end of the run.", .default_text = from_template},
            output.report);
     v.flag({.name = "failed_iterate",
-            .meaning =
-                "Where the run gives up, write the last iterate, its statuses and the forces out of balance as a "
-                "frame, into the folder failed."},
+            .meaning = "If the run gives up, write the last iterate, its statuses and the forces out of balance as a "
+                       "frame, into the folder failed."},
            output.failed_iterate);
 }
 
 void describe_template(Visitor& v, std::string& extends, Output& output) {
-    v.text({.name = "extends", .meaning = "Template whose keys hold where this one has none."}, extends);
+    v.text({.name = "extends", .meaning = "Template whose keys are used if this one does not have them."}, extends);
     describe_output(v, output);
 }
 

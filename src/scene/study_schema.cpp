@@ -127,7 +127,7 @@ Json run_study_schema() {
         {"problems", names("Axes whose values are other problems, not other ways to solve one.")},
         {"plots", map("How plots look.", {{"colour_by", names("Axes whose values get a colour of their own.")}})},
         {"repeats",
-         {{"description", "Times every run is done."},
+         {{"description", "Number of times that every run is done."},
           {"type", "integer"},
           {"minimum", 1},
           {"maximum", 100},

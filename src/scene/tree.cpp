@@ -69,7 +69,7 @@ private:
         if (shown.size() > longest) shown = shown.substr(0, longest) + "...";
         faults_.push_back(
             fault_at(place, path,
-                     lines ? "a text without control characters but line breaks"
+                     lines ? "a text without control characters except line breaks"
                            : "a text on one line, without control characters",
                      "'" + shown + "' (" + control_name(text[at]) + ", " + std::to_string(at + 1) + ". character)"));
         return printable(text);

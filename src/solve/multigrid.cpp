@@ -15,7 +15,7 @@ std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns) {
         if (symbol == nullptr) {
             const char* reason = dlerror();
             throw RunFailure("multigrid cannot be loaded: " + std::string(reason != nullptr ? reason : "unknown") +
-                             "; solver.linear_solver: iterative does without");
+                             "; solver.linear_solver: iterative does not need it");
         }
         return reinterpret_cast<Make>(symbol);
     }();

@@ -71,7 +71,7 @@ std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std:
     if (state.u.size() != nodes || checkpoint.displacement_start.size() != nodes || state.v.size() != state.a.size() ||
         (!state.v.empty() && state.v.size() != nodes))
         return "number of nodes";
-    if (state.material.size() != model::initial_history(model).size()) return "what materials remember";
+    if (state.material.size() != model::initial_history(model).size()) return "values that materials remember";
     if (!finite(state.u) || !finite(state.v) || !finite(state.a) || !finite(checkpoint.displacement_start))
         return "values that are not finite";
     if (state.contact.size() != model.pairs.size() || checkpoint.patches.size() != model.pairs.size())

@@ -53,7 +53,7 @@ std::optional<NotFinite> find_not_finite(const model::ContactEvaluations& contac
     for (std::size_t p = 0; p < contact.size(); ++p)
         if (auto found = first_in(contact[p], state.contact[p])) return found;
     for (const double value : state.material)
-        if (!std::isfinite(value)) return NotFinite{"what a material remembers", -1, value};
+        if (!std::isfinite(value)) return NotFinite{"a value that a material remembers", -1, value};
     return ledger != nullptr ? first_in(*ledger) : std::nullopt;
 }
 
@@ -64,7 +64,7 @@ void explain(const NotFinite& found, const model::Model& model, Attempt& attempt
     attempt.cause = found.what;
     if (!attempt.body.empty())
         attempt.cause += " of node " + std::to_string(attempt.node) + " of body '" + attempt.body + "'";
-    attempt.cause += " is " + number(found.value) + " where the residual is within tolerance";
+    attempt.cause += " is " + number(found.value) + " although the residual is within tolerance";
 }
 
 } // namespace osculate::time

@@ -167,17 +167,16 @@ std::string explain(const model::Model& model, const LadderResult& result, const
                                  "the start. Or both sides of a contact are held");
         break;
     case solve::KinsolOutcome::unsolved:
-        text
-            << "; something is all but free to move, or far stiffer than what it touches, and the tangent is too large "
-               "to be factorised instead";
+        text << "; a body is almost free to move, or far stiffer than what it touches, and the tangent is too large to "
+                "be factorised instead";
         break;
     case solve::KinsolOutcome::stopped:
         text << (model.pairs.empty()
                      ? "; the residual does not fall any more: smaller steps, or a smaller load, may help"
-                     : "; contact statuses go round in a circle: smaller steps, or a finer master, break it");
+                     : "; contact statuses repeat in a cycle: smaller steps, or a finer master, may break it");
         break;
     case solve::KinsolOutcome::max_iterations:
-        text << "; raise solver.max_iterations, or solver.tolerance where the residual has come to rest at round-off";
+        text << "; raise solver.max_iterations, or raise solver.tolerance if round-off keeps the residual where it is";
         break;
     default: break;
     }

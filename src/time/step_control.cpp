@@ -63,9 +63,8 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits, bool
 void describe(std::ostream& text, const Objection& objection, const StepEvidence& evidence, const StepLimits& limits) {
     if (objection.point == &evidence.unseen) {
         text << "a slave node lies " << -objection.value
-             << " m inside the master where its facets overlap nothing, as on edges and vertices, so that mortar puts "
-                "no "
-                "force on it";
+             << " m inside the master where its facets overlap no facet of the master, as on edges and vertices, so "
+                "that mortar puts no force on it";
         return;
     }
     switch (objection.reason) {
@@ -74,10 +73,10 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
         text << "the trial has a gap of " << objection.value << " m, allowed is "
              << -limits.allowed_interpenetration * objection.point->length << " m";
         break;
-    case Reason::collision: text << "a surface is passed through at " << objection.value << " of the step"; break;
+    case Reason::collision: text << "a node passes through a surface at " << objection.value << " of the step"; break;
     case Reason::audit:
         text << "bodies lie inside one another: " << objection.value
-             << " m beyond what facets of a smooth surface may, allowed is "
+             << " m more than facets of a smooth surface may, allowed is "
              << limits.audited_depth * evidence.intrusion->length << " m";
         break;
     case Reason::error:
@@ -92,7 +91,7 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
         text << "the energy jumps by " << objection.value << ", allowed is " << limits.energy_tolerance;
         break;
     case Reason::closing_energy:
-        text << "gaps that close take " << objection.value << " of all energy there has been, allowed is "
+        text << "closing gaps take " << objection.value << " of all energy so far, allowed is "
              << limits.closing_energy;
         break;
     case Reason::none:

@@ -247,10 +247,10 @@ TEST(RunChecks, JudgeHowARunEnded) {
     EXPECT_FALSE(RunChecks(none, std::nullopt).judge(""));
     scene::Expectation expect;
     EXPECT_THAT(misses(expect, ""), IsEmpty());
-    EXPECT_THAT(misses(expect, "held by nothing"), ElementsAre("gave up where it should complete"));
+    EXPECT_THAT(misses(expect, "held by nothing"), ElementsAre("gave up but should complete"));
     expect.outcome = scene::Outcome::gives_up;
     EXPECT_THAT(misses(expect, "a body is held by nothing"), IsEmpty());
-    EXPECT_THAT(misses(expect, ""), ElementsAre("completed where it should give up"));
+    EXPECT_THAT(misses(expect, ""), ElementsAre("completed but should give up"));
     expect.cause = "held by nothing";
     EXPECT_THAT(misses(expect, "a body is held by nothing"), IsEmpty());
     EXPECT_THAT(misses(expect, "no convergence"), ElementsAre(HasSubstr("without the words 'held by nothing'")));

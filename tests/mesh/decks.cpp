@@ -40,7 +40,7 @@ TEST_F(Decks, TakesAnElementSetOrAConnectedPieceAsABody) {
     EXPECT_EQ(mesh_of(path, {"up", 0, {}}).nodes.front(), Vec3(0, 0, 1));
     EXPECT_EQ(mesh_of(path, {"", 1, {}}).element_count(), 2);
     EXPECT_EQ(mesh_of(path, {"", 2, {}}).nodes.front(), Vec3(0, 0, 5));
-    EXPECT_THAT(error_of(path, {"", 3, {}}), HasSubstr("consists of 2"));
+    EXPECT_THAT(error_of(path, {"", 3, {}}), HasSubstr("the number of pieces is 2"));
     EXPECT_THAT(error_of(path, {"UP", 0, {}}), AllOf(HasSubstr("no part is called 'UP'"), HasSubstr("apart, low, up")));
 }
 

@@ -96,7 +96,7 @@ TEST_F(MeshRepairs, CoincidentNodesAreToldAndMergedOnRequestOnly) {
                              "51,1,0,0\n52,1,1,0\n53,1,1,1\n54,1,0,1\n61,2,0,0\n62,2,1,0\n63,2,1,1\n64,2,0,1\n"
                              "*ELEMENT, TYPE=C3D8\n" +
                              hex(1, 0) + hex(2, 5) + "*NSET, NSET=seam\n51,52\n*SURFACE, NAME=end\n2, S2\n");
-    EXPECT_THAT(notes(mesh), AllOf(HasSubstr("4 nodes at the place of another"), HasSubstr("51 at 11")));
+    EXPECT_THAT(notes(mesh), AllOf(HasSubstr("4 nodes at the same place as another"), HasSubstr("51 at 11")));
     EXPECT_EQ(make_mesh(mesh).node_count(), 16);
     const Mesh merged = make_mesh(mesh, repairing({Repair::coincident_nodes}));
     EXPECT_EQ(merged.node_count(), 12);

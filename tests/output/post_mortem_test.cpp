@@ -101,7 +101,7 @@ TEST_F(PostMortemFile, RefusesAnotherKindOfFile) {
 TEST(PostMortemText, SaysWhereWhyAndWhatToTry) {
     const std::string text = in_words(status_cycle());
     for (const char* part :
-         {"cause       status_cycle: contact statuses go round in a circle\n", "last good   1.25 s",
+         {"cause       status_cycle: contact statuses repeat in a cycle\n", "last good   1.25 s",
           "7: dt 0.25 s, 3 iterations, statuses cycled\n",
           "node 4 of body 'cap', from (1, 2, 3) m now at (1, 2, 3.5) m",
           "pair 'joint', slip, gap -0.001 m over facet 9 of the master, nodes 3, 4, 8, 7 of body 'base'",

@@ -59,12 +59,12 @@ TEST_F(SummaryFile, HoldsEveryMemberUnderItsName) {
 TEST_F(SummaryFile, HoldsChecksAndWhatWasExpected) {
     Summary summary = example();
     summary.checks = Summary::Checks{1e-12, 0.5, 0.25, {}, {}, {}};
-    summary.expectation = Summary::Expectation{{"gave up where it should complete"}};
+    summary.expectation = Summary::Expectation{{"gave up but should complete"}};
     write_summary(folder / "summary.json", summary);
     json read = json::parse(content(folder / "summary.json"));
     EXPECT_EQ(read["checks"], json::parse(R"({"force_balance": 1e-12, "penetration": 0.5, "penetration_m": 0.25})"));
     EXPECT_FALSE(read.contains("warnings"));
-    EXPECT_EQ(read["expectation"], json::parse(R"({"met": false, "misses": ["gave up where it should complete"]})"));
+    EXPECT_EQ(read["expectation"], json::parse(R"({"met": false, "misses": ["gave up but should complete"]})"));
     summary.checks->energy_balance = 1e-10;
     summary.checks->energy_growth = 1e-3;
     summary.checks->closing_loss = 0.1;

@@ -41,7 +41,7 @@ TEST(ControlCharacters, ButLineBreaksAreInADescription) {
     EXPECT_THAT(messages(faults_of("description: |\n  Two\n  lines.\n" + small_scene)), IsEmpty());
     EXPECT_THAT(
         messages(faults_of("description: \"a\\tb\"\n" + small_scene)),
-        ElementsAre("bad.yaml:1:14: description: expected a text without control characters but line breaks, found "
+        ElementsAre("bad.yaml:1:14: description: expected a text without control characters except line breaks, found "
                     "'a\\tb' (a tab, 2. character)"));
 }
 
@@ -108,7 +108,7 @@ TEST_F(ControlCharactersInFiles, OfStudiesAreRefusedButForLinesOfMarkdown) {
     EXPECT_THAT(faults(replaced(study_text, "title: Small", "abscissa_label: \"a\\nb\"")),
                 HasSubstr("abscissa_label: expected"));
     EXPECT_THAT(faults(replaced(study_text, "|\n  Two lines,\n  in Markdown.", "\"bold \\e[1m\"")),
-                HasSubstr("study.yaml:2:10: problem: expected a text without control characters but line breaks"));
+                HasSubstr("study.yaml:2:10: problem: expected a text without control characters except line breaks"));
 }
 
 TEST_F(ControlCharactersInFiles, OfStudiesOfSurfacesAreRefused) {

@@ -48,7 +48,7 @@ TEST_F(Check, WarnsOfValuesThatAreWrongByPowersOfTen) {
     EXPECT_THAT(warning(density + "=0.5"), HasSubstr("warning: " + density + ": 0.5 kg/m^3: lighter"));
     EXPECT_THAT(warning(density + "=7.85e6"), HasSubstr("warning: " + density + ": 7.85e+06 kg/m^3: heavier"));
     EXPECT_THAT(warning("contact.joint.friction=30"), HasSubstr("warning: contact.joint.friction: 30: "));
-    EXPECT_THAT(warning("gravity=[0, 0, -9810]"), HasSubstr("warning: gravity: 9810 m/s^2: that of the Earth"));
+    EXPECT_THAT(warning("gravity=[0, 0, -9810]"), HasSubstr("warning: gravity: 9810 m/s^2: on the Earth it is 9.81"));
     EXPECT_THAT(warning("gravity=[0, 0, -1.62]"), Not(HasSubstr("warning:"))) << "the Moon";
     EXPECT_THAT(warning("stages.press.pressure.top=20 MPa"),
                 HasSubstr("warning: stages.press.pressure.top: 2e+07 Pa on a body of E = 1e+07 Pa"));
@@ -125,7 +125,7 @@ TEST_F(Check, SaysWhenBodiesAreFreeTogether) {
 TEST_F(Check, NamesFacetsThatLookTheWrongWay) {
     // the cap's top as slave of the ground: its facets look up, as those of the ground do
     EXPECT_THAT(checked(press, {"contact.joint.slave=top"}),
-                HasSubstr("warning: contact.joint.master.set: 9 of 9 slave facets do not look towards the master"));
+                HasSubstr("warning: contact.joint.master.set: 9 of 9 slave facets do not face the master"));
     EXPECT_THAT(checked(press), Not(HasSubstr("look")));
 }
 

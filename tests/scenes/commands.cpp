@@ -25,7 +25,7 @@ TEST_F(Command, CheckReportsSizesPairsAndGaps) {
         "body base: 75 nodes, 32 elements\n"
         "body cap: 48 nodes, 18 elements\n"
         "degrees of freedom: 272\n" // 3 * 123, less 3 * 25 of the bed, 10 of the side, 12 of the rear
-        "unknowns: 320, contact forces among them\n"
+        "unknowns: 320, including contact forces\n"
         "estimate, mostly within a factor of 3 where no step is cut: " +
             estimated +
             "pair joint: 16 slave nodes, 16 master facets\n"

@@ -58,7 +58,7 @@ TEST_F(Expectations, MetIsSaidToo) {
 TEST_F(Expectations, MissedIsSaidLoudlyAndIsNoFailure) {
     const Outcome outcome = run_with({"expect={outcome: gives_up, force_balance: 1e-30}"});
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("not as expected: completed where it should give up; force balance "));
+    EXPECT_THAT(outcome.err, HasSubstr("not as expected: completed but should give up; force balance "));
     const auto expectation = summary()["expectation"];
     EXPECT_EQ(expectation["met"], false);
     ASSERT_EQ(expectation["misses"].size(), 2U);
@@ -76,7 +76,7 @@ TEST_F(Expectations, OfGivingUpHoldItsCause) {
     changes.back() = "expect={outcome: gives_up, cause: not enough memory}";
     EXPECT_THAT(run_with(changes).err, HasSubstr("not as expected: gave up without the words 'not enough memory'"));
     changes.back() = "expect={}";
-    EXPECT_THAT(run_with(changes).err, HasSubstr("not as expected: gave up where it should complete"));
+    EXPECT_THAT(run_with(changes).err, HasSubstr("not as expected: gave up but should complete"));
     EXPECT_EQ(summary()["expectation"]["met"], false);
 }
 

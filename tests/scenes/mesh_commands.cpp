@@ -33,7 +33,7 @@ TEST_F(MeshCommand, ShowsWhatAFileHolds) {
     EXPECT_THAT(outcome.out,
                 AllOf(HasSubstr("16 nodes, 2 elements: 2 hex8\nfrom [0, 0, 0] to [1, 1, 2]\n"
                                 "part cubes: 2 elements\nsurface lid: 1 facets, area 1\n"),
-                      HasSubstr("nodes floor: 4\n"), HasSubstr("4 nodes at the place of another, not merged")));
+                      HasSubstr("nodes floor: 4\n"), HasSubstr("4 nodes at the same place as another, not merged")));
     EXPECT_THAT(osculate({"mesh", "deck.inp", "--piece", "2"}).out, HasSubstr("8 nodes, 1 elements"));
     const Outcome merged = osculate({"mesh", "deck.inp", "--repair", "coincident_nodes"});
     EXPECT_THAT(merged.out, AllOf(HasSubstr("12 nodes, 2 elements"), HasSubstr("4 nodes merged")));

@@ -251,9 +251,9 @@ TEST_F(NoRemedy, IsKnownForABodyThatPassesThroughItself) {
     ASSERT_EQ(outcome.code, 3) << outcome.err;
     const json post_mortem = json::parse(content(folder / "run/post_mortem.json"));
     EXPECT_EQ(post_mortem["cause"], "unseen_contact");
-    EXPECT_THAT(post_mortem["no_remedy"], HasSubstr("no contact of a body with itself is modelled"));
+    EXPECT_THAT(post_mortem["no_remedy"], HasSubstr("osculate does not model contact of a body with itself"));
     EXPECT_THAT(post_mortem["advice"], testing::IsEmpty());
-    EXPECT_THAT(outcome.err, HasSubstr("try         no remedy is known: body 'ring' meets itself"));
+    EXPECT_THAT(outcome.err, HasSubstr("try         no remedy is known: body 'ring' touches itself"));
 }
 
 class FailedIterate : public Program {};

@@ -96,7 +96,7 @@ TEST_F(Resume, RefusesWhatItCannotGoOnFrom) {
     EXPECT_THAT(refusal(), HasSubstr("expected a checkpoint, found nothing there; `osculate run --checkpoint-every"));
     ASSERT_EQ(osculate({"run", press, "-o", "run", "--quiet", "--checkpoint-every", "1"}).code, 0);
     fs::remove(files / "summary.json");
-    EXPECT_THAT(refusal({"--from", "run/history.csv"}), HasSubstr("it is no checkpoint of osculate"));
+    EXPECT_THAT(refusal({"--from", "run/history.csv"}), HasSubstr("it is not a checkpoint of osculate"));
     const std::string good = content(files / "checkpoint/state"), scene = content(files / "scene.yaml");
     std::ofstream(files / "checkpoint/state", std::ios::binary) << good.substr(0, good.size() / 2);
     EXPECT_THAT(refusal(), AllOf(HasSubstr("it is damaged: its checksum does not fit"),

@@ -264,7 +264,7 @@ repeats: 2
     const Csv csv(folder / "s/study.csv");
     ASSERT_EQ(csv.rows.size(), 2U);
     EXPECT_EQ(csv.text(0, "expectation"), "met");
-    EXPECT_EQ(csv.text(1, "expectation"), "missed: gave up where it should complete");
+    EXPECT_EQ(csv.text(1, "expectation"), "missed: gave up but should complete");
     EXPECT_EQ(csv.text(1, "status"), "gave_up");
     const Csv steps(folder / "s/runs/scene=torn/steps.csv");
     double iterations = 0;
@@ -285,7 +285,7 @@ repeats: 2
                 HasSubstr("| scene | outcome | expectation | steps | cuts | Newton iterations | balance | growth | "
                           "penetration | CPU s | remark |"));
     EXPECT_THAT(report, HasSubstr("| done | completed | met | 4 | 0 | "));
-    EXPECT_THAT(report, HasSubstr("| torn | gave up | missed: gave up where it should complete | "));
+    EXPECT_THAT(report, HasSubstr("| torn | gave up | missed: gave up but should complete | "));
     EXPECT_THAT(report, Not(HasSubstr("## Runs"))) << "one table says it all";
 }
 

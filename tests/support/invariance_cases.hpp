@@ -52,35 +52,31 @@ struct KnownDifference {
 };
 
 inline const std::map<std::string, KnownDifference>& known_differences() {
-    constexpr const char* symmetric =
-        "nodes stand on sharp edges or corners of a scene that is its own mirror image: either side is a solution, and "
-        "what tells facets apart there, the sense of turning or at last their numbers, is not the same in a mirror or "
-        "numbered otherwise";
+    constexpr const char* symmetric = "nodes stand on sharp edges or corners of a scene that is its own mirror image: "
+                                      "either side is a solution, and what tells facets apart there, the sense of "
+                                      "rotation or at last their numbers, changes in a mirror or with other numbers";
     constexpr const char* bent = "nodes slide along mesh lines of facets that are bent by the load, in a scene that is "
                                  "its own mirror image: the "
-                                 "facets on both sides of a line are equally near and differ in their slope";
-    constexpr const char* far =
-        "1e6 m away a double holds 1e-10 m, which turning rounds anew, and the load moves nodes by 1e-3 m: 1e-7 of it";
+                                 "facets on both sides of a line are equally near but have different slopes";
+    constexpr const char* far = "1e6 m away a double resolves 1e-10 m, and a rotation rounds it again; the load moves "
+                                "nodes by 1e-3 m, so that is 1e-7 of it";
     constexpr const char* needle =
-        "a needle of 4 m indents the slab by 1e-9 m: turning rounds the coordinates by 1e-16 of the needle's length, "
-        "and "
-        "a place 1e6 sizes away holds no more than 1e-9 m, on which the contact is left to chance";
+        "a needle of 4 m indents the slab by 1e-9 m: a rotation rounds the coordinates by 1e-16 of the needle's "
+        "length, and coordinates 1e6 sizes away resolve no more than 1e-9 m, so that contact depends on chance";
     constexpr const char* wedged = "friction of 10 wedges the body in: more than one state balances all forces, Newton "
-                                   "goes round before it finds one, and "
-                                   "round-off decides by way of which cuts of the step it gets there";
-    constexpr const char* round = "a slave 1e6 times stiffer than its master, with mortar: Newton goes round before it "
-                                  "finds the equilibrium, and "
-                                  "round-off decides how the step is cut on the way";
-    constexpr const char* several = "bodies bend and buckle so far within a step that it has more than one solution: "
-                                    "Newton goes round before it finds "
-                                    "one, and round-off decides which, or how the step is cut on the way";
-    constexpr const char* cut =
-        "steps are cut to where gaps close: their lengths carry what the solver's tolerance leaves in a gap";
+                                   "cycles before it finds one, and round-off decides how the step is cut on the way";
+    constexpr const char* round = "a slave 1e6 times stiffer than its master, with mortar: Newton cycles before it "
+                                  "finds the equilibrium, and round-off decides how the step is cut on the way";
+    constexpr const char* several =
+        "bodies bend and buckle so far within a step that it has more than one solution: "
+        "Newton cycles before it finds one, and round-off decides which one, or how the step is cut on the way";
+    constexpr const char* cut = "steps are cut to the time at which gaps close: the solver's tolerance leaves an error "
+                                "in the gaps, and so in the lengths of steps";
     static const std::vector<std::string> sides{"mirror", "numbering"};
     static const std::vector<std::string> every{"length 1e9", "length 1e-9", "mass 1e9",   "mass 1e-9",
                                                 "time 1e9",   "time 1e-9",   "rotation",   "mirror",
                                                 "numbering",  "body order",  "translation"};
-    constexpr const char* sliding = "frictionless: nothing but round-off says where the block is along the groove";
+    constexpr const char* sliding = "frictionless: only round-off decides where the block is along the groove";
     static const std::map<std::string, KnownDifference> all{
         {"extreme/block_in_groove", {.reason = sliding, .displacement_only = true}},
         {"extreme/edge_on_edge", {.reason = symmetric, .transformations = sides}},
@@ -104,8 +100,8 @@ inline const std::map<std::string, KnownDifference>& known_differences() {
 
 /// Scenes that are left out, and why.
 inline const std::map<std::string, const char*>& left_out() {
-    constexpr const char* gives_up = "gives up, as expected: where is a matter of its last digits";
-    constexpr const char* long_run = "too long to be run a dozen times";
+    constexpr const char* gives_up = "gives up, as expected: the place depends on the last digits";
+    constexpr const char* long_run = "takes too long to be run a dozen times";
     static const std::map<std::string, const char*> all{{"extreme/crushed_against_a_wall", gives_up},
                                                         {"extreme/driven_through_a_wall", gives_up},
                                                         {"extreme/held_by_friction_released", gives_up},

@@ -14,4 +14,8 @@ namespace osculate {
 /// The same, but a file that cannot be read counts as empty.
 [[nodiscard]] std::string file_content(const std::filesystem::path& path);
 
+/// Writes a text as the whole content of a file.
+/// @throws RunFailure naming the path
+void write_text(const std::filesystem::path& path, const std::string& text);
+
 } // namespace osculate

@@ -169,18 +169,19 @@ def main():
 
 RESULTS_HEAD = """# Results
 
-Written by `scripts/pages/figures`, which runs the scenes of `configs/paper`; edit nothing here. Seconds are those of the
-machine it ran on last, the fastest of at least three runs; others were at work on it, so that CPU seconds compare better.
-`rpim` and `blend` have their defaults, 2 rings and the multiquadric with R = 1.42, q = 1.03, m = 6, unless the tables say
-otherwise.
+`scripts/pages/figures` runs the scenes of `configs/paper` and writes this page; do not edit it. Seconds are those of the
+fastest of at least three runs, on the machine of the last run. Other programs ran on that machine too, so CPU seconds compare
+better. `rpim` and `blend` have their defaults, 2 rings and the multiquadric with R = 1.42, q = 1.03, m = 6, unless the tables
+say otherwise.
 
-- N is the sum of the nodal normal forces, D the force that drives the contactor; means and ripples are over distances
-  from 0.5 m on, the paper's sliding steps 5 to 30. Steps of 0.1 m on facets of 1 m miss the extremes of the ripple.
-- *Halved* is the tube with twice as many facets both ways (`[26, 24, 3]`), 0.375 x 0.5 m.
-- Roughness is the root mean square second difference of the nodal contact pressure along y = 0 over its mean, end nodes
-  left out.
-- Residuals are over the reference force ([theory](theory.md), section 6): largest components, but for the last four of
-  the mesh lines, which are 2-norms. The linear systems are solved no further than a tenth of `solver.tolerance`.
+- N is the sum of the nodal normal forces, D is the force that drives the contactor. Means and ripples are taken over
+  distances from 0.5 m on, which are the paper's sliding steps 5 to 30. Steps of 0.1 m on facets of 1 m miss the
+  extremes of the ripple.
+- *Halved* is the tube with twice as many facets in both directions (`[26, 24, 3]`), 0.375 x 0.5 m.
+- Roughness is the root mean square of the second differences of the nodal contact pressure along y = 0, divided by the
+  mean pressure. The end nodes are left out.
+- Residuals are divided by the reference force ([theory](theory.md), section 6). They are largest components, except the last
+  four of the mesh lines, which are 2-norms. The linear systems are solved only to a tenth of `solver.tolerance`.
 
 ![Driving force over sliding distance](images/friction.png)
 

@@ -251,21 +251,21 @@ AIMS = {
 
 HEAD = """# Verification: the scoreboard
 
-{problems} problems with known answers. Every figure is from the runs of `scripts/pages/verification`, which writes this page and
-those it links to from the tables in `data`; edit nothing here. Settings are the default ones, `blend` and `node`, unless
-they say otherwise; CPU seconds are those of one run on one thread of the machine it ran on last.
+{problems} problems with known answers. Every figure comes from the runs of `scripts/pages/verification`, which writes this page
+and the pages it links to from the tables in `data`; do not edit them. Settings are the defaults, `blend` and `node`, unless a
+row says otherwise. CPU seconds are those of one run on one thread, on the machine of the last run.
 
 {summary}
 """
 TAIL = """## What is compared
 
-Tests (`ctest -R docs`) make this page, those of the studies, [results](../results.md), and the table and figures in the
-README and the theory anew from the stored tables and fail on any difference. Pictures are of the same runs as the tables beside
-them. Not covered:
+Tests (`ctest -R docs`) generate this page, the pages of the studies, [results](../results.md), and the table and figures in
+the README and the theory again from the stored tables. They fail on any difference. Pictures show the same runs as the tables
+beside them. The tests do not cover:
 
 - times of kernels by `scripts/measure/bench`: the README's table of evaluations and all tables of [search](../search.md);
 - what an older OpenBLAS costs on some machines, in the README;
-- figures of single tests in [theory](../theory.md), sections 3, 6 and 9: they are those tests' own.
+- figures of single tests in [theory](../theory.md), sections 3, 6 and 9: those tests print them.
 """
 
 
@@ -283,8 +283,8 @@ def page(studies):
     if "taylor_patch" in s:
         of = lambda weighting: number(worst(s["taylor_patch"], "worst_pressure", weighting=weighting), 2)
         summary += (f"\n\nContact at slave nodes (`node`, the default) does not pass the patch test on meshes that do not match: "
-                    f"pressures at single\nnodes are up to {of('node')} of the pressure wrong, on fine meshes, too. "
-                    f"`mortar` is {of('mortar')} off at most, which is what\n`solver.tolerance` leaves.")
+                    f"pressures at single\nnodes are wrong by up to {of('node')} of the pressure, even on fine meshes. "
+                    f"With `mortar` they are wrong by at most {of('mortar')}, which\ncomes from `solver.tolerance`.")
     return "\n".join([
         HEAD.format(problems=len(s), summary=summary), "## Aims\n",
         table(["problem", "figure", "aim", "measured", ""], aims), "## Problems\n",

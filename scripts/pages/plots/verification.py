@@ -48,12 +48,12 @@ PAPER = "Qian et al., J. Comput. Appl. Math. 257 (2014)"
 SURFACE_TEXTS = {
     "table1": {
         "problem": "Surfaces through the nodes of small hybrid meshes on a sphere and a saddle, as in Table 1 of the paper. "
-                   "Its mesh is not\npublished; those here have its errors of position and normal with plain facets. "
-                   "`height_1` is the paper's form, the height\nx3(x1, x2) on the 1-ring of each facet; `rpim_k` and "
-                   "`blend_k` are ours, on k rings.",
+                   "Its mesh is not\npublished; the meshes here have its errors of position and normal with plain facets. "
+                   "`height_1` is the paper's form, the\nheight x3(x1, x2) on the 1-ring of each facet; `rpim_k` and "
+                   "`blend_k` are those of Osculate, on k rings.",
         "source": f"the exact surfaces; {PAPER}, Table 1, for the ratio of `height_1` to facets",
         "defects": "On the saddle the facets (0.9 m) are larger than the radius of curvature at its centre (0.47 m): no "
-                   "surface on turned\nreference planes resolves it there. `height_1` is helped by knowing in which direction "
+                   "surface on turned\nreference planes resolves it there. `height_1` has an advantage: it knows in which direction "
                    "the surface is a height.",
     },
     "surface_convergence": {
@@ -128,7 +128,7 @@ def head(name, study, rows):
     texts = study | SURFACE_TEXTS.get(name, {})
     command = f"osculate study configs/studies/{name}.yaml"
     lines = [f"# {texts['title']}", "", texts["problem"], "", f"- Reference: {texts['source']}",
-             f"- Command: `scripts/pages/verification --only {name}`, or of the study alone `{command}`"]
+             f"- Command: `scripts/pages/verification --only {name}`, or for the study alone `{command}`"]
     if is_of_surfaces(study):
         lines.append(f"- Data: [data/{name}.csv](data/{name}.csv)")
     else:
@@ -185,7 +185,7 @@ def quantity_section(name, study, axes, rows, quantity):
         elif len(references) == 1:
             reference = float(references[0])
             text += f"; the reference is {number(reference, 6)}" + (f" {unit}" if unit and reference else "")
-    text += ". *Last*: of the last run of a row.\n\n"
+    text += ". *Last* columns are those of the last run of a row.\n\n"
     slopes = [(f"slope over {study.get('abscissa_label', study.get('abscissa', 'h'))}",
                lambda runs: number(slope([(abscissa(study, r), value(r, f"{quantity}.error")) for r in runs]), 2, "f")),
               ("slope over CPU s",

@@ -104,11 +104,11 @@ Check examine(const LoadedScene& loaded, int threads) {
             check.warnings.push_back({"contact." + pair.name(), "no slave node is above or below the master"});
     }
     for (const Index b : plan.model.kept_contact_mass)
-        check.warnings.push_back({"bodies." + plan.model.bodies[static_cast<std::size_t>(b)].name,
-                                  "its slave nodes keep their mass, against contact_mass: redistributed: no masses on "
-                                  "its other nodes have its centre and inertia, so impacts cost or bring in energy and "
-                                  "contact forces ring; mesh it finer behind the contact or let fewer of its nodes be "
-                                  "slaves"});
+        check.warnings.push_back(
+            {"bodies." + plan.model.bodies[static_cast<std::size_t>(b)].name,
+             "its slave nodes keep their mass although contact_mass is redistributed: no masses on its other nodes "
+             "give its centre and inertia, so impacts lose or gain energy and contact forces oscillate; use a finer "
+             "mesh behind the contact or fewer slave nodes"});
     check.free = free_motions(plan, contact);
     return check;
 }
@@ -177,7 +177,7 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
         fmt::format_to(out, "body {}: {} nodes, {} elements\n", body.name, body.nodes(), body.mesh.element_count());
     for (const std::string& note : plan.mesh_notes) fmt::format_to(out, "{}\n", note);
     fmt::format_to(out, "degrees of freedom: {}\n", check.dofs);
-    fmt::format_to(out, "unknowns: {}, contact forces among them\n", check.dofs + 3 * slave_nodes(plan));
+    fmt::format_to(out, "unknowns: {}, including contact forces\n", check.dofs + 3 * slave_nodes(plan));
     fmt::format_to(
         out, "estimate, mostly within a factor of {:.0f} where no step is cut: {} of one processor, {} of memory\n",
         Estimate::factor, seconds_in_words(check.cost.seconds), bytes_in_words(check.cost.bytes));

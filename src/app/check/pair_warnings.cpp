@@ -21,10 +21,9 @@ public:
         sharp_edges();
         if (std::holds_alternative<scene::FacetsSurface>(examined_.spec.master.surface) &&
             !examined_.pairing.matching && fits(examined_.evaluation))
-            say(".master.surface",
-                "facets, and curved surfaces that fit one another with nodes that do not coincide: they "
-                "touch at single nodes, with forces many times too large; blend or rpim follows the "
-                "curve between the nodes");
+            say(".master.surface", "facets, but the two curved surfaces fit one another and their nodes do not "
+                                   "coincide: they touch at single nodes, with forces many times too large; use blend "
+                                   "or rpim, which follow the curve between the nodes");
         return std::move(found_);
     }
 
@@ -43,30 +42,29 @@ private:
     void facing() {
         const Facing& f = examined_.facing;
         if (f.sides_wrong()) {
-            say(".master.set", fmt::format("{} of {} slave facets do not look towards the master: it is the wrong side "
-                                           "of its body, or the slave is",
+            say(".master.set", fmt::format("{} of {} slave facets do not face the master: the master or the slave is "
+                                           "on the wrong side of its body",
                                            f.turned, f.facets));
             return;
         }
         if (examined_.may_tumble) return;
         if (!f.away.empty())
-            say(".slave", fmt::format("{} of {} facets are near the master and look away from it, the first at {}: "
+            say(".slave", fmt::format("{} of {} facets are near the master but face away from it, the first at {}: "
                                       "leave them out of the set",
                                       f.away.size(), f.facets, place(f.away.front())));
         else if (const auto sides = side_facets(examined_.evaluation.pair(), model_.X); !sides.empty())
             say(".slave",
-                fmt::format("{} of {} facets stand at right angles to the master or look away from it, the "
-                            "first at {}: they add to the area and take the mass of nodes that touch nothing; "
-                            "leave them out of the set",
-                            sides.size(), examined_.evaluation.pair().slaves().facets.size(), place(sides.front())));
+                fmt::format(
+                    "{} of {} facets are at right angles to the master or face away from it, the first at {}: they add "
+                    "to the area and take the mass from nodes that touch nothing; leave them out of the set",
+                    sides.size(), examined_.evaluation.pair().slaves().facets.size(), place(sides.front())));
     }
 
     void stiffness() {
         if (examined_.stiffness_ratio < much_stiffer) return;
-        say(".slave",
-            fmt::format("its body is {:.2g} times as stiff as the master's: take the softer side as slave, and "
-                        "mesh it as finely; as it is the solver may take many times as long",
-                        examined_.stiffness_ratio));
+        say(".slave", fmt::format("its body is {:.2g} times as stiff as the master's: make the softer side the slave, "
+                                  "and mesh it as finely; otherwise the solver may take many times as long",
+                                  examined_.stiffness_ratio));
     }
 
     void sharp_edges() {
@@ -75,15 +73,14 @@ private:
         if (edges.concave > 0)
             say(".master.set",
                 fmt::format(
-                    "{} edges inside it are folded inwards by more than {}, the first at {}: a node there meets "
-                    "one of the two sides only; a set for each side, in a pair of its own, lets it meet both",
+                    "{} edges inside it are folded inwards by more than {}, the first at {}: a node there touches only "
+                    "one of the two sides; to let it touch both, make a set and a pair for each side",
                     edges.concave, angle, place(edges.first_concave)));
         if (edges.convex > 0)
-            say(".master.set",
-                fmt::format("{} edges inside it are sharper than {}, the first at {}: normals and forces jump where "
-                            "nodes come over them; leave out what nothing touches, round the edge, or let it be the "
-                            "slave",
-                            edges.convex, angle, place(edges.first_convex)));
+            say(".master.set", fmt::format("{} edges inside it are sharper than {}, the first at {}: normals and "
+                                           "forces jump where nodes slide over them; leave out facets that nothing "
+                                           "touches, round the edge, or make this surface the slave",
+                                           edges.convex, angle, place(edges.first_convex)));
     }
 
     const model::Model& model_;

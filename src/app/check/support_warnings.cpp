@@ -14,8 +14,8 @@ std::vector<Warning> support_warnings(const scene::Scene& scene) {
                    std::ranges::any_of(*motion, [](const auto& component) { return component.has_value(); });
         });
         if (!moved)
-            found.push_back({"supports." + name, "it holds nothing, and no stage moves it: name components, as in fix: "
-                                                 "[x, y, z], or leave it out"});
+            found.push_back({"supports." + name, "it holds nothing, and no stage moves it: name components, for "
+                                                 "example fix: [x, y, z], or leave it out"});
     }
     return found;
 }

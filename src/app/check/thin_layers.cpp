@@ -194,12 +194,12 @@ std::vector<Warning> thin_layers(const scene::Scene& scene, const Plan& plan) {
         found.push_back(
             {"bodies." + scene.bodies[b].first + ".hex_formulation",
              fmt::format(
-                 "full, and {} of {} hexahedra reach through the whole thickness: about {:.2g} times too stiff in "
-                 "bending; {}",
+                 "full, but {} of {} hexahedra reach through the whole thickness: the body is about {:.2g} times too "
+                 "stiff in bending; {}",
                  locking.thin, locking.hexahedra, locking.factor,
                  std::holds_alternative<scene::LinearElastic>(body.material)
-                     ? "incompatible_modes bends as it should"
-                     : "take elements half as long as the body is thick, and two or more through it")});
+                     ? "use incompatible_modes, which bends correctly"
+                     : "use elements half as long as the body is thick, and two or more through the thickness")});
     }
     return found;
 }

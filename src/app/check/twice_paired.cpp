@@ -51,17 +51,17 @@ std::vector<Warning> twice_paired(const scene::Scene& scene, const Plan& plan) {
         for (std::size_t i = 0; i < later; ++i) {
             const std::string &name = scene.contact[later].first, &other = scene.contact[i].first;
             if (share_facets(sides[later].slave, sides[i].slave) && share_facets(sides[later].master, sides[i].master))
-                found.push_back({"contact." + name,
-                                 fmt::format("it pairs facets that contact.{} pairs already: one condition too many at "
-                                             "every node of them; leave one of the two out",
-                                             other)});
-            else if (share_facets(sides[later].slave, sides[i].master) && share_facets(sides[later].master, sides[i].slave))
                 found.push_back(
-                    {"contact." + name,
-                     fmt::format("its slave is the master of contact.{} and its master the slave there: held apart "
-                                 "both ways, the surfaces have one condition too many at every node; leave one of the "
-                                 "two out (discretisation: mortar treats both sides more alike)",
-                                 other)});
+                    {"contact." + name, fmt::format("contact.{} already pairs these facets: every node of them has one "
+                                                    "condition too many; leave one of the two out",
+                                                    other)});
+            else if (share_facets(sides[later].slave, sides[i].master) &&
+                     share_facets(sides[later].master, sides[i].slave))
+                found.push_back({"contact." + name,
+                                 fmt::format("its slave is the master of contact.{}, and its master is the slave "
+                                             "there: every node of the surfaces has one condition too many; leave one "
+                                             "of the two out (discretisation: mortar treats both sides more alike)",
+                                             other)});
         }
     return found;
 }

@@ -96,7 +96,8 @@ private:
         constexpr double digits = 0.01; // 2 % of the value
         const double power = std::log10(g / standard_gravity), whole = std::round(power);
         if (whole != 0 && std::abs(power - whole) < digits)
-            say("gravity", "{:.4g} m/s^2: that of the Earth is 9.81 m/s^2, this is its 10^{:.0f}", g, whole);
+            say("gravity", "{:.4g} m/s^2: on the Earth it is 9.81 m/s^2, and this is about 10^{:.0f} times that", g,
+                whole);
     }
 
     void pressures(const std::string& stage_name, const scene::Stage& stage) {

@@ -74,8 +74,8 @@ void add_folder(CLI::App* command, Arguments& arguments, const std::string& what
     command->add_option("-o,--output", arguments.output, what)->type_name("DIR");
     CLI::Option* force =
         command->add_flag("--force", arguments.folder.force,
-                          "Go into a folder that holds other files; overwrite, but delete none of them");
-    command->add_flag("--new", arguments.folder.numbered, "Where something is in DIR, take DIR-2, DIR-3, ...")
+                          "Write into a folder that holds other files; overwrite files of the same name, delete none");
+    command->add_flag("--new", arguments.folder.numbered, "If DIR is not empty, use DIR-2, DIR-3, ...")
         ->excludes(force);
 }
 
@@ -86,8 +86,7 @@ void show_numbered(const Arguments& arguments, const std::filesystem::path& fold
 
 void add_changes(CLI::App* command, Arguments& arguments) {
     command
-        ->add_option("--set", arguments.changes,
-                     "Change a value of the scene: --set key.path=value, any number of them")
+        ->add_option("--set", arguments.changes, "Change a value of the scene: --set key.path=value; can be repeated")
         ->type_name("KEY=VALUE")
         ->check(assignment)
         ->allow_extra_args(false);
@@ -108,21 +107,25 @@ CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
     command->add_flag("--formulas", arguments.formulas, "List the formulas that studies may call");
     add_folder(command, arguments, "Folder of the tables and plots [out/<study name>]");
     const CLI::Range positive(1, 1024);
-    command->add_option("--jobs", arguments.study.jobs, "Runs at a time [1]")->type_name("N")->check(positive);
-    command->add_option("--threads", arguments.study.threads, "Threads of every run [1]; of a study of surfaces [all]")
+    command->add_option("--jobs", arguments.study.jobs, "Number of runs at the same time [1]")
         ->type_name("N")
         ->check(positive);
-    command->add_option("--repeats", arguments.study.repeats, "Times every run is done [the study's]")
+    command
+        ->add_option("--threads", arguments.study.threads,
+                     "Number of threads of every run [1]; of a study of surfaces [all]")
+        ->type_name("N")
+        ->check(positive);
+    command->add_option("--repeats", arguments.study.repeats, "Number of times that every run is done [the study's]")
         ->type_name("N")
         ->check(positive);
     command
         ->add_option("--only", arguments.study.only,
-                     "Run only these values of an axis: --only axis=value,value, any number of them")
+                     "Run only these values of an axis: --only axis=value,value; can be repeated")
         ->type_name("AXIS=VALUES")
         ->check(assignment)
         ->allow_extra_args(false);
     command->add_flag("--report-only,--gather", arguments.study.report_only,
-                      "Run nothing; write tables and plots anew from the runs that are there");
+                      "Run nothing; write tables and plots again from the existing runs");
     command
         ->add_option("--emit", arguments.study.emit,
                      "Run nothing; write a Snakemake workflow or a SLURM array script that runs it elsewhere")
@@ -134,11 +137,11 @@ CLI::App* add_study_command(CLI::App& program, Arguments& arguments) {
 }
 
 void add_run_options(CLI::App* run, Arguments& arguments) {
-    run->add_option("--threads", arguments.threads, "Threads; results do not depend on them")
+    run->add_option("--threads", arguments.threads, "Number of threads; results do not depend on it")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
     run->add_option("--checkpoint-every", arguments.checkpoint_every,
-                    "Write a checkpoint after so many accepted steps, '20', or so much time, '5 min'")
+                    "Write a checkpoint each time a number of accepted steps ('20') or a time ('5 min') has passed")
         ->type_name("STEPS|TIME");
     run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
 }
@@ -238,9 +241,10 @@ ExitCode run_command(int argc, char** argv) {
     CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
     add_folder(run, arguments, "Folder of the run's files [out/<scene name>]");
     add_run_options(run, arguments);
-    CLI::App* resume = program.add_subcommand("resume", "Go on with a run from its last checkpoint");
+    CLI::App* resume = program.add_subcommand("resume", "Continue a run from its last checkpoint");
     resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
-    resume->add_option("--from", arguments.from, "Another checkpoint than DIR/checkpoint/state")->type_name("FILE");
+    resume->add_option("--from", arguments.from, "Start from this checkpoint instead of DIR/checkpoint/state")
+        ->type_name("FILE");
     add_run_options(resume, arguments);
     CLI::App* check = add_scene_command(
         program, "check", "Validate a scene; show sizes, cost, pairs, initial gaps, and what looks wrong", arguments);
@@ -259,12 +263,12 @@ ExitCode run_command(int argc, char** argv) {
     schemas->add_option("KIND", arguments.schema, "scene, study or template [scene]")
         ->check(CLI::IsMember({"scene", "study", "template"}));
     CLI::App* init = program.add_subcommand("init", "Write a commented scene to start from");
-    init->add_option("TUTORIAL", arguments.scene, "One of those that --list shows");
+    init->add_option("TUTORIAL", arguments.scene, "Name of a tutorial; --list shows them");
     init->add_flag("--list", arguments.list, "List the tutorials");
     init->add_option("-o,--output", arguments.output, "The new scene file [TUTORIAL.yaml]")->type_name("FILE");
-    check->add_flag("--json", arguments.json, "As JSON, for programs");
+    check->add_flag("--json", arguments.json, "Print JSON, for programs");
     CLI::App* study = add_study_command(program, arguments);
-    CLI::App* steps = program.add_subcommand("diary", "Show what became of every attempted step of a run, and why");
+    CLI::App* steps = program.add_subcommand("diary", "Show what happened to every attempted step of a run, and why");
     steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     CLI::App* report_page =
         program.add_subcommand("report", "Write report.html of a run: one file that shows it, to mail or to keep");
@@ -282,13 +286,12 @@ ExitCode run_command(int argc, char** argv) {
                      "Units of the deck's numbers: si (m, kg, s) or mm (mm, t, s, so N and MPa) [si]")
         ->type_name("si|mm")
         ->check(CLI::IsMember({"si", "mm"}));
-    import->add_flag(
-        "--allow-loss", arguments.allow_loss,
-        "Write the scene although it lacks loads, contact, materials, supports or steps of the deck; without, "
-        "exit code 5");
+    import->add_flag("--allow-loss", arguments.allow_loss,
+                     "Write the scene even if it lacks loads, contact, materials, supports or steps of the deck; "
+                     "without this option, such a deck ends with exit code 5");
     std::vector<std::string> repairs = mesh::repair_words();
     repairs.emplace_back("all");
-    mesh->add_option("--repair", arguments.mesh.repair, "Faults to mend, as `repair` in a scene")
+    mesh->add_option("--repair", arguments.mesh.repair, "Faults to repair, like `repair` in a scene")
         ->type_name("WORDS")
         ->delimiter(',')
         ->check(CLI::IsMember(repairs));

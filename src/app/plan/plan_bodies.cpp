@@ -93,7 +93,7 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
                  ? massless ? "contact_mass: redistributed, with mass, centre and inertia of every body"
                             : "no body has slave nodes"
                  : fmt::format("{} of body {} keep their mass: no other nodes can carry its centre and inertia",
-                               massless ? "contact_mass: redistributed, but slave nodes" : "slave nodes", keepers));
+                               massless ? "contact_mass: redistributed, but the slave nodes" : "slave nodes", keepers));
 
     const bool gravity = !scene.gravity.isZero(0);
     list.say("gravity", gravity, gravity ? "on every body with a density" : "not given",
@@ -123,7 +123,7 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
              {0, static_cast<double>(model.nodes()), "nodes a step"});
     const bool shifted = !model.origin.isZero(0);
     list.say("moved origin", shifted,
-             shifted ? "far from the scene's origin digits would be lost" : "the scene is near its origin");
+             shifted ? "digits would be lost far from the scene's origin" : "the scene is near its origin");
 }
 
 } // namespace osculate::app

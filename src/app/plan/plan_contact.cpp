@@ -70,7 +70,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
         add_patches(spec.master, pair->surface(), patches);
         smooth += (smooth.empty() ? "" : ", ") + pair->name() + ": " + in_words(spec.master);
         if (stays_flat(plan, *pair))
-            flat += fmt::format("; the master of {} stays flat: facets would give the same forces on its slave nodes",
+            flat += fmt::format("; the master of {} stays flat: facets give the same forces on its slave nodes",
                                 pair->name());
     }
     list.say("smooth master surface", !smooth.empty(),

@@ -45,8 +45,8 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
     const bool direct = unsymmetric && asked == LinearSolver::direct;
     say("multigrid", multigrid,
-        multigrid ? fmt::format("cycles over {} nodes in place of factors", plan.model.nodes())
-                  : "fewer nodes than cycles pay for, or another solver is asked for");
+        multigrid ? fmt::format("multigrid cycles over {} nodes instead of factors", plan.model.nodes())
+                  : "too few nodes for multigrid to pay off, or the scene asks for another solver");
     say("condensation", condensed,
         condensed   ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
                                   cost.condensed, cost.factorising)
@@ -57,18 +57,19 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
             ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
                           "{:.2g} operations",
                           cost.condensed, 1e-9 * cost.bytes, cost.factorising)
-            : "another solver is asked for");
-    say("LU factorisation", direct, direct ? "asked for, in every iteration" : "only where GMRES gets nowhere");
+            : "the scene asks for another solver");
+    say("LU factorisation", direct,
+        direct ? "the scene asks for it, in every iteration" : "only if GMRES does not converge");
     say("Cholesky factorisation", !direct && !multigrid,
         direct        ? "the tangent itself is factorised"
-        : multigrid   ? "cycles take its place"
+        : multigrid   ? "multigrid cycles replace it"
         : condensed   ? "of each body, its contact nodes last"
         : contact     ? "of the stiffness with softened contact, to precondition GMRES"
         : unsymmetric ? "of a triangle of the tangent, to precondition GMRES"
                       : "the tangent is symmetric positive definite");
     say("GMRES", multigrid || (unsymmetric && !direct),
         direct        ? "the tangent is factorised"
-        : multigrid   ? "with the whole tangent, preconditioned by cycles"
+        : multigrid   ? "with the whole tangent, preconditioned by multigrid cycles"
         : condensed   ? "on contact nodes and forces alone"
         : contact     ? "unsymmetric tangent with contact"
         : follows     ? "unsymmetric tangent of follower pressures"
@@ -82,15 +83,16 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     say("stabilisation springs", false,
         statics == 0                  ? "inertia holds every body"
         : !plan.stepper.stabilisation ? "solver.stabilisation is off"
-                                      : "only where a tangent is singular, or as a last resort");
+                                      : "only if a tangent is singular, or as a last resort");
     const bool audit = plan.stepper.audit;
     list.say("audit of geometry", audit,
              audit                ? "bodies inside one another, by the boxes of their facets, after every solved step"
-             : scene.solver.audit ? "one body, deformed little, meets nothing"
-                                  : "solver.audit is off: nobody looks for bodies inside one another",
+             : scene.solver.audit ? "a single body that deforms little touches nothing"
+                                  : "solver.audit is off: nothing looks for bodies inside one another",
              {0, 0, {}});
     list.say("threads", plan.stepper.threads > 1,
-             plan.stepper.threads > 1 ? "share out slave nodes and rows of matrices" : "one does all",
+             plan.stepper.threads > 1 ? "they share the slave nodes and the rows of matrices"
+                                      : "one thread does all the work",
              {0, static_cast<double>(plan.stepper.threads), "threads"});
     add_output_items(scene, plan, list);
     return list.take();

@@ -71,7 +71,7 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
              {0, bytes, "B a frame"});
     const bool beside = frames && plan.stepper.threads > 1;
     list.say("frames on a second thread", beside,
-             beside   ? "files are written beside the next step"
+             beside   ? "a second thread writes files during the next step"
              : frames ? "the run has one thread"
                       : "no frame is written");
     constexpr const char* of_stress[] = {"stress", "von_mises", "stress_max", "stress_mid", "stress_min"};
@@ -134,9 +134,8 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
     list.say("report", out.report, out.report ? "asked for" : not_asked);
     list.say("expectation", scene.expect.has_value(),
              scene.expect ? "the scene says how it ends" : "the scene has no expect");
-    list.say("post-mortem", false, "only where the run gives up");
-    list.say("failed iterate", false,
-             out.failed_iterate ? "only where the run gives up" : "output.failed_iterate is off");
+    list.say("post-mortem", false, "only if the run gives up");
+    list.say("failed iterate", false, out.failed_iterate ? "only if the run gives up" : "output.failed_iterate is off");
 }
 
 } // namespace osculate::app

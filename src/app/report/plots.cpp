@@ -143,7 +143,7 @@ std::string script_of(const std::string& name, const scene::Plot& plot, const st
 std::string draw(const fs::path& folder, const std::string& name) {
     switch (run_gnuplot(folder / plot_folder, name + ".gp", true)) {
     case Gnuplot::drawn: return {};
-    case Gnuplot::missing: return "gnuplot is not installed; plots/*.gp draw them later";
+    case Gnuplot::missing: return "gnuplot is not installed; run plots/*.gp to draw them later";
     case Gnuplot::failed: break;
     }
     return "gnuplot failed on plots/" + name + ".gp";

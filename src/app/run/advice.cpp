@@ -46,7 +46,8 @@ public:
         case Cause::unsupported_body: unsupported(); break;
         case Cause::singular_tangent: contradiction(); break;
         case Cause::linear_system:
-            add("solver.linear_solver", "iterative instead of multigrid, where there is memory for the bodies' factors",
+            add("solver.linear_solver",
+                "iterative instead of multigrid, if there is enough memory to factorise the bodies",
                 {"solver.linear_solver=iterative"});
             break;
         case Cause::diverged: diverged(); break;
@@ -119,30 +120,29 @@ private:
         if (at == found_.bodies.end()) return;
         const time::BodyHold& loose = *at;
         const std::string ways = loose.free_motions.empty()
-                                     ? "free in " + std::to_string(loose.free_by_supports) + " ways but for contact"
+                                     ? "free in " + std::to_string(loose.free_by_supports) + " ways without contact"
                                      : "free " + listed(loose.free_motions);
         add("supports",
-            "hold body '" + loose.body + "', which is " + ways + ": a set of it with fix, or a symmetry plane");
+            "hold body '" + loose.body + "', which is " + ways + ": fix one of its sets, or add a symmetry plane");
         const bool adrift = failed_.result.adrift >= 0;
         if (loose.in_pair && loose.pressed == 0 && (loose.touching + loose.touched > 0 || adrift)) {
             const std::string how = loose.touching > 0
                                         ? "contact would have to pull at " + std::to_string(loose.touching) + " nodes"
                                     : loose.touched > 0 ? "it touched at " + std::to_string(loose.touched) +
                                                               " nodes at the last good time, and contact cannot pull"
-                                                        : "no support lies on its way";
-            add(stage_, "what is done to body '" + loose.body + "' here pulls it off (" + how +
-                            "): reverse or reduce the load, or lead the body by a displacement instead of a load");
+                                                        : "nothing in its way stops it";
+            add(stage_, "this stage pulls body '" + loose.body + "' off (" + how +
+                            "): reverse or reduce the load, or move the body by a displacement instead of a load");
         }
         constexpr double apart = 1e-6; // facets
         if (loose.in_pair && loose.touching + loose.touched == 0 && !loose.nearest_pair.empty() &&
             loose.nearest_gap > apart * loose.facet) {
             add(in_stage("displacement"),
-                "lead the body until it touches, instead of loading it: its nearest slave node "
-                "is " +
+                "move the body by a displacement until it touches, instead of loading it: its nearest slave node is " +
                     number(loose.nearest_gap) + " m away");
             if (failed_.ladder.stabilisation.share == nullptr)
                 change("solver.stabilisation", "true",
-                       "true, so that the body's load may lead it until it meets something");
+                       "true, so that the load can move the body until it touches something");
             else if (loose.nearest_gap < loose.facet && !adrift) // else the load does not lead there
                 change("contact." + loose.nearest_pair + ".closing_tolerance",
                        rounded(std::min(1.0, margin * loose.nearest_gap / loose.facet)),
@@ -153,9 +153,9 @@ private:
             for (const auto& one : failed_.model.pairs)
                 if (one->name() == loose.nearest_pair && one->options().friction == 0)
                     change("contact." + one->name() + ".friction", "0.3",
-                           "above 0, say 0.3, where the surfaces are not smooth: without friction contact holds the "
-                           "body along its normals only");
-        dynamics("if body '" + loose.body + "' is really meant to move freely: inertia carries it then");
+                           "above 0, for example 0.3, if the real surfaces are rough: without friction, contact holds "
+                           "the body only along its normals");
+        dynamics("if body '" + loose.body + "' is really meant to move freely: its inertia then holds it");
     }
 
     void dynamics(const std::string& why) {
@@ -168,12 +168,10 @@ private:
     }
 
     void contradiction() {
-        add("supports",
-            "look for parts that are held or driven on both sides of a contact: where neither side can move, "
-            "no force and no gap is determined");
+        add("supports", "look for parts that are held or driven on both sides of a contact: if neither side can move, "
+                        "neither force nor gap is determined");
         add(in_stage("displacement"),
-            "drive a part of the body that is not itself in contact, so that what touches can "
-            "deform");
+            "drive a part of the body that is not itself in contact, so that the part in contact can deform");
         if (found_.contact)
             add("contact." + found_.contact->pair + ".slave", "leave out nodes that are held or driven");
     }
@@ -181,10 +179,9 @@ private:
     void diverged() {
         constexpr std::size_t few = 3; // attempts; where so many cuts changed nothing, more of them do not help
         if (found_.attempts.size() < few) smaller_steps("Newton starts nearer to the solution");
-        add(stage_,
-            "less load than at " + number(found_.last_time) +
-                " s, the last equilibrium, or a displacement instead of the load: a body that gives way under a "
-                "load can be led past that point");
+        add(stage_, "less load than at " + number(found_.last_time) +
+                        " s, the last equilibrium, or a displacement instead of the load: a displacement can move a "
+                        "body past the point where it gives way under a load");
     }
 
     /// Where the residual is so small that round-off rather than the contact may hold it there.
@@ -196,7 +193,7 @@ private:
     void tolerance_above_residual() {
         change("solver.tolerance", rounded(margin * found_.residual),
                "above " + number(found_.residual) + " instead of " + number(failed_.ladder.tolerance) +
-                   ": the residual rests at round-off there");
+                   ": round-off keeps the residual there");
     }
 
     void cycle() {
@@ -208,16 +205,16 @@ private:
             constexpr double share = 0.1; // of a step: what swings faster than steps can follow dies out
             const std::string value = rounded(share * whole_step()) + " s";
             change(in_stage("analysis.dynamic.stiffness_damping"), value,
-                   value + ": bodies that rock on friction stick and slip with vibrations that no step follows");
+                   value + ": bodies that rock on surfaces with friction stick and slip in vibrations that are too "
+                           "fast for any step");
         }
         if (one->options().friction > 0.3)
             add("contact." + one->name() + ".friction",
                 "below " + number(one->options().friction) +
                     ", if only for a test: high friction makes stick and slip alternate");
         add("contact." + one->name() + ".master.surface",
-            "blend, where it is facets or rpim: normals that jump at edges send nodes to and fro");
-        add("bodies." + found_.body + ".mesh",
-            "finer where the nodes listed lie: few nodes decide over all of the contact");
+            "blend, if it is facets or rpim: normals that jump at edges move nodes back and forth");
+        add("bodies." + found_.body + ".mesh", "finer near the listed nodes: too few nodes carry the contact");
     }
 
     void iterations() {
@@ -234,11 +231,11 @@ private:
                    more + " instead of " + number(most) +
                        (now < 0.5 * before ? ": the residual was still falling" : ""));
         } else
-            smaller_steps("the residual did not fall any more, so that iterations alone would not help");
+            smaller_steps("the residual did not fall any more, so more iterations alone would not help");
         if (most < usual) return;
         if (found_.contact)
             add("contact." + found_.contact->pair + ".master.surface",
-                "blend, where it is facets or rpim: Newton likes normals that do not jump");
+                "blend, if it is facets or rpim: Newton converges better if normals do not jump");
     }
 
     void stall() {
@@ -246,7 +243,7 @@ private:
         larger_tolerance();
         if (found_.contact)
             add("contact." + found_.contact->pair + ".friction",
-                "lower, if only for a test whether friction is to blame");
+                "lower, if only to test whether friction is the cause");
     }
 
     void not_finite() {
@@ -258,13 +255,13 @@ private:
         if (!found_.element) return;
         constexpr double crushed = 0.1; // of its volume is left: it is the motion that does it, step by step
         const bool gradually = volume_left() < crushed;
-        if (!gradually) smaller_steps("elements bear a little compression at a time");
+        if (!gradually) smaller_steps("elements can take only a little compression in one step");
         add(stage_, "a smaller load or motion on body '" + found_.element->body + "', " +
-                        (gradually ? "which has an element of hardly any volume at the last good time already"
-                                   : "if it cannot stand this one at all"));
+                        (gradually ? "in which an element has almost no volume left at the last good time already"
+                                   : "if the body cannot bear this one at all"));
         if (!gradually)
             add("bodies." + found_.element->body + ".material",
-                "neo_hookean, if it is saint_venant_kirchhoff, which gives way under strong compression");
+                "neo_hookean, if it is saint_venant_kirchhoff, which loses its stiffness under strong compression");
         add("bodies." + found_.element->body + ".mesh", "a mesh without thin or skewed elements there");
     }
 
@@ -277,7 +274,7 @@ private:
 
     void too_deep() {
         constexpr double least = 1e-6; // steps grow again once the surfaces touch
-        const std::string why = "the node moves a shorter way in it";
+        const std::string why = "the node then moves less in a step";
         if (found_.cause == Cause::collision) { // shorter still: at the surface its depth is bounded, too
             constexpr double most = 0.02;
             return steps_smaller_by(std::min(failed_.decision.value, most), least, why);
@@ -311,7 +308,7 @@ private:
     }
     void by_nodes(const model::ContactPair& pair) {
         change("contact." + pair.name() + ".discretisation", "node",
-               "node: averages over facets know neither edges against edges nor vertices");
+               "node: averages over facets see neither edges against edges nor vertices");
     }
 
     /// Overrides that make the master of a pair its slave, where sets of the scene are these surfaces.
@@ -342,11 +339,11 @@ private:
         const auto pair = std::ranges::find_if(model.pairs, joins);
         if (intrusion.body == intrusion.other) {
             found_.no_remedy = "body '" + body +
-                               "' meets itself, and no contact of a body with itself is modelled; loads and motions "
-                               "that stop before are all there is";
+                               "' touches itself, and osculate does not model contact of a body with itself; only "
+                               "loads and motions that stop before this can be run";
         } else if (pair == model.pairs.end()) {
-            add("contact", "a pair of surfaces of '" + body + "' and '" + other +
-                               "' that hold the place: no pair keeps these bodies apart");
+            add("contact", "a pair with surfaces of '" + body + "' and '" + other +
+                               "' that contain this place: no pair keeps these bodies apart");
         } else {
             const model::ContactPair& one = **pair;
             const std::vector<Index>& slaves = one.slaves().node;
@@ -356,15 +353,16 @@ private:
                 edges_cross(one, intrusion);
             else if (!known)
                 add("contact." + one.name() + ".slave",
-                    "the other side, or surfaces that hold node " + std::to_string(found_.node) + " of body '" +
-                        found_.body + "', which is no slave node: only slave nodes are kept out of the other body",
+                    "the other side, or a surface that contains node " + std::to_string(found_.node) + " of body '" +
+                        found_.body +
+                        "', which is not a slave node: contact keeps only slave nodes out of the other body",
                     std::ranges::count(one.master_nodes(), intrusion.node) > 0 ? sides_swapped(one)
                                                                                : std::vector<std::string>{});
             constexpr double in_dynamics = 0.05; // the default there
             if (const time::StepLimits& limits = failed_.stage.limits;
                 known && (limits.in_metres || limits.allowed_interpenetration > in_dynamics))
                 change(in_stage("control.allowed_interpenetration"), number(in_dynamics),
-                       number(in_dynamics) + ", so that no node is carried past a surface");
+                       number(in_dynamics) + ", so that no node passes through a surface");
         }
     }
 
@@ -376,8 +374,8 @@ private:
         const double apart = 2 * failed_.stage.limits.audited_depth * intrusion.length;
         add("bodies." + slave + ".mesh",
             "slave nodes at most " + rounded(apart) + " m apart along its edges, and the mesh of '" + master +
-                "' as it is: contact knows nodes against facets, not edges against edges between their nodes, and "
-                "one node comes to lie on a facet then before the edge is too deep");
+                "' unchanged: contact sees nodes against facets, not edges against edges between their nodes, and with "
+                "this spacing a node meets a facet before the edge is too deep");
     }
 
     void time_error() {
@@ -397,10 +395,10 @@ private:
                    number(failed_.stage.limits.energy_tolerance));
         if (massless())
             change(in_stage("analysis.dynamic.contact_mass"), "kept",
-                   "kept: contact nodes with mass take energy away as they touch, and a release feeds in less");
+                   "kept: contact nodes with mass lose energy when they touch, and contact adds less when it opens");
         constexpr double least = 1e-4;
         steps_smaller_by(failed_.stage.limits.energy_tolerance / failed_.decision.value, least,
-                         "what a release feeds into the energy falls with the step");
+                         "with smaller steps, contact adds less energy when it opens");
     }
 
     /// Whether there are contact nodes without mass.

@@ -11,7 +11,7 @@ volatile std::sig_atomic_t noted = 0;
 
 void note(int signal) {
     noted = signal;
-    constexpr char words[] = "\nfinishing the step; again to stop at once\n";
+    constexpr char words[] = "\nfinishing the step; interrupt again to stop at once\n";
     (void)!write(STDERR_FILENO, words, sizeof words - 1);
 }
 

@@ -158,12 +158,11 @@ output::Summary::Checks RunChecks::checks() const {
 std::vector<std::string> RunChecks::warnings() const {
     constexpr double much = 0.05; // a rebound at 0.975 of the exact speed
     if (!dynamic_ || share(closing_, energy_) <= much) return {};
-    return {
-        fmt::format("gaps that closed took {:.2g} of the largest energy with them, which exact contact does not: "
-                    "rebounds are too slow. Smaller steps lose less: control.step_size: controlled where it is fixed, "
-                    "a smaller control.closing_energy or solver.smallest_step where it is not; nodes that keep their "
-                    "mass (see check) lose theirs at every landing",
-                    share(closing_, energy_))};
+    return {fmt::format("gaps that closed took {:.2g} of the largest energy, and exact contact takes none: rebounds "
+                        "are too slow. Smaller steps lose less: set control.step_size to controlled if it is fixed, "
+                        "otherwise make control.closing_energy or solver.smallest_step smaller; nodes that keep their "
+                        "mass (see check) lose its energy at every impact",
+                        share(closing_, energy_))};
 }
 
 std::optional<output::Summary::Expectation> RunChecks::judge(const std::string& failure) const {
@@ -171,9 +170,9 @@ std::optional<output::Summary::Expectation> RunChecks::judge(const std::string& 
     output::Summary::Expectation result;
     const auto miss = [&](std::string words) { result.misses.push_back(std::move(words)); };
     if (expect_->outcome == scene::Outcome::completed) {
-        if (!failure.empty()) miss("gave up where it should complete");
+        if (!failure.empty()) miss("gave up but should complete");
     } else if (failure.empty()) {
-        miss("completed where it should give up");
+        miss("completed but should give up");
     } else if (failure.find(expect_->cause) == std::string::npos) {
         miss(fmt::format("gave up without the words '{}'", expect_->cause));
     }

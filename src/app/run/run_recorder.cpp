@@ -7,6 +7,7 @@
 #include "osculate/app/run_report.hpp"
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/output/paraview_script.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/writer.hpp"
@@ -36,13 +37,6 @@ template <class F> void on_disk(Timings& timings, F&& write) {
     } catch (const std::runtime_error& error) {
         throw RunFailure(error.what());
     }
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw std::runtime_error("cannot write " + path.string());
 }
 
 double seconds(const timeval& time) {

@@ -2,6 +2,7 @@
 
 #include "app/study/run_folder.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/core/printable.hpp"
 
 #include <algorithm>
@@ -54,13 +55,6 @@ std::string program() {
 /// A text as Python reads it.
 std::string literal(const std::string& text) {
     return nlohmann::json(text).dump();
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw RunFailure("cannot write " + path.string());
 }
 
 std::vector<const StudyCase*> announced(const std::vector<StudyCase>& cases, const StudyRunOptions& options,

@@ -1,5 +1,6 @@
 #include "app/report/gnuplot.hpp"
 #include "osculate/app/surface_study.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/output/csv_table.hpp"
 
 #include <algorithm>
@@ -12,12 +13,6 @@
 namespace osculate::app {
 
 namespace {
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
-}
 
 double mean_of(const StudyRow& row, const ErrorKind& kind) {
     return (row.errors.*kind.measure).mean;

@@ -85,7 +85,7 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
                const std::vector<mesh::ElementBlock>& blocks, const std::vector<Array>& point_data, double time) {
     vtkNew<vtkCellArray> cells;
     vtkNew<vtkUnsignedCharArray> types;
-    std::array<vtkIdType, 10> nodes{}; // of the largest cell
+    std::array<vtkIdType, mesh::most_nodes_per_cell> nodes{};
     for (const mesh::ElementBlock& block : blocks) {
         const int count = nodes_per_cell(block.type);
         for (Index e = 0; e < block.size(); ++e) {

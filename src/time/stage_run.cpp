@@ -137,7 +137,7 @@ void StageRun::trial(StepAttempt& attempt) {
     attempt.result = solve_trial(equilibrium_, solver_, z, attempt.statuses, attempt.ladder);
     attempt.iterations = attempt.result.iterations;
     if (!attempt.result.converged()) return;
-    collisions_.add_trial(equilibrium_.state(z).u, attempt.evidence);
+    collisions_.add_trial(equilibrium_.displacements(z), attempt.evidence);
     attempt.evidence.iterations = attempt.iterations;
     attempt.decision = judge(attempt.evidence, stage_.limits, attempt.dt, repeats_);
     attempt.z = std::move(z);

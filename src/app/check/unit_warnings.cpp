@@ -64,6 +64,7 @@ private:
 
     void materials() {
         static constexpr const char* laws[] = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean"};
+        static_assert(std::size(laws) == std::variant_size_v<scene::Material>, "a law without its word");
         for (const auto& [name, body] : scene_.bodies) {
             const scene::ElasticConstants& m = scene::elastic(body.material);
             const std::string law = "bodies." + name + ".material." + laws[body.material.index()];

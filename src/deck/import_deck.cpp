@@ -236,9 +236,12 @@ private:
                                     "nodes that cover no facet of their body cannot be slaves");
                         continue;
                     }
-                    if (of_six_node_faces(a, pair.slave) || of_six_node_faces(b, pair.master)) {
+                    const mesh::CellInfo* quadratic = quadratic_type(a, pair.slave);
+                    if (quadratic == nullptr) quadratic = quadratic_type(b, pair.master);
+                    if (quadratic != nullptr) {
                         model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
-                                    "faces of C3D10 cannot be in contact: mesh the body with C3D4");
+                                    fmt::format("faces of {} cannot be in contact: mesh the body with {}",
+                                                quadratic->deck[0], without_midside_nodes(*quadratic).deck[0]));
                         continue;
                     }
                     const bool mortar = pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave));
@@ -278,10 +281,19 @@ private:
         return facets;
     }
 
-    bool of_six_node_faces(std::size_t body, const std::string& key) const {
-        return std::ranges::any_of(facets_of(body, key), [&](const mesh::Facet& facet) {
-            return !mesh::cell_info(bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)].type)
-                        .edges.empty();
+    /// Type of an element with midside nodes to which a facet of a surface belongs; null if there is none.
+    const mesh::CellInfo* quadratic_type(std::size_t body, const std::string& key) const {
+        for (const mesh::Facet& facet : facets_of(body, key)) {
+            const mesh::ElementBlock& block = bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)];
+            if (const mesh::CellInfo& info = mesh::cell_info(block.type); !info.edges.empty()) return &info;
+        }
+        return nullptr;
+    }
+
+    /// The type with the same corners and faces.
+    static const mesh::CellInfo& without_midside_nodes(const mesh::CellInfo& info) {
+        return *mesh::find_cell_type([&](const mesh::CellInfo& other) {
+            return other.nodes == info.corners() && other.faces.size() == info.faces.size();
         });
     }
 

@@ -73,19 +73,14 @@ std::set<std::pair<std::size_t, Index>> DeckLoads::facets_of(const DeckPressure&
     std::set<std::pair<std::size_t, Index>> facets;
     std::size_t inside = 0;
     for (const mesh::RawFace& face : p.faces) {
-        static constexpr int quarters[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-        for (int part = 0; part < (face.count == 6 ? 4 : 1); ++part) {
-            std::array<Index, 4> corners{-1, -1, -1, -1};
-            for (int c = 0; c < (face.count == 6 ? 3 : face.count); ++c)
-                corners[static_cast<std::size_t>(c)] =
-                    face.nodes[static_cast<std::size_t>(face.count == 6 ? quarters[part][c] : c)];
+        mesh::for_each_piece(face.nodes, face.count, [&](std::array<Index, 4> corners, int) {
             std::sort(corners.begin(), corners.end());
             const auto at = exterior_.find(corners);
             if (at == exterior_.end())
                 ++inside;
             else
                 facets.insert(at->second);
-        }
+        });
     }
     if (inside > 0)
         model_.lose(p.place, fmt::format("pressure on {} faces within '{}'", inside, p.name),

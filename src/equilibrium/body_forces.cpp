@@ -1,5 +1,6 @@
 #include "osculate/equilibrium/body_forces.hpp"
 
+#include "osculate/core/error.hpp"
 #include "osculate/core/field.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
@@ -43,6 +44,8 @@ void BodyForces::add_pressures(double factor, bool end, const Field& u, Field& f
 
 bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt) {
     pressures_ = std::move(pressures);
+    const model::HistoryPlace last = model::history_place(model_.bodies, model_.bodies.size() - 1);
+    require(state.material.size() == last.first + last.size, "the state does not hold the histories of these elements");
     history_start_ = state.material;
     if (dynamics_ != nullptr || !history_start_.empty()) u_start_ = state.u;
     if (dynamics_ == nullptr) return false;

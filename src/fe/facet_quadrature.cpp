@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
 namespace osculate::fe {
@@ -10,7 +11,7 @@ namespace {
 /// A quadrature point: shape functions and their derivatives, times no weight, tangents of the face.
 struct Point {
     double weight = 1;
-    std::array<double, 6> N{}, dxi{}, deta{};
+    std::array<double, mesh::most_nodes_per_face> N{}, dxi{}, deta{};
     Vec3 x_xi = Vec3::Zero(), x_eta = Vec3::Zero();
 };
 
@@ -53,6 +54,64 @@ template <class Use> void integrate_part(double xi, double eta, double size, Use
         use(six_node_point(xi + size * p.xi, eta + size * p.eta, 0.5 * size * size * p.share));
 }
 
+/// Natural coordinates of the nodes of an eight-node face.
+constexpr std::array<std::array<double, 2>, 8> eight_nodes{
+    {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}}};
+
+/// The serendipity functions of a quadrilateral at (xi, eta), nodes as those of mesh::SurfaceFace.
+Point eight_node_point(double xi, double eta, double weight) {
+    Point p;
+    p.weight = weight;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const auto [a, b] = eight_nodes[i];
+        if (a == 0) {
+            p.N[i] = (1 - xi * xi) * (1 + b * eta) / 2;
+            p.dxi[i] = -xi * (1 + b * eta);
+            p.deta[i] = b * (1 - xi * xi) / 2;
+        } else if (b == 0) {
+            p.N[i] = (1 + a * xi) * (1 - eta * eta) / 2;
+            p.dxi[i] = a * (1 - eta * eta) / 2;
+            p.deta[i] = -eta * (1 + a * xi);
+        } else {
+            p.N[i] = (1 + a * xi) * (1 + b * eta) * (a * xi + b * eta - 1) / 4;
+            p.dxi[i] = a * (1 + b * eta) * (2 * a * xi + b * eta) / 4;
+            p.deta[i] = b * (1 + a * xi) * (a * xi + 2 * b * eta) / 4;
+        }
+    }
+    return p;
+}
+
+/// Calls use(s, t, weight) for n x n Gauss points of the square from -1 to 1.
+template <unsigned n, class Use> void on_square(Use use) {
+    using Gauss = boost::math::quadrature::gauss<double, n>;
+    const auto along = [](auto act) { // Boost lists the points that are not negative
+        for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+            const double at = Gauss::abscissa()[i], weight = Gauss::weights()[i];
+            act(at, weight);
+            if (at != 0) act(-at, weight);
+        }
+    };
+    along([&](double s, double ws) { along([&](double t, double wt) { use(s, t, ws * wt); }); });
+}
+
+/// Calls use(point) for the points of a piece of an eight-node face, with five points in each direction of the square of
+/// which the piece is an image; a triangle is one with two corners in one place. N_i x_xi x x_eta is of degree seven.
+template <class Use> void integrate_piece(const mesh::LocalFace& piece, Use use) {
+    const auto corner = [&](int i) -> Eigen::Vector2d {
+        const auto node = static_cast<std::size_t>(piece.nodes[static_cast<std::size_t>(std::min(i, piece.count - 1))]);
+        return {eight_nodes[node][0], eight_nodes[node][1]};
+    };
+    const Eigen::Vector2d a = corner(0), b = corner(1), c = corner(2), d = corner(3);
+    on_square<5>([&](double s, double t, double weight) {
+        const Eigen::Vector2d at = ((1 - s) * (1 - t) * a + (1 + s) * (1 - t) * b + (1 + s) * (1 + t) * c +
+                                    (1 - s) * (1 + t) * d) /
+                                   4,
+                              along_s = ((1 - t) * (b - a) + (1 + t) * (c - d)) / 4,
+                              along_t = ((1 - s) * (d - a) + (1 + s) * (c - b)) / 4;
+        use(eight_node_point(at.x(), at.y(), weight * (along_s.x() * along_t.y() - along_s.y() * along_t.x())));
+    });
+}
+
 /// Calls use(point) for every quadrature point.
 template <class Use> void integrate(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, Use use) {
     const auto finish = [&](Point p) {
@@ -65,10 +124,18 @@ template <class Use> void integrate(const mesh::SurfaceFace& face, const std::ve
     };
     if (face.count == 6) {
         if (face.whole()) return integrate_part(0, 0, 1, finish);
-        if (face.quarters[0]) integrate_part(0, 0, 0.5, finish);
-        if (face.quarters[1]) integrate_part(0.5, 0, 0.5, finish);
-        if (face.quarters[2]) integrate_part(0, 0.5, 0.5, finish);
-        if (face.quarters[3]) integrate_part(0.5, 0.5, -0.5, finish);
+        if (face.pieces[0]) integrate_part(0, 0, 0.5, finish);
+        if (face.pieces[1]) integrate_part(0.5, 0, 0.5, finish);
+        if (face.pieces[2]) integrate_part(0, 0.5, 0.5, finish);
+        if (face.pieces[3]) integrate_part(0.5, 0.5, -0.5, finish);
+        return;
+    }
+    if (face.count == 8) {
+        if (face.whole())
+            return on_square<3>(
+                [&](double xi, double eta, double weight) { finish(eight_node_point(xi, eta, weight)); });
+        for (std::size_t piece = 0; piece < face.shape().pieces.size(); ++piece)
+            if (face.pieces[piece]) integrate_piece(face.shape().pieces[piece], finish);
         return;
     }
     if (face.count == 3) {
@@ -92,8 +159,9 @@ template <class Use> void integrate(const mesh::SurfaceFace& face, const std::ve
 
 } // namespace
 
-std::array<double, 6> tributary_areas(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions) {
-    std::array<double, 6> areas{};
+std::array<double, mesh::most_nodes_per_face> tributary_areas(const mesh::SurfaceFace& face,
+                                                              const std::vector<Vec3>& positions) {
+    std::array<double, mesh::most_nodes_per_face> areas{};
     integrate(face, positions, [&](const Point& p) {
         const double area = p.weight * p.x_xi.cross(p.x_eta).norm();
         for (std::size_t i = 0; i < areas.size(); ++i) areas[i] += p.N[i] * area;
@@ -112,9 +180,9 @@ double area(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions) {
     return sum;
 }
 
-std::array<Vec3, 6> pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions,
-                                    double pressure) {
-    std::array<Vec3, 6> forces;
+std::array<Vec3, mesh::most_nodes_per_face> pressure_forces(const mesh::SurfaceFace& face,
+                                                            const std::vector<Vec3>& positions, double pressure) {
+    std::array<Vec3, mesh::most_nodes_per_face> forces;
     forces.fill(Vec3::Zero());
     integrate(face, positions, [&](const Point& p) {
         const Vec3 force = -pressure * p.weight * p.x_xi.cross(p.x_eta);

@@ -270,7 +270,8 @@ private:
     void take_boundary(int dimension, int tag) {
         const std::vector<std::string> names = names_of(dimension, tag, dimension == 2 ? "face_" : "");
         for (const Elements& some : elements_of(dimension, tag)) {
-            const int count = some.type == 2 ? 3 : some.type == 3 ? 4 : some.type == 9 ? 6 : 0;
+            const FaceShape* const shape = find_face_shape([&](const FaceShape& s) { return s.gmsh == some.type; });
+            const int count = shape == nullptr ? 0 : shape->nodes;
             for (std::size_t e = 0; e < some.tags.size(); ++e) {
                 const std::size_t* nodes = some.nodes.data() + e * static_cast<std::size_t>(some.node_count);
                 RawFace face;

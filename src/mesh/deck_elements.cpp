@@ -23,14 +23,9 @@ RawFace deck_face(const RawCell& cell, int face) {
     const auto faces = info.deck_faces;
     RawFace found;
     if (face < 0 || face >= static_cast<int>(faces.size())) return found;
-    const LocalFace& corners = faces[static_cast<std::size_t>(face)];
-    found.count = corners.count;
-    for (int i = 0; i < corners.count; ++i) found.nodes[i] = cell.nodes[corners.nodes[i]];
-    if (info.edges.empty()) return found;
-    found.count = 2 * corners.count;
-    for (int i = 0; i < corners.count; ++i)
-        found.nodes[corners.count + i] =
-            cell.nodes[info.midway(corners.nodes[i], corners.nodes[(i + 1) % corners.count])];
+    const CellInfo::FaceNodes local = info.face_nodes(faces[static_cast<std::size_t>(face)]);
+    found.count = local.count;
+    for (int i = 0; i < local.count; ++i) found.nodes[i] = cell.nodes[local.nodes[i]];
     return found;
 }
 

@@ -57,8 +57,9 @@ void for_cells(const RawMesh& raw, vtkUnstructuredGrid& grid,
 
 RawFace face_of(const std::string& file, const std::string& set, int type, vtkIdType count, const vtkIdType* points) {
     RawFace face;
-    face.count = type == VTK_QUADRATIC_TRIANGLE ? 6 : type == VTK_TRIANGLE ? 3 : type == VTK_QUAD ? 4 : 0;
-    if (face.count == 0 || face.count != count)
+    const FaceShape* const shape = find_face_shape([&](const FaceShape& s) { return s.vtk == type; });
+    if (shape != nullptr) face.count = shape->nodes;
+    if (shape == nullptr || face.count != count)
         throw MeshError(file, "side set '" + set + "' has faces that are neither triangles nor quadrilaterals");
     for (int i = 0; i < face.count; ++i) face.nodes[i] = static_cast<Index>(points[i]);
     return face;

@@ -106,15 +106,12 @@ Corners sorted_corners(const Index* nodes, int count) {
 
 /// The facets that a face of the file consists of, by their corners.
 void add_keys(const RawFace& face, const std::vector<Index>& number, std::vector<Corners>& keys) {
-    std::array<Index, 6> n{};
+    std::array<Index, most_nodes_per_face> n{};
     for (int i = 0; i < face.count; ++i)
         if ((n[i] = number[face.nodes[i]]) < 0) return; // of another part
-    if (face.count < 6) return keys.push_back(sorted_corners(n.data(), face.count));
-    constexpr int triangles[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-    for (const auto& t : triangles) {
-        const std::array<Index, 3> corners{n[t[0]], n[t[1]], n[t[2]]};
-        keys.push_back(sorted_corners(corners.data(), 3));
-    }
+    for_each_piece(n, face.count, [&](const std::array<Index, 4>& corners, int count) {
+        keys.push_back(sorted_corners(corners.data(), count));
+    });
 }
 
 void name_surfaces(const RawMesh& raw, const std::vector<Index>& number, Mesh& mesh) {

@@ -59,9 +59,15 @@ int bad_tet10_node(std::span<const Index> nodes, const std::vector<Vec3>& positi
 
 int bad_corner(CellType type, std::span<const Index> nodes, const std::vector<Vec3>& positions) {
     if (type == CellType::tet10) return bad_tet10_node(nodes, positions);
-    const auto corners = cell_info(type).corner_neighbours;
+    const CellInfo& info = cell_info(type);
+    const auto corners = info.corner_neighbours;
     for (int c = 0; c < static_cast<int>(corners.size()); ++c) {
-        const auto edge = [&](int i) -> Vec3 { return positions[nodes[corners[c][i]]] - positions[nodes[c]]; };
+        // the tangent of an edge at the corner, if it has a midside node that of the parabola through its three nodes
+        const auto edge = [&](int i) -> Vec3 {
+            const Vec3 &from = positions[nodes[c]], &to = positions[nodes[corners[c][i]]];
+            const int middle = info.midway(c, corners[c][i]);
+            return middle < 0 ? Vec3(to - from) : Vec3(4 * positions[nodes[middle]] - 3 * from - to);
+        };
         if (!(triple(edge(0), edge(1), edge(2)) > 0)) return c;
     }
     return -1;

@@ -29,7 +29,7 @@ Index middle(const RawCell& cell, Index a, Index b) {
 
 std::array<Index, 4> key_of(const RawFace& face) {
     std::array<Index, 4> key{-1, -1, -1, -1};
-    const int corners = face.count == 6 ? 3 : face.count;
+    const int corners = face_shape(face.count).corners;
     std::copy(face.nodes.begin(), face.nodes.begin() + corners, key.begin());
     sort_few(key.begin(), key.begin() + corners);
     return key;
@@ -67,8 +67,11 @@ NonManifold find_non_manifold(const RawMesh& raw) {
             for (const Index node : face.corners)
                 if (node >= 0) join(a, b, node);
             if (cell_info(raw.cells[a].type).edges.empty() || cell_info(raw.cells[b].type).edges.empty()) continue;
-            for (int i = 0; i < 3; ++i) {
-                const Index p = face.corners[i], q = face.corners[(i + 1) % 3], mid = middle(raw.cells[a], p, q);
+            const LocalFace& local = cell_info(raw.cells[a].type).faces[static_cast<std::size_t>(face.face)];
+            for (int i = 0; i < local.count; ++i) {
+                const Index p = raw.cells[a].nodes[local.nodes[i]],
+                            q = raw.cells[a].nodes[local.nodes[(i + 1) % local.count]],
+                            mid = middle(raw.cells[a], p, q);
                 if (middle(raw.cells[b], p, q) == mid) join(a, b, mid);
             }
         }

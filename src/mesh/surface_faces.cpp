@@ -10,26 +10,26 @@
 namespace osculate::mesh {
 namespace {
 
-constexpr std::size_t quarters_per_face = 4;
+/// A piece of a face of an element.
+struct Piece {
+    std::size_t face, number; ///< place in CellInfo::faces and in FaceShape::pieces
+};
 
-/// Which of CellInfo::facets of its element a facet is.
-std::size_t quarter_of(const CellInfo& info, const Facet& facet, const Index* cell, Index first_node) {
-    const auto locals = info.facets;
-    for (std::size_t q = 0; q < locals.size(); ++q) {
-        const auto matches = [&](int local) {
-            return std::find(facet.begin(), facet.end(), cell[local] + first_node) != facet.end();
-        };
-        if (std::all_of(locals[q].nodes.begin(), locals[q].nodes.begin() + locals[q].count, matches)) return q;
+/// Which piece of which face of its element a facet is.
+Piece piece_of(const CellInfo& info, const Facet& facet, const Index* cell, Index first_node) {
+    const auto on_facet = [&](int local) {
+        return std::find(facet.begin(), facet.end(), cell[local] + first_node) != facet.end();
+    };
+    std::size_t all = 0; // pieces of the faces before
+    for (std::size_t f = 0; f < info.faces.size(); ++f) {
+        const std::size_t pieces = face_shape(info.face_nodes(info.faces[f]).count).pieces.size();
+        for (std::size_t p = 0; p < pieces; ++p)
+            if (const LocalFace& local = info.facets[all + p];
+                std::all_of(local.nodes.begin(), local.nodes.begin() + local.count, on_facet))
+                return {f, p};
+        all += pieces;
     }
     throw InternalError("a facet has nodes that no face of its element has");
-}
-
-/// Local node numbers of a six-node face: corners, then the nodes midway on the edges 01, 12 and 20.
-std::array<int, 6> six_node_face(const CellInfo& info, std::size_t face) {
-    // its corners are those of its first three quarters, its middle nodes the corners of the last
-    const auto quarters = info.facets.subspan(quarters_per_face * face, quarters_per_face);
-    return {quarters[0].nodes[0], quarters[1].nodes[1], quarters[2].nodes[2],
-            quarters[3].nodes[0], quarters[3].nodes[1], quarters[3].nodes[2]};
 }
 
 } // namespace
@@ -44,8 +44,7 @@ SurfaceFace plane_face(const Facet& facet) {
 std::vector<SurfaceFace> surface_faces(const Mesh& mesh, const std::vector<Facet>& facets, Index first_node) {
     std::vector<SurfaceFace> faces;
     faces.reserve(facets.size());
-    std::map<std::tuple<Index, Index, std::size_t>, std::size_t>
-        begun; // six-node faces by block, element and local face
+    std::map<std::tuple<Index, Index, std::size_t>, std::size_t> begun; // by block, element and local face
     for (const Facet& facet : facets) {
         const ElementBlock* block = facet.block < 0 ? nullptr : &mesh.blocks[static_cast<std::size_t>(facet.block)];
         if (block == nullptr || cell_info(block->type).edges.empty()) {
@@ -54,16 +53,16 @@ std::vector<SurfaceFace> surface_faces(const Mesh& mesh, const std::vector<Facet
         }
         const CellInfo& info = cell_info(block->type);
         const Index* cell = block->connectivity.data() + static_cast<std::ptrdiff_t>(facet.element) * info.nodes;
-        const std::size_t quarter = quarter_of(info, facet, cell, first_node), local = quarter / quarters_per_face;
-        const auto [known, first] = begun.try_emplace({facet.block, facet.element, local}, faces.size());
+        const Piece piece = piece_of(info, facet, cell, first_node);
+        const auto [known, first] = begun.try_emplace({facet.block, facet.element, piece.face}, faces.size());
         if (first) {
             SurfaceFace& face = faces.emplace_back();
-            const auto corner = six_node_face(info, local);
-            face.count = 6;
-            for (std::size_t i = 0; i < corner.size(); ++i) face.nodes[i] = cell[corner[i]] + first_node;
-            face.quarters.fill(false);
+            const CellInfo::FaceNodes local = info.face_nodes(info.faces[piece.face]);
+            face.count = local.count;
+            for (int i = 0; i < local.count; ++i) face.nodes[i] = cell[local.nodes[i]] + first_node;
+            face.pieces.fill(false);
         }
-        faces[known->second].quarters[quarter % quarters_per_face] = true;
+        faces[known->second].pieces[piece.number] = true;
     }
     return faces;
 }

@@ -10,7 +10,12 @@ namespace {
 constexpr Range divisions_range{.low = 1, .high = 10000};
 constexpr double most_elements = 2e7;
 
-const Words cell_words{"tet4", "wedge6", "hex8", "tet10"};
+/// Names of the cell types, by their numbers.
+const Words cell_words = [] {
+    Words words(mesh::cell_types().size());
+    for (const mesh::CellInfo& info : mesh::cell_types()) words[static_cast<std::size_t>(info.type)] = info.name;
+    return words;
+}();
 constexpr const char* element_meaning = "Element shape. Contact takes no surfaces of tet10.";
 
 void describe(Visitor& v, mesh::Focus& f) {

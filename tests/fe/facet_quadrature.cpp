@@ -24,6 +24,9 @@ mesh::SurfaceFace face_of(const std::vector<Index>& nodes) {
 const mesh::SurfaceFace triangle = face_of({2, 0, 1});
 const mesh::SurfaceFace quadrilateral = face_of({0, 1, 2, 3});
 const mesh::SurfaceFace six_nodes = face_of({0, 1, 2, 3, 4, 5});
+const mesh::SurfaceFace eight_nodes = face_of({0, 1, 2, 3, 4, 5, 6, 7});
+const std::vector<Vec3> bent{{0, 0, 0},        {2, 0.1, 0.3},    {2.2, 1.5, -0.4}, {-0.3, 1, 0.5},
+                             {1.1, -0.1, 0.3}, {2.3, 0.9, -0.1}, {0.9, 1.4, 0.2},  {-0.2, 0.4, 0.1}};
 const std::vector<Vec3> straight{{0, 0, 0},       {2, 0.1, 0.3},     {0.2, 1.5, -0.4},
                                  {1, 0.05, 0.15}, {1.1, 0.8, -0.05}, {0.1, 0.75, -0.2}};
 const std::vector<Vec3> curved{{0, 0, 0},        {2, 0.1, 0.3},   {0.2, 1.5, -0.4},
@@ -90,12 +93,14 @@ TEST(PressureForces, OnAFlatFacetFollowTheTributaryAreas) {
 
 TEST(PressureTangent, IsTheDerivativeOfTheForces) {
     mesh::SurfaceFace part = six_nodes;
-    part.quarters = {true, false, false, true};
-    for (const mesh::SurfaceFace& facet : {face_of({0, 1, 2}), quadrilateral, six_nodes, part}) {
+    part.pieces = {true, false, false, true};
+    mesh::SurfaceFace cut = eight_nodes;
+    cut.pieces = {false, true, false, false, true};
+    for (const mesh::SurfaceFace& facet : {face_of({0, 1, 2}), quadrilateral, six_nodes, part, eight_nodes, cut}) {
         const int count = facet.count;
         Vector at(3 * count);
         for (int i = 0; i < count; ++i)
-            at.segment<3>(3 * i) = count == 6 ? curved[std::size_t(i)] : warped[std::size_t(i)];
+            at.segment<3>(3 * i) = (count == 8 ? bent : count == 6 ? curved : warped)[std::size_t(i)];
         const auto forces = [&](const Vector& x) {
             std::vector<Vec3> positions;
             for (int i = 0; i < count; ++i) positions.emplace_back(x.segment<3>(3 * i));
@@ -168,7 +173,7 @@ TEST(SixNodeFace, UnderPressureHasTheForcesOfGaussQuadratureWhenCurved) {
         all_quarters, {true, false, false, false}, {false, true, false, true}, {false, false, true, false}};
     for (const auto& quarters : parts) {
         mesh::SurfaceFace face = six_nodes;
-        face.quarters = quarters;
+        face.pieces = {quarters[0], quarters[1], quarters[2], quarters[3]};
         std::array<Vec3, 6> expected;
         expected.fill(Vec3::Zero());
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
@@ -192,7 +197,7 @@ TEST(SixNodeFace, IsTheSumOfItsQuarters) {
     std::array<double, 6> areas{};
     for (std::size_t q = 0; q < 4; ++q) {
         mesh::SurfaceFace part = six_nodes;
-        part.quarters = {q == 0, q == 1, q == 2, q == 3};
+        part.pieces = {q == 0, q == 1, q == 2, q == 3};
         const auto own = tributary_areas(part, straight);
         for (std::size_t i = 0; i < 6; ++i) areas[i] += own[i];
         EXPECT_NEAR(fe::area(part, straight), fe::area(six_nodes, straight) / 4, round_off) << q;
@@ -249,6 +254,54 @@ TEST(SixNodeFaces, AroundACurvedTet10UnderPressureHaveNoNetForceNorMomentAndEncl
     const double volume =
         make_kernel(mesh::CellType::tet10, HexFormulation::full, material::LinearElastic{1, 0.3})->volume(X);
     EXPECT_NEAR(work, -3 * pressure * volume, 100 * round_off);
+}
+
+// ---- eight-node faces -------------------------------------------------------------------------------------------------
+
+TEST(EightNodeFace, HasAThirdOfAParallelogramsAreaAtMiddleNodesAndMinusATwelfthAtCorners) {
+    const Vec3 a(2, 0.1, 0.3), b(0.4, 1.5, -0.2), o(1, 1, 1);
+    const std::vector<Vec3> x{o, o + a, o + a + b, o + b, o + a / 2, o + a + b / 2, o + a / 2 + b, o + b / 2};
+    const double area = a.cross(b).norm();
+    const auto areas = tributary_areas(eight_nodes, x);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(areas[i], -area / 12, round_off);
+        EXPECT_NEAR(areas[4 + i], area / 3, round_off);
+    }
+}
+
+TEST(EightNodeFace, UnderPressureIsTheSumOfItsPieces) {
+    std::array<Vec3, 8> sum;
+    sum.fill(Vec3::Zero());
+    for (std::size_t piece = 0; piece < 5; ++piece) {
+        mesh::SurfaceFace part = eight_nodes;
+        part.pieces.fill(false);
+        part.pieces[piece] = true;
+        const auto forces = pressure_forces(part, bent, pressure);
+        for (std::size_t i = 0; i < 8; ++i) sum[i] += forces[i];
+    }
+    const auto whole = pressure_forces(eight_nodes, bent, pressure);
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_LT((sum[i] - whole[i]).norm(), 10 * round_off) << i;
+}
+
+TEST(EightNodeFace, WithMiddleNodesHalfwayIsTheQuadrilateral) {
+    std::vector<Vec3> x = warped;
+    for (std::size_t i = 0; i < 4; ++i) x.push_back((warped[i] + warped[(i + 1) % 4]) / 2);
+    // each bilinear function is that of its corner and half of those of the middles next to it
+    const auto eight = pressure_forces(eight_nodes, x, pressure),
+               four = pressure_forces(quadrilateral, warped, pressure);
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_LT((eight[i] + (eight[4 + i] + eight[4 + (i + 3) % 4]) / 2 - four[i]).norm(), 10 * round_off) << i;
+}
+
+TEST(EightNodeFace, HasPiecesThatCoverItOnce) {
+    const Vec3 a(2, 0.1, 0.3), b(0.4, 1.5, -0.2);
+    const std::vector<Vec3> x{Vec3::Zero(), a, a + b, b, a / 2, a + b / 2, a / 2 + b, b / 2};
+    for (std::size_t piece = 0; piece < 5; ++piece) {
+        mesh::SurfaceFace part = eight_nodes;
+        part.pieces.fill(false);
+        part.pieces[piece] = true;
+        EXPECT_NEAR(fe::area(part, x), a.cross(b).norm() * (piece == 4 ? 1.0 / 2 : 1.0 / 8), round_off) << piece;
+    }
 }
 
 // ---- closed surfaces --------------------------------------------------------------------------------------------------

@@ -47,7 +47,7 @@ TEST(SurfaceFaces, KnowWhichQuartersASurfaceHas) {
         EXPECT_FALSE(face.whole());
         for (std::size_t q = 0; q < 3;
              ++q) // the quarter at a corner where this and the middles next to it are left of the cut
-            EXPECT_EQ(face.quarters[q],
+            EXPECT_EQ(face.pieces[q],
                       std::ranges::all_of(std::array<std::size_t, 3>{q, 3 + q, 3 + (q + 2) % 3},
                                           [&](std::size_t i) { return mesh.nodes[face.nodes[i]].x() <= 0.5; }));
     }

@@ -12,9 +12,12 @@ namespace osculate::fe {
 
 /// Tributary areas, integral of N_i dA, m^2, in the order of face.nodes; zero past face.count. Exact for triangles and
 /// flat quadrilaterals, 2 x 2 Gauss for other quadrilaterals. Exact for straight six-node faces, where corners get zero
-/// and midside nodes a third each; a rule of degree four on curved ones.
-[[nodiscard]] std::array<double, 6> tributary_areas(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions);
-/// The same with the facet's own shape functions; these are not the areas of the nodes of a six-node face.
+/// and midside nodes a third each, and for flat parallelograms with eight nodes, where they get -1/12 and 1/3; a rule of
+/// degree four or five on curved ones.
+[[nodiscard]] std::array<double, mesh::most_nodes_per_face> tributary_areas(const mesh::SurfaceFace& face,
+                                                                            const std::vector<Vec3>& positions);
+/// The same with the facet's own shape functions; these are not the areas of the nodes of a face with midside
+/// nodes.
 [[nodiscard]] std::array<double, 4> tributary_areas(const mesh::Facet& facet, const std::vector<Vec3>& positions);
 
 /// Area of a face, m^2: the sum of its tributary areas.
@@ -22,9 +25,9 @@ namespace osculate::fe {
 
 /// Consistent nodal forces of a pressure p (Pa), -p times the integral of N_i n dA, N, in the order of face.nodes; zero
 /// past face.count. n points out of the body: p > 0 pushes into it. Exact, also for warped quadrilaterals and curved
-/// six-node faces.
-[[nodiscard]] std::array<Vec3, 6> pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions,
-                                                  double pressure);
+/// faces.
+[[nodiscard]] std::array<Vec3, mesh::most_nodes_per_face>
+pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, double pressure);
 /// Adds these forces to the forces of all nodes, N.
 void add_pressure_forces(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, double pressure,
                          std::vector<Vec3>& forces);

@@ -2,6 +2,8 @@
 /// The list of cell types: the row of a type contains all facts about it; readers, writers, surfaces and repairs use
 /// only this. What elements compute is in the list of fe::with_element.
 
+#include "osculate/mesh/face_shape.hpp"
+
 #include <array>
 #include <span>
 #include <string_view>
@@ -16,12 +18,6 @@ enum class CellType { tet4, wedge6, hex8, tet10 };
 inline constexpr int most_nodes_per_cell = 10;
 using NodeOrder = std::array<int, most_nodes_per_cell>; ///< entry i: number of our node i in the other order
 
-/// Local node numbers of a triangle or quadrilateral, counter-clockwise seen from outside; nodes[3] is -1 for a triangle.
-struct LocalFace {
-    std::array<int, 4> nodes;
-    int count;
-};
-
 struct CellInfo {
     CellType type;
     std::string_view name;   ///< in scenes and messages
@@ -34,18 +30,22 @@ struct CellInfo {
     NodeOrder from_deck;
     NodeOrder mirrored;                        ///< the same cell seen in a mirror
     std::span<const LocalFace> faces;          ///< by their corners
-    std::span<const LocalFace> facets;         ///< for surfaces: a six-node face is four triangles
+    std::span<const LocalFace> facets;         ///< for surfaces: the pieces of every face in turn
     std::span<const LocalFace> deck_faces;     ///< S1, S2, ... by their corners, in our local nodes
     std::span<const std::array<int, 2>> edges; ///< with the midside nodes, in their order
-    std::span<const std::array<int, 3>>
-        corner_neighbours; ///< of every corner, ordered so that the triple product of the
-                           ///< edges to them is positive in a well-shaped element. One
-                           ///< corner of a tetrahedron stands for all. None where edges
-                           ///< are curved
+    /// Of every corner, ordered so that the triple product of the edges to them is positive in a well-shaped element.
+    /// One corner of a straight tetrahedron stands for all; none of a tet10, of which mesh::bad_corner sees all nodes.
+    std::span<const std::array<int, 3>> corner_neighbours;
 
     [[nodiscard]] constexpr int corners() const { return nodes - static_cast<int>(edges.size()); }
     /// Midside node between two corners; -1 if there is none.
     [[nodiscard]] constexpr int midway(int a, int b) const;
+    /// Nodes of a face, in the order of FaceShape; the numbers past `count` are -1.
+    struct FaceNodes {
+        std::array<int, most_nodes_per_face> nodes;
+        int count;
+    };
+    [[nodiscard]] constexpr FaceNodes face_nodes(const LocalFace& corners) const;
 };
 
 namespace cells {
@@ -78,23 +78,32 @@ constexpr int midway(std::span<const std::array<int, 2>> edges, int corners, int
     return -1;
 }
 
-/// Divides every triangle with midside nodes into three corner triangles and the middle one.
-template <std::size_t n>
-constexpr std::array<LocalFace, 4 * n> quarters(const LocalFace (&faces)[n], std::span<const std::array<int, 2>> edges,
-                                                int corners) {
-    std::array<LocalFace, 4 * n> result{};
-    for (std::size_t f = 0; f < n; ++f) {
-        const auto [a, b, c, none] = faces[f].nodes;
-        const int ab = midway(edges, corners, a, b), bc = midway(edges, corners, b, c),
-                  ca = midway(edges, corners, c, a);
-        result[4 * f] = {{a, ab, ca, none}, 3};
-        result[4 * f + 1] = {{ab, b, bc, none}, 3};
-        result[4 * f + 2] = {{ca, bc, c, none}, 3};
-        result[4 * f + 3] = {{ab, bc, ca, none}, 3};
+constexpr CellInfo::FaceNodes face_nodes(const LocalFace& face, std::span<const std::array<int, 2>> edges,
+                                         int corners) {
+    CellInfo::FaceNodes all{{-1, -1, -1, -1, -1, -1, -1, -1}, face.count};
+    const auto n = static_cast<std::size_t>(face.count);
+    for (std::size_t i = 0; i < n; ++i) {
+        all.nodes[i] = face.nodes[i];
+        if (!edges.empty()) all.nodes[n + i] = midway(edges, corners, face.nodes[i], face.nodes[(i + 1) % n]);
+    }
+    if (!edges.empty()) all.count = 2 * face.count;
+    return all;
+}
+
+/// The pieces of all faces with midside nodes.
+template <int pieces, std::size_t n>
+constexpr auto in_pieces(const LocalFace (&faces)[n], std::span<const std::array<int, 2>> edges, int corners) {
+    std::array<LocalFace, pieces * n> result{};
+    std::size_t filled = 0;
+    for (const LocalFace& face : faces) {
+        const CellInfo::FaceNodes all = face_nodes(face, edges, corners);
+        for_each_piece(all.nodes, all.count, [&](const std::array<int, 4>& nodes, int count) {
+            result[filled++] = {nodes, count};
+        });
     }
     return result;
 }
-inline constexpr auto tet10_facets = quarters(tet_faces, tet_edges, 4);
+inline constexpr auto tet10_facets = in_pieces<4>(tet_faces, tet_edges, 4);
 
 // The first triangle of a wedge in decks and in Gmsh faces inward; ours faces outward.
 inline constexpr CellInfo list[] = {
@@ -164,6 +173,10 @@ inline constexpr CellInfo list[] = {
 
 constexpr int CellInfo::midway(int a, int b) const {
     return cells::midway(edges, corners(), a, b);
+}
+
+constexpr CellInfo::FaceNodes CellInfo::face_nodes(const LocalFace& face) const {
+    return cells::face_nodes(face, edges, corners());
 }
 
 /// All types, in the order of the blocks of a mesh.

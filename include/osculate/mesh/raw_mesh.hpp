@@ -28,10 +28,9 @@ private:
     }
 };
 
-/// A face of a cell by its points, in any orientation: 3 or 4 corners, or the 3 corners of a six-node triangle followed
-/// by the midpoints of the edges 01, 12, 20.
+/// A face of a cell by its points, in any orientation, otherwise in the order of FaceShape.
 struct RawFace {
-    std::array<Index, 6> nodes{-1, -1, -1, -1, -1, -1};
+    std::array<Index, most_nodes_per_face> nodes{-1, -1, -1, -1, -1, -1, -1, -1};
     int count = 0;
 };
 

@@ -6,18 +6,37 @@
 #include "app/plan/gaps.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <stdexcept>
 
 namespace osculate::app {
 
 namespace {
 
-/// How many facets of a set belong to six-node faces.
-Index facets_of_six_node_faces(const Draft& draft, const model::Set& set) {
+/// Facets of a set that are pieces of faces with midside nodes.
+struct QuadraticFacets {
+    Index count = 0;
+    const mesh::CellInfo* of = nullptr; ///< type of the last one's element
+};
+
+QuadraticFacets quadratic_facets(const Draft& draft, const model::Set& set) {
     const auto& blocks = draft.plan.model.bodies[static_cast<std::size_t>(set.body)].mesh.blocks;
-    return static_cast<Index>(std::ranges::count_if(set.facets, [&](const mesh::Facet& facet) {
-        return !mesh::cell_info(blocks[static_cast<std::size_t>(facet.block)].type).edges.empty();
-    }));
+    QuadraticFacets found;
+    for (const mesh::Facet& facet : set.facets) {
+        const mesh::CellInfo& info = mesh::cell_info(blocks[static_cast<std::size_t>(facet.block)].type);
+        if (info.edges.empty()) continue;
+        ++found.count;
+        found.of = &info;
+    }
+    return found;
+}
+
+/// Names of the types without midside nodes: "hex8, wedge6 or tet4".
+std::string linear_types() {
+    std::vector<std::string_view> names;
+    for (const mesh::CellInfo& info : mesh::cell_types())
+        if (info.edges.empty()) names.push_back(info.name);
+    return fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
 } // namespace
@@ -33,15 +52,16 @@ void add_pairs(Draft& draft) {
             if (group->facets.empty()) {
                 draft.faults.push_back(fault(key + part, "a set with facets", "a set of nodes that cover no facet"));
                 broken = true;
-            } else if (const Index six = facets_of_six_node_faces(draft, *group); six > 0) {
-                // Their corners carry nothing under a uniform pressure, but contact has one law and one share of the
-                // area per node: linear shares on them would press with 0.8 to 1.7 times the pressure.
-                draft.faults.push_back(
-                    fault(key + part,
-                          "facets of hex8, wedge6 or tet4 elements (tet10 carries loads, but no contact: mesh this "
-                          "body with `element: hex8` or `tet4`, `cad: {quadratic: false}` or C3D4)",
-                          fmt::format("{} of its {} facets are parts of faces of tet10 elements of body '{}'", six,
-                                      group->facets.size(), draft.plan.model.bodies[group->body].name)));
+            } else if (const QuadraticFacets quadratic = quadratic_facets(draft, *group); quadratic.count > 0) {
+                // Their corners carry nothing or less under a uniform pressure, but contact has one law and one share of
+                // the area per node: linear shares on them would press with 0.8 to 1.7 times the pressure.
+                draft.faults.push_back(fault(
+                    key + part,
+                    fmt::format("facets of {} elements ({} carries loads, but no contact: mesh this body with "
+                                "`element: hex8` or `tet4`, `cad: {{quadratic: false}}` or C3D4)",
+                                linear_types(), quadratic.of->name),
+                    fmt::format("{} of its {} facets are parts of faces of {} elements of body '{}'", quadratic.count,
+                                group->facets.size(), quadratic.of->name, draft.plan.model.bodies[group->body].name)));
                 broken = true;
             }
         if (broken) continue;

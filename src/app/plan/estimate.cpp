@@ -114,7 +114,7 @@ std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
         {"operations of condensation", condensed ? cost.condensed : 0, 7.2e-10},
         {"3x3 blocks, Newton", solves * blocks, 5e-8},
         {"3x3 blocks, dynamic steps", steps(plan, true) * blocks, 1e-7},
-        {"elements at finite strain", solves * nonlinear_elements(plan), 1.7e-5}};
+        {"nonlinear elements", solves * nonlinear_elements(plan), 1.7e-5}};
 }
 
 Estimate estimate(const scene::Scene& scene, const Plan& plan) {

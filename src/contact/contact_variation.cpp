@@ -59,7 +59,8 @@ void ContactVariation::along(const ContactPoint& point, const Vector& dy, Vector
 void ContactVariation::weights_times(const ContactPoint& point, const Eigen::Ref<const Eigen::Matrix3Xd>& m,
                                      Matrix& result) const {
     if (patches.empty()) {
-        result.noalias() = m * dweights;
+        result.setZero(3, dg.cols());
+        result.leftCols(dweights.cols()).noalias() = m * dweights;
         return;
     }
     const Vec3 mean = m * point.weights;

@@ -1,8 +1,8 @@
 #include "contact/facet_rule.hpp"
 
-#include "osculate/contact/facet_patch.hpp"
 #include "osculate/core/dense_algebra.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace osculate::contact {
@@ -14,11 +14,13 @@ Shape shape(int corners, const Vec2& u) {
         result.N_a.topRows<3>() << -1, -1, 1, 0, 0, 1;
         return result;
     }
-    Vector N(4);
-    MatrixX2 N_a(4, 2);
-    FacetPatch(4).weights(u, N, N_a);
-    result.N = N;
-    result.N_a = N_a;
+    constexpr std::array<double, 4> a{-1, 1, 1, -1}, b{-1, -1, 1, 1};
+    for (Index i = 0; i < 4; ++i) {
+        const double along = 1 + a[i] * u.x(), across = 1 + b[i] * u.y();
+        result.N(i) = along * across / 4;
+        result.N_a(i, 0) = a[i] * across / 4;
+        result.N_a(i, 1) = b[i] * along / 4;
+    }
     return result;
 }
 

@@ -3,10 +3,8 @@
 #include "contact/facet_rule.hpp"
 #include "osculate/core/parallel.hpp"
 #include "osculate/core/rounded_sum.hpp"
-#include "osculate/core/without_traps.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -15,74 +13,51 @@
 namespace osculate::contact {
 
 namespace {
-
-/// Facets that lie over the master with less than this part of their area do not count: the dual functions of a sliver
-/// are huge.
+/// Gaps are averages too, and those over a sliver are far from any of its gaps.
 constexpr double least_cover = 0.05;
-
 } // namespace
 
 Mortar::Mortar(const mesh::HalfEdgeSurface& surface, const std::vector<SlaveFacet>& facets, const std::vector<Vec3>& S,
                std::vector<Mat3> in_plane, const SmoothSlave* smooth)
-    : surface_(surface), incident_(S.size()), in_plane_(std::move(in_plane)), carriers_(S.size(), 0),
-      normal_length_(S.size(), 0.0) {
+    : surface_(surface), weights_(surface, facets, S, least_cover), in_plane_(std::move(in_plane)),
+      carriers_(S.size(), 0), normal_length_(S.size(), 0.0) {
     // master facets near the slave's size need few points; smaller ones must not slip through between the points
     double size = 0;
     for (Index f = 0; f < surface.facet_count(); ++f) size += surface.facet_size(f) / surface.facet_count();
-    for (const SlaveFacet& corners : facets) {
+    for (Index f = 0; f < weights_.facet_count(); ++f) {
+        const SlaveFacet& corners = weights_.corners(f);
         Facet& facet = facets_.emplace_back();
         facet.corners = corners;
-        for (int c = 0; c < corners.count; ++c) {
-            facet.X.push_back(S[static_cast<std::size_t>(corners.node[static_cast<std::size_t>(c)])]);
-            incident_[static_cast<std::size_t>(corners.node[static_cast<std::size_t>(c)])].push_back(
-                {static_cast<Index>(facets_.size()) - 1, c});
-        }
-        const double ratio = std::sqrt(SlavePlane(facet.X).area()) / size;
+        const double ratio = std::sqrt(SlavePlane(weights_.X(f)).area()) / size;
         constexpr int fewest = 2, most = 8;
         const int n = std::clamp(static_cast<int>(std::ceil(ratio - 1e-6)) + 1, fewest, most);
         for (const RulePoint& q : facet_rule(corners.count, n)) {
             GapPoint& point = facet.gap_points.emplace_back();
             point.xi = q.xi;
             point.N = shape(corners.count, q.xi).N;
-            point.weight = q.weight * reference_area(facet, q.xi);
-            facet.area += point.weight;
-            interpolate(point, facet, static_cast<Index>(facets_.size()) - 1, smooth);
+            point.weight = q.weight * reference_area(weights_.X(f), q.xi);
+            interpolate(point, f, smooth);
             for (const Share& share : point.shares) facet.gap_slaves.push_back(share.slave);
         }
         sort_unique(facet.gap_slaves);
     }
 }
 
-double Mortar::reference_area(const Facet& facet, const Vec2& xi) {
-    const Shape N = shape(facet.corners.count, xi);
-    Vec3 a = Vec3::Zero(), b = Vec3::Zero();
-    for (std::size_t c = 0; c < facet.X.size(); ++c) {
-        a += N.N_a(static_cast<Index>(c), 0) * facet.X[c];
-        b += N.N_a(static_cast<Index>(c), 1) * facet.X[c];
-    }
-    return a.cross(b).norm();
-}
-
-std::vector<Vec3> Mortar::corners(const Facet& facet, std::span<const Vec3> s) {
-    std::vector<Vec3> x;
-    for (const Index node : facet.corners) x.push_back(s[static_cast<std::size_t>(node)]);
-    return x;
-}
-
-void Mortar::interpolate(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth) {
+void Mortar::interpolate(GapPoint& q, Index f, const SmoothSlave* smooth) const {
+    const std::vector<Vec3>& X = weights_.X(f);
     Vec3 chord = Vec3::Zero();
-    for (std::size_t c = 0; c < facet.X.size(); ++c) chord += q.N(static_cast<Index>(c)) * facet.X[c];
+    for (std::size_t c = 0; c < X.size(); ++c) chord += q.N(static_cast<Index>(c)) * X[c];
     ContactPoint on_surface;
     if (smooth != nullptr) {
         FacetHit hit;
-        hit.facet = number;
+        hit.facet = f;
         hit.u = q.xi;
         smooth->shape->evaluate(chord, hit, smooth->X, on_surface);
     }
     std::map<Index, Mat3> C;
     if (!on_surface.found)
-        for (int c = 0; c < facet.corners.count; ++c)
-            C[facet.corners.node[static_cast<std::size_t>(c)]] = q.N(c) * Mat3::Identity();
+        for (std::size_t c = 0; c < X.size(); ++c)
+            C[weights_.corners(f).node[c]] = q.N(static_cast<Index>(c)) * Mat3::Identity();
     else
         for (std::size_t i = 0; i < on_surface.nodes.size(); ++i) {
             const auto v = static_cast<std::size_t>(on_surface.nodes[i]);
@@ -110,13 +85,9 @@ Vec3 Mortar::position(const GapPoint& q, std::span<const Vec3> s, Vec3* tail) {
 }
 
 std::unique_ptr<Discretisation> Mortar::clone() const {
-    auto other = std::make_unique<Mortar>(surface_, std::vector<SlaveFacet>{}, std::vector<Vec3>{}, in_plane_);
-    other->facets_ = facets_;
+    std::unique_ptr<Mortar> other(new Mortar(*this));
     for (Facet& facet : other->facets_)
         for (GapPoint& q : facet.gap_points) q.point.trace.reset(); // refers to our placement
-    other->incident_ = incident_;
-    other->carriers_ = carriers_;
-    other->normal_length_ = normal_length_;
     return other;
 }
 
@@ -163,8 +134,14 @@ int Mortar::evaluate(const PairPositions& at, FacetTracking& tracking, std::vect
             for (GapPoint& q : facet.gap_points)
                 at.master.evaluate(position(q, at.slaves, &q.tail), q.hit, at.vertices, q.point, nullptr,
                                    placement_.get());
-            find_overlaps(facet, at);
-            make_duals(facet);
+            std::vector<Index> below;
+            DualSum sum(facet.corners.count);
+            for (const GapPoint& q : facet.gap_points) {
+                if (q.facet >= 0) below.push_back(q.facet);
+                if (q.point.found) sum.add(q.N, q.weight);
+            }
+            sum.finish(weights_.area(f), least_cover, facet.dual);
+            weights_.update(f, at, std::move(below));
         }
     });
     parallel_for(threads, static_cast<Index>(points.size()), [&](Index begin, Index end) {
@@ -176,92 +153,11 @@ int Mortar::evaluate(const PairPositions& at, FacetTracking& tracking, std::vect
     return changed;
 }
 
-void Mortar::find_overlaps(Facet& facet, const PairPositions& at) const {
-    facet.overlaps.clear();
-    const std::vector<Vec3>& x = at.vertices;
-    const std::vector<Vec3> corner = corners(facet, at.slaves);
-    const SlavePlane plane(corner);
-    // from the facets below its points on to their neighbours, as long as they overlap
-    std::vector<Index> waiting, seen;
-    for (const GapPoint& q : facet.gap_points)
-        if (q.facet >= 0) waiting.push_back(q.facet);
-    sort_unique(waiting);
-    seen = waiting;
-    while (!waiting.empty()) {
-        const Index candidate = waiting.back();
-        waiting.pop_back();
-        std::vector<Vec3> master;
-        for (const Index v : surface_.facet_vertices(candidate)) master.push_back(x[static_cast<std::size_t>(v)]);
-        auto points = plane.overlap(master);
-        if (points.empty()) continue;
-        for (OverlapPoint& q : points) { // from the area in the plane to that of the reference facet
-            const Shape N = shape(facet.corners.count, q.xi);
-            Vec3 a = Vec3::Zero(), b = Vec3::Zero();
-            for (std::size_t c = 0; c < corner.size(); ++c) {
-                a += N.N_a(static_cast<Index>(c), 0) * corner[c];
-                b += N.N_a(static_cast<Index>(c), 1) * corner[c];
-            }
-            q.area *= reference_area(facet, q.xi) / plane.normal().dot(a.cross(b));
-        }
-        facet.overlaps.push_back({candidate, std::move(points)});
-        for (const Index v : surface_.facet_vertices(candidate))
-            for (const Index next : surface_.vertex_facets(v)) {
-                const auto place = std::lower_bound(seen.begin(), seen.end(), next);
-                if (place != seen.end() && *place == next) continue;
-                seen.insert(place, next);
-                waiting.push_back(next);
-            }
-    }
-    std::sort(facet.overlaps.begin(), facet.overlaps.end(),
-              [](const Overlap& a, const Overlap& b) { return a.facet < b.facet; });
-}
-
-void Mortar::make_duals(Facet& facet) const {
-    const int corners = facet.corners.count;
-    double covered = 0;
-    Square M;
-    const auto clear = [&] {
-        M = Square::Zero(corners, corners);
-        covered = 0;
-    };
-    const auto add = [&](const Row4& N, double weight) {
-        M += weight * N.head(corners) * N.head(corners).transpose();
-        covered += weight;
-    };
-    const auto finish = [&](Dual& dual) {
-        dual.usable = covered > least_cover * facet.area;
-        dual.D.setZero();
-        if (!dual.usable) return;
-        dual.D.head(corners) = M.rowwise().sum();
-        const WithoutTraps singular; // where it is, that is seen below
-        dual.A = dual.D.head(corners).asDiagonal() * M.inverse().eval();
-        // too few points, or points in a row
-        dual.usable = dual.A.allFinite() && dual.A.cwiseAbs().maxCoeff() * least_cover * least_cover < 1;
-    };
-    clear();
-    for (const GapPoint& q : facet.gap_points)
-        if (q.point.found) add(q.N, q.weight);
-    finish(facet.gap_dual);
-    clear();
-    for (Overlap& overlap : facet.overlaps)
-        for (const OverlapPoint& q : overlap.points) add(shape(corners, q.xi).N, q.area);
-    finish(facet.weight_dual);
-}
-
 double Mortar::gap_area(Index j) const {
     double sum = 0;
-    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+    for (const auto& [f, c] : weights_.around(j)) {
         const Facet& facet = facets_[static_cast<std::size_t>(f)];
-        if (facet.gap_dual.usable) sum += facet.gap_dual.D(c);
-    }
-    return sum;
-}
-
-double Mortar::weight_area(Index j) const {
-    double sum = 0;
-    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
-        const Facet& facet = facets_[static_cast<std::size_t>(f)];
-        if (facet.weight_dual.usable) sum += facet.weight_dual.D(c);
+        if (facet.dual.usable) sum += facet.dual.D(c);
     }
     return sum;
 }
@@ -270,9 +166,9 @@ void Mortar::gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
     point.found = point.behind = false;
     point.nodes.clear();
     carriers_[static_cast<std::size_t>(j)] = 0;
-    const double by_gap = gap_area(j), by_weight = weight_area(j);
+    const double by_gap = gap_area(j), by_weight = weights_.share(j);
     double deepest_gap = 0;
-    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)])
+    for (const auto& [f, c] : weights_.around(j))
         for (const GapPoint& q : facets_[static_cast<std::size_t>(f)].gap_points)
             if (q.point.behind) {
                 point.behind = true;
@@ -288,22 +184,17 @@ void Mortar::gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
     double g = 0;
     Vec3 N = Vec3::Zero();
     std::vector<Index> carrying, sensing, slaves;
-    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+    for (const auto& [f, c] : weights_.around(j)) {
         const Facet& facet = facets_[static_cast<std::size_t>(f)];
         for (const Index k : facet.corners)
             if (k != j) slaves.push_back(surface_.vertex_count() + k);
         for (const Index k : facet.gap_slaves)
             if (k != j) slaves.push_back(surface_.vertex_count() + k);
-        if (facet.weight_dual.usable)
-            for (const Overlap& overlap : facet.overlaps) {
-                const auto v = surface_.facet_vertices(overlap.facet);
-                carrying.insert(carrying.end(), v.begin(), v.end());
-            }
-        if (!facet.gap_dual.usable) continue;
+        if (!facet.dual.usable) continue;
         const int n = facet.corners.count;
         for (const GapPoint& q : facet.gap_points) {
             if (!q.point.found) continue;
-            const double psi = q.weight * facet.gap_dual.A.row(c).dot(q.N.head(n));
+            const double psi = q.weight * facet.dual.A.row(c).dot(q.N.head(n));
             g += psi * q.point.gap;
             N += psi * q.point.normal;
             sensing.insert(sensing.end(), q.point.nodes.begin(), q.point.nodes.end());
@@ -319,6 +210,7 @@ void Mortar::gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
     normal_length_[static_cast<std::size_t>(j)] = length;
 
     // who takes part: carriers of force first
+    weights_.add_vertices(j, carrying);
     sort_unique(carrying);
     sort_unique(sensing);
     sort_unique(slaves);
@@ -329,20 +221,7 @@ void Mortar::gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
     carriers_[static_cast<std::size_t>(j)] = static_cast<Index>(carrying.size());
 
     point.weights = Vector::Zero(static_cast<Index>(point.nodes.size()));
-    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
-        const Facet& facet = facets_[static_cast<std::size_t>(f)];
-        if (!facet.weight_dual.usable) continue;
-        const int n = facet.corners.count;
-        for (const Overlap& overlap : facet.overlaps) {
-            const auto vertices = surface_.facet_vertices(overlap.facet);
-            Row4 sum = Row4::Zero();
-            for (const OverlapPoint& q : overlap.points)
-                sum += q.area * facet.weight_dual.A.row(c).dot(shape(n, q.xi).N.head(n)) *
-                       shape(static_cast<int>(vertices.size()), q.u).N;
-            for (std::size_t i = 0; i < vertices.size(); ++i)
-                point.weights(place_in(carrying, vertices[i])) += sum(static_cast<Index>(i)) / by_weight;
-        }
-    }
+    weights_.add_weights(j, carrying, point.weights);
     point.pressing = -point.weights * point.normal.transpose();
     point.foot.setZero();
     for (std::size_t i = 0; i < carrying.size(); ++i)
@@ -366,9 +245,9 @@ void Mortar::weights_along(const ContactPoint&, const ContactVariation& variatio
 
 double Mortar::gap_rounded_off(Index j, const PairPositions& at, const ContactPoint&) const {
     double lost = 0;
-    for (const auto& [f, c] : incident_[static_cast<std::size_t>(j)]) {
+    for (const auto& [f, c] : weights_.around(j)) {
         const Facet& facet = facets_[static_cast<std::size_t>(f)];
-        if (!facet.gap_dual.usable) continue;
+        if (!facet.dual.usable) continue;
         for (const GapPoint& q : facet.gap_points) {
             if (!q.point.found) continue;
             Vec3 tail = q.tail;
@@ -377,7 +256,7 @@ double Mortar::gap_rounded_off(Index j, const PairPositions& at, const ContactPo
             for (std::size_t i = 0; i < q.point.nodes.size(); ++i)
                 of_gap += q.point.pressing.row(static_cast<Index>(i))
                               .dot(at.vertex_tails[static_cast<std::size_t>(q.point.nodes[i])]);
-            lost += q.weight * facet.gap_dual.A.row(c).dot(q.N.head(facet.corners.count)) * of_gap;
+            lost += q.weight * facet.dual.A.row(c).dot(q.N.head(facet.corners.count)) * of_gap;
         }
     }
     return lost / gap_area(j);

@@ -237,11 +237,12 @@ void ContactEvaluation::master_force_by_y(Index j, const Vec3& lambda, const con
                                           Matrix& by_y) const {
     const Index count = carriers(j);
     by_y.resize(3 * count, variation.dg.cols());
+    const Vector none = Vector::Zero(count);
     for (Index k = 0; k < by_y.cols(); ++k) {
         const double* const dpressing = variation.dpressing.cols() > 0 ? variation.dpressing.col(k).data() : nullptr;
+        const double* const dweights = k < variation.dweights.cols() ? variation.dweights.col(k).data() : none.data();
         discretisation_->force_change(points_[j], lambda, variation.dn.col(k),
-                                      {variation.dweights.col(k).data(), static_cast<std::size_t>(count)}, dpressing,
-                                      by_y.col(k).data());
+                                      {dweights, static_cast<std::size_t>(count)}, dpressing, by_y.col(k).data());
     }
 }
 

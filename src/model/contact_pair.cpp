@@ -1,5 +1,7 @@
 #include "osculate/model/contact_pair.hpp"
 
+#include "osculate/contact/mortar.hpp"
+
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -29,6 +31,9 @@ std::unique_ptr<const contact::Discretisation> make_discretisation(const Contact
         own.count = facet.count;
         for (std::size_t c = 0; c < static_cast<std::size_t>(facet.count); ++c) own.node[c] = number.at(facet.nodes[c]);
     }
+    if (pair.options().discretisation == Discretisation::petrov_galerkin)
+        return contact::make_petrov_galerkin(pair.surface(), pair.vertices(X), facets, positions,
+                                             pair.slaves().in_plane);
     return std::make_unique<contact::Mortar>(pair.surface(), facets, positions, pair.slaves().in_plane, smooth);
 }
 } // namespace

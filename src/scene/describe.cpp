@@ -74,11 +74,14 @@ void describe(Visitor& v, Pair& pair) {
             .names = Names::set},
            pair.slave);
     v.group({.name = "master", .meaning = "Master side.", .required = true}, [&] { describe(v, pair.master); });
-    static const Words discretisations{"node", "mortar"};
+    static const Words discretisations{"node", "mortar", "petrov_galerkin"};
     word(v,
          {.name = "discretisation",
-          .meaning = "Where contact is enforced: at the slave nodes, or on averages over the slave facets with dual "
-                     "shape functions, which pass the patch test on any meshes."},
+          .meaning =
+              "Where gaps are measured and how forces reach the master. node: at the slave nodes alone. mortar: "
+              "gaps and forces are averaged over the slave facets with dual shape functions, which passes the "
+              "patch test on any meshes. petrov_galerkin: gaps at the slave nodes, averaged forces; passes it too, "
+              "and ripples least."},
          discretisations, pair.discretisation);
     v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
     v.number({.name = "closing_tolerance",

@@ -2,6 +2,7 @@
 
 #include "osculate/contact/mortar.hpp"
 
+#include "contact/pairing.hpp"
 #include "contact/surfaces.hpp"
 #include "support/random.hpp"
 
@@ -14,64 +15,14 @@ namespace {
 using osculate::testing::Random;
 using testing::Surface;
 
-/// Underside of a block above z = 0, as slave facets with their own numbering.
-struct Slave {
-    std::vector<SlaveFacet> facets;
-    std::vector<Vec3> X;
-    std::vector<double> area; ///< consistent forces of a unit pressure
+using testing::Pairing;
+using testing::Slave;
 
-    Slave(const Vec3& origin, const Vec3& size, std::array<int, 2> n, mesh::BlockPattern pattern) {
-        const mesh::Mesh mesh = mesh::make_block(origin, size, {n[0], n[1], 1}, mesh::CellType::hex8, pattern);
-        std::map<Index, Index> number;
-        for (const mesh::Facet& facet : mesh.surfaces.at("z_min")) {
-            SlaveFacet& own = facets.emplace_back();
-            own.count = facet.count;
-            for (int c = 0; c < facet.count; ++c) {
-                const auto [at, fresh] = number.try_emplace(facet.nodes[c], static_cast<Index>(X.size()));
-                if (fresh) X.push_back(mesh.nodes[facet.nodes[c]]);
-                own.node[c] = at->second;
-            }
-        }
-        area.assign(X.size(), 0.0);
-        for (const SlaveFacet& facet : facets) { // parallelograms and triangles: equal shares
-            std::vector<Vec3> corner;
-            for (const Index k : facet) corner.push_back(X[k]);
-            for (const Index k : facet) area[k] += SlavePlane(corner).area() / facet.count;
-        }
-    }
-};
-
-/// A mortar pairing evaluated at its reference positions, or at others.
-struct Pairing {
-    const Surface& master;
-    std::unique_ptr<MasterSurface> shape;
-    Slave slave;
-    Mortar mortar;
-    FacetSearch search;
-    FacetTracking tracking;
-    std::vector<ContactPoint> points;
-
-    Pairing(const Surface& surface, std::unique_ptr<MasterSurface> geometry, Slave above)
-        : master(surface), shape(std::move(geometry)), slave(std::move(above)),
-          mortar(surface.topology, slave.facets, slave.X, {}), search(surface.topology), points(slave.X.size()) {
-        search.build(master.x);
-        tracking.changes_before_latch = 4;
-        tracking.changes.assign(slave.X.size(), 0);
-        for (const Vec3& s : slave.X) {
-            tracking.hits.push_back(search.global(s, master.x));
-            tracking.facet.push_back(tracking.hits.back().facet);
-        }
-        evaluate(slave.X, master.x);
-    }
-    [[nodiscard]] PairPositions at(const std::vector<Vec3>& s, const std::vector<Vec3>& x) const {
-        return {*shape, search, s, x};
-    }
-    void evaluate(const std::vector<Vec3>& s, const std::vector<Vec3>& x) {
-        mortar.begin(at(s, x), tracking, 1);
-        (void)mortar.evaluate(at(s, x), tracking, points, 1);
-    }
-    [[nodiscard]] Index carriers(Index j) const { return mortar.carriers(j, points[static_cast<std::size_t>(j)]); }
-};
+auto mortar_on(const Surface& master) {
+    return [&](const Slave& slave) {
+        return std::make_unique<Mortar>(master.topology, slave.facets, slave.X, std::vector<Mat3>{});
+    };
+}
 
 constexpr double round_off = 1e-12;
 
@@ -86,7 +37,8 @@ protected:
 
 TEST_P(FlatMortar, HandsAConstantPressureToTheMasterAsItsElementsTakeIt) {
     // both surfaces end together: every master node must get int N_i dA
-    const Pairing pairing(master, make_blend_surface(master.topology, master.x, {}), slave({0, 0, 0}, {5, 4, 1}));
+    const Pairing pairing(master, make_blend_surface(master.topology, master.x, {}), slave({0, 0, 0}, {5, 4, 1}),
+                          mortar_on(master));
     Vector got = Vector::Zero(master.topology.vertex_count());
     for (std::size_t j = 0; j < pairing.points.size(); ++j) {
         const ContactPoint& point = pairing.points[j];
@@ -110,7 +62,7 @@ TEST_P(FlatMortar, ReproducesLinearGapsAtTheNodes) {
     Slave tilted = slave({0.6, 0.3, 0}, {4, 3, 1});
     std::vector<Vec3> s = tilted.X;
     for (Vec3& x : s) x.z() = linear(x);
-    Pairing pairing(master, make_facets_surface(master.topology), tilted);
+    Pairing pairing(master, make_facets_surface(master.topology), tilted, mortar_on(master));
     pairing.evaluate(s, master.x);
     for (std::size_t j = 0; j < s.size(); ++j) {
         ASSERT_TRUE(pairing.points[j].found);
@@ -121,14 +73,16 @@ TEST_P(FlatMortar, ReproducesLinearGapsAtTheNodes) {
 
 TEST_P(FlatMortar, ActsOnOneLine) {
     // sum_i W_ji x_i lies below slave node j, so that the forces on both sides have no moment
-    const Pairing pairing(master, make_facets_surface(master.topology), slave({0.6, 0.3, 0.1}, {4, 3, 1}));
+    const Pairing pairing(master, make_facets_surface(master.topology), slave({0.6, 0.3, 0.1}, {4, 3, 1}),
+                          mortar_on(master));
     for (std::size_t j = 0; j < pairing.points.size(); ++j)
         EXPECT_LT((pairing.points[j].foot + Vec3(0, 0, 0.1) - pairing.slave.X[j]).norm(), round_off);
 }
 
 TEST_P(FlatMortar, KeepsToThePartThatLiesOverTheMaster) {
     // a fifth of the slave overhangs; nodes whose facets still touch the master keep exact gaps and balanced forces
-    const Pairing pairing(master, make_facets_surface(master.topology), slave({1.2, 0.4, 0.2}, {4.75, 3, 1}));
+    const Pairing pairing(master, make_facets_surface(master.topology), slave({1.2, 0.4, 0.2}, {4.75, 3, 1}),
+                          mortar_on(master));
     int found = 0, lost = 0;
     for (std::size_t j = 0; j < pairing.points.size(); ++j) {
         if (!pairing.points[j].found) {
@@ -155,7 +109,8 @@ TEST(Mortar, CountsAFacetThatTwoFifthsOfAreOverTheMasterAndNoSliver) {
     const Surface master = testing::block_top(mesh::BlockPattern::quad); // up to x = 5
     for (const double over : {0.8, 0.04}) {
         const Pairing pairing(master, make_facets_surface(master.topology),
-                              Slave({5 - over, 1, 0.2}, {2, 2, 1}, {1, 1}, mesh::BlockPattern::quad));
+                              Slave({5 - over, 1, 0.2}, {2, 2, 1}, {1, 1}, mesh::BlockPattern::quad),
+                              mortar_on(master));
         for (std::size_t j = 0; j < pairing.points.size(); ++j) {
             ASSERT_EQ(pairing.points[j].found, over > 0.1) << over;
             if (!pairing.points[j].found) continue;
@@ -172,39 +127,10 @@ TEST(Mortar, VariesAsItsDifferencesSay) {
     Random random(11);
     for (Vec3& x : master.x) x += 0.03 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     Pairing pairing(master, make_blend_surface(master.topology, master.x, {}),
-                    Slave({1.1, 0.9, 0.02}, {2, 2, 1}, {3, 4}, mesh::BlockPattern::triangle));
+                    Slave({1.1, 0.9, 0.02}, {2, 2, 1}, {3, 4}, mesh::BlockPattern::triangle), mortar_on(master));
     std::vector<Vec3> s = pairing.slave.X;
     for (Vec3& at : s) at += 0.02 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    pairing.evaluate(s, master.x);
-    pairing.mortar.prepare_variations(pairing.at(s, master.x), std::vector<char>(s.size(), 1), 1);
-    const Index V = master.topology.vertex_count(), j = 7;
-    ContactVariation variation;
-    const ContactPoint point = pairing.points[j];
-    ASSERT_TRUE(point.found);
-    pairing.mortar.vary(j, pairing.at(s, master.x), pairing.tracking.hits[j], point, variation);
-    std::vector<Index> nodes{V + j};
-    nodes.insert(nodes.end(), point.nodes.begin(), point.nodes.end());
-    const Index carried = pairing.carriers(j);
-    constexpr double h = 1e-5, truncation = 1e-7;     // h^2 over the facets' size, round-off / h
-    for (std::size_t k = 0; k < nodes.size(); k += 5) // evaluating the whole pairing takes its time
-        for (int c = 0; c < 3; ++c) {
-            std::array<ContactPoint, 2> moved;
-            for (const int side : {0, 1}) {
-                auto moved_s = s, moved_x = master.x;
-                (nodes[k] < V ? moved_x[nodes[k]] : moved_s[nodes[k] - V])(c) += side == 0 ? h : -h;
-                pairing.evaluate(moved_s, moved_x);
-                moved[static_cast<std::size_t>(side)] = pairing.points[j];
-            }
-            const auto column = 3 * static_cast<Index>(k) + c;
-            EXPECT_NEAR((moved[0].gap - moved[1].gap) / (2 * h), variation.dg(column), truncation);
-            EXPECT_LT(((moved[0].normal - moved[1].normal) / (2 * h) - variation.dn.col(column)).norm(),
-                      truncation * 100); // curvatures of shaken patches are large
-            ASSERT_EQ(pairing.carriers(j), carried);
-            EXPECT_LT(((moved[0].weights - moved[1].weights).head(carried) / (2 * h) - variation.dweights.col(column))
-                          .cwiseAbs()
-                          .maxCoeff(),
-                      truncation * 10);
-        }
+    testing::expect_variations(pairing, s, master.x, 7);
 }
 
 } // namespace

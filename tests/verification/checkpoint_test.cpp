@@ -94,10 +94,13 @@ TEST(Checkpoint, ResumesASlideByEverySolver) {
     }
 }
 
-TEST(Checkpoint, ResumesWithMortar) {
-    Overrides overrides = support::slide;
-    overrides.push_back({"contact.sliding.discretisation", "mortar"});
-    expect_resumes("paper/half_tube.yaml", overrides, 3);
+TEST(Checkpoint, ResumesWithAveragesOverFacets) {
+    for (const char* discretisation : {"mortar", "petrov_galerkin"}) {
+        SCOPED_TRACE(discretisation);
+        Overrides overrides = support::slide;
+        overrides.push_back({"contact.sliding.discretisation", discretisation});
+        expect_resumes("paper/half_tube.yaml", overrides, 3);
+    }
 }
 
 TEST(Checkpoint, ResumesAThrowWithFrictionAmidCuts) {

@@ -154,7 +154,8 @@ TEST_P(Invariance, UnderTheComplementarityParameter) {
 
 INSTANTIATE_TEST_SUITE_P(Masters, Invariance,
                          testing::Values(Pairing{"facets", "node"}, Pairing{"rpim", "node"}, Pairing{"blend", "node"},
-                                         Pairing{"facets", "mortar"}, Pairing{"blend", "mortar"}));
+                                         Pairing{"facets", "mortar"}, Pairing{"blend", "mortar"},
+                                         Pairing{"facets", "petrov_galerkin"}, Pairing{"blend", "petrov_galerkin"}));
 
 } // namespace
 } // namespace osculate

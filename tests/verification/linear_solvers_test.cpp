@@ -74,6 +74,12 @@ TEST(LinearSolvers, GiveTheSameHalfTubeOnFacetsByMortar) {
     expect_same("paper/half_tube.yaml", overrides);
 }
 
+TEST(LinearSolvers, GiveTheSameHalfTubeByPetrovGalerkin) {
+    auto overrides = coarse;
+    overrides.push_back({"contact.sliding.discretisation", "petrov_galerkin"});
+    expect_same("paper/half_tube.yaml", overrides);
+}
+
 TEST(LinearSolvers, GiveTheSameMotion) {
     expect_same("paper/half_tube_dynamic.yaml", {{"bodies.tube.mesh.half_tube.divisions", "[7, 5, 1]"},
                                                  {"bodies.contactor.mesh.contactor.divisions", "[4, 5, 1]"}});

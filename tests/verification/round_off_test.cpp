@@ -121,9 +121,11 @@ TEST(RoundOff, ABlockAtRestCarriesTheSameForcesWhereverItIs) {
     }
 }
 
-TEST(RoundOff, AMortarBlockAtRestCarriesTheSameForcesWhereverItIs) {
+class AveragingBlock : public testing::TestWithParam<const char*> {};
+
+TEST_P(AveragingBlock, AtRestCarriesTheSameForcesWhereverItIs) {
     std::string text = at_rest;
-    text.replace(text.find("friction: 0.3"), 13, "friction: 0.3, discretisation: mortar");
+    text.replace(text.find("friction: 0.3"), 13, std::string("friction: 0.3, discretisation: ") + GetParam());
     const Outcome here(text);
     ASSERT_EQ(here.failure, "");
     const std::vector<Vec3>& forces = here.state.contact[0].lambda;
@@ -137,6 +139,9 @@ TEST(RoundOff, AMortarBlockAtRestCarriesTheSameForcesWhereverItIs) {
         EXPECT_LE(off, same * largest(forces)) << distance << " m";
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(By, AveragingBlock, testing::Values("mortar", "petrov_galerkin"),
+                         [](const auto& tested) { return std::string(tested.param); });
 
 TEST(RoundOff, AStiffBlockUnderALightPressureComesToRestWhereverItIs) {
     std::string text = at_rest;

@@ -61,7 +61,7 @@ struct ContactVariation {
     VariationForm form = VariationForm::matrices; ///< requested; a surface may give more
     Eigen::Matrix<double, 1, Eigen::Dynamic> dg;  ///< (3+3n) of the gap
     Eigen::Matrix<double, 3, Eigen::Dynamic> dn;  ///< (3 x 3+3n) of the normal
-    Matrix dweights;                              ///< (n x 3+3n)
+    Matrix dweights;                              ///< (n x 3+3n); columns past its last are zero
     Matrix dpressing;                             ///< (3n x 3+3n), three rows per node
     std::vector<PatchVariation> patches;          ///< if not empty, these replace the last two
     double bumps = 1, slope = 1;                  ///< sum of the bumps, |dg/ds|; with patches

@@ -17,6 +17,13 @@ struct OverlapPoint {
     double area = 0;        ///< weight: area in the slave plane, m^2
 };
 
+/// A point of the part of a master edge that lies over the slave facet: where the overlap ends if the master ends there.
+struct EdgePoint {
+    Vec2 xi = Vec2::Zero(); ///< natural coordinates on the slave facet
+    double s = 0;           ///< share of the edge from its first end
+    double length = 0;      ///< weight: length in the slave plane, m
+};
+
 /// The plane of a slave facet: through its centre, normal to its area vector.
 class SlavePlane {
 public:
@@ -31,6 +38,8 @@ public:
     /// of degree 4. Empty if the facets do not overlap, or if the master facet does not face the slave.
     /// @param master  (3 or 4) corners of the master facet
     [[nodiscard]] std::vector<OverlapPoint> overlap(std::span<const Vec3> master) const;
+    /// Integration points of the part of an edge over the facet, projected along the normal; of degree 7.
+    [[nodiscard]] std::vector<EdgePoint> edge_over(const Vec3& from, const Vec3& to) const;
 
 private:
     std::vector<Vec2> polygon_; ///< the slave facet in its plane

@@ -3,7 +3,7 @@
 
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/discretisation.hpp"
-#include "osculate/contact/facet_overlap.hpp"
+#include "osculate/contact/dual_weights.hpp"
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/contact/mirror.hpp"
 #include "osculate/contact/search.hpp"
@@ -16,14 +16,6 @@
 
 namespace osculate::contact {
 
-/// A facet of the slave surface; corners in the numbering of the slave nodes.
-struct SlaveFacet {
-    int count = 0;
-    std::array<Index, 4> node{};
-    [[nodiscard]] const Index* begin() const { return node.data(); }
-    [[nodiscard]] const Index* end() const { return node.data() + count; }
-};
-
 /// A smooth surface through the slave nodes, so that a curved slave is not represented by its chords.
 struct SmoothSlave {
     std::unique_ptr<mesh::HalfEdgeSurface> surface; ///< the slave facets in their order, then some mirror images
@@ -33,21 +25,16 @@ struct SmoothSlave {
     std::vector<Image> image; ///< (vertices) image of that node
 };
 
-/// Mortar weighting: every slave node j has the dual shape functions psi_j of its facets,
-///     psi = A N,  A = D M^-1,  M = int N N^T dA,  D = diag(int N dA),  so that  int psi_j N_k dA = delta_jk D_j,
-/// and its contact point is an average with them over the reference area of those facets,
+/// Mortar weighting: the contact point of every slave node j is an average over the reference area of its facets with
+/// its dual shape functions psi_j, see DualFunctions,
 ///     gap      g_j = int psi_j g dA / D_j               normal  n_j = N_j / |N_j|,  N_j = int psi_j n dA / D_j
-///     weights  W_ji = int psi_j N_i dA / D_j           a force lambda on node j loads master node i with -W_ji lambda.
+///     weights  W_ji of DualWeights: a force lambda on node j loads master node i with -W_ji lambda.
 /// Gap and normal are those of the master surface, from one evaluation at each point of a rule on the slave facet, or
-/// on the smooth surface through the slave nodes: positions sum_k C_k s_k with constant C, m. The weights are the shape
-/// functions N_i of the master's facets, so that the master receives a constant pressure as the nodal loads that its
-/// elements balance with constant stress: the patch test. They have kinks, and are integrated over the overlaps of
-/// slave and master facets.
+/// on the smooth surface through the slave nodes: positions sum_k C_k s_k with constant C, m.
 ///
 /// Slave facets that are only partly above the master are averaged over that part, with dual functions made for it. In
 /// ContactPoint::nodes, numbers from surface.vertex_count() on are slave nodes, counted from there: the other nodes of
 /// the facets of j, on which its gap depends. The nodes that carry force come first, carriers(j) of them.
-/// After Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012; Popp et al., Int. J. Numer. Meth. Eng. 83 (2010) 1428-1465.
 class Mortar final : public Discretisation {
 public:
     /// @param surface   topology of the master
@@ -80,9 +67,6 @@ public:
     [[nodiscard]] bool overlooks() const override { return true; }
 
 private:
-    using Row4 = Eigen::Matrix<double, 4, 1>;
-    using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
-
     struct Share {
         Index slave;
         Mat3 C;
@@ -90,7 +74,7 @@ private:
     /// A point from which the gap is averaged, at  offset + sum C s  =  s_0 + sum C (s - s_0) without mirror images.
     struct GapPoint {
         Vec2 xi = Vec2::Zero();
-        Row4 N = Row4::Zero();
+        DualFunctions::Row4 N = DualFunctions::Row4::Zero();
         std::vector<Share> shares;
         Vec3 offset = Vec3::Zero(); ///< of mirror images
         bool mirrored = false;
@@ -101,53 +85,31 @@ private:
         FacetHit hit;
         ContactPoint point;
     };
-    struct Overlap {
-        Index facet = -1; ///< of the master
-        std::vector<OverlapPoint> points;
-    };
-    /// Linear map from shape functions to dual ones, and the integrals D.
-    struct Dual {
-        bool usable = false;
-        Square A;
-        Row4 D = Row4::Zero();
-    };
     struct Facet {
         SlaveFacet corners;
-        std::vector<Vec3> X; ///< (corners) reference
-        double area = 0;     ///< reference
         std::vector<GapPoint> gap_points;
-        std::vector<Overlap> overlaps;
-        Dual gap_dual, weight_dual;
+        DualFunctions dual;            ///< for the gap, over the points above the master
         std::vector<Index> gap_slaves; ///< slave nodes that affect its points, ascending
-        // Variations by y, slave nodes first, then vertices: of the gap by gap_slaves, of the weights by the corners.
-        std::vector<Index> gap_vertices, weight_vertices;
-        Matrix dgap;     ///< (corners x 3y)
-        Matrix dnormal;  ///< (3 corners x 3y)
-        Matrix dweights; ///< (corners * weight_vertices x 3y), corner by corner
-    };
-    struct Incidence {
-        Index facet;
-        int corner;
+        // Variations by y, slave nodes first, then vertices.
+        std::vector<Index> gap_vertices;
+        Matrix dgap;    ///< (corners x 3y)
+        Matrix dnormal; ///< (3 corners x 3y)
     };
 
-    static void interpolate(GapPoint& q, const Facet& facet, Index number, const SmoothSlave* smooth);
+    Mortar(const Mortar& other)
+        : Discretisation(other), surface_(other.surface_), weights_(other.weights_), facets_(other.facets_),
+          in_plane_(other.in_plane_), carriers_(other.carriers_), normal_length_(other.normal_length_) {}
+    void interpolate(GapPoint& q, Index f, const SmoothSlave* smooth) const;
     [[nodiscard]] static Vec3 position(const GapPoint& q, std::span<const Vec3> s, Vec3* tail = nullptr);
-    [[nodiscard]] static std::vector<Vec3> corners(const Facet& facet, std::span<const Vec3> s);
-    void find_overlaps(Facet& facet, const PairPositions& at) const;
-    void make_duals(Facet& facet) const;
     void gather(Index j, const std::vector<Vec3>& x, ContactPoint& point);
     void vary_gap(Facet& facet, const PairPositions& at) const;
-    void vary_weights(Facet& facet, const PairPositions& at) const;
-    /// Sum of D_j over the facets with gaps, or with weights.
+    /// Sum of D_j over the facets with gaps.
     [[nodiscard]] double gap_area(Index j) const;
-    [[nodiscard]] double weight_area(Index j) const;
-    /// Area of the reference facet per unit of natural coordinates, m^2.
-    [[nodiscard]] static double reference_area(const Facet& facet, const Vec2& xi);
 
     const mesh::HalfEdgeSurface& surface_;
     std::unique_ptr<Placement> placement_;
+    DualWeights weights_;
     std::vector<Facet> facets_;
-    std::vector<std::vector<Incidence>> incident_; ///< (slaves)
     std::vector<Mat3> in_plane_;
     std::vector<Index> carriers_;
     std::vector<double> normal_length_; ///< (slaves) |N_j| of the last evaluation

@@ -9,8 +9,15 @@ namespace osculate {
 /// elements are badly distorted; small strain only.
 enum class HexFormulation { full, b_bar, incompatible_modes };
 
-/// Where contact acts: at the slave nodes, or spread over the slave facets.
-enum class Discretisation { node, mortar };
+/// Where gaps are measured and how forces reach the master. `node`: at the slave nodes, by the weights of the smooth
+/// surface there. `mortar`: both averaged over the slave facets. `petrov_galerkin`: gaps at the slave nodes, forces
+/// averaged over the slave facets.
+enum class Discretisation { node, mortar, petrov_galerkin };
+
+/// Whether forces are averaged over the slave facets.
+[[nodiscard]] constexpr bool averages(Discretisation d) {
+    return d != Discretisation::node;
+}
 
 /// Coordinates of a patch's nodes in its reference plane.
 enum class PatchCoordinates {

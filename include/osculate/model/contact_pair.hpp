@@ -6,7 +6,6 @@
 #include "osculate/contact/discretisation.hpp"
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/contact/mirror.hpp"
-#include "osculate/contact/mortar.hpp"
 #include "osculate/contact/search.hpp"
 #include "osculate/core/choices.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
@@ -14,6 +13,10 @@
 #include <memory>
 #include <string>
 #include <vector>
+
+namespace osculate::contact {
+struct SmoothSlave;
+}
 
 namespace osculate::model {
 

@@ -56,7 +56,7 @@ double stiffness_ratio(const LoadedScene& loaded, const model::ContactPair& pair
 /// pair_warnings() say so.
 void advise_on_stiffness(double ratio, const Pairing& found, PairCheck& check) {
     constexpr double stiffer = 3;
-    if (found.near == 0 || found.discretisation == Discretisation::mortar) return;
+    if (found.near == 0 || averages(found.discretisation)) return;
     if (ratio < stiffer || ratio >= much_stiffer) return;
     if (found.slave_spacing < 0.9 * found.master_spacing) return; // the finer side is the slave: that weighs more
     check.advice.push_back(fmt::format(

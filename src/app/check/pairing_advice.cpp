@@ -54,7 +54,7 @@ Pairing pairing(const model::ContactEvaluation& evaluation, const std::vector<Ve
 }
 
 std::vector<std::string> advice(const Pairing& pairing) {
-    if (pairing.near == 0 || pairing.discretisation == Discretisation::mortar) return {};
+    if (pairing.near == 0 || averages(pairing.discretisation)) return {};
     // docs/verification: nested tubes 0.4 against 0.8 %, foundation on triangles 5 against 30 % of uneven pressure
     constexpr double coarser = 1.1;
     constexpr double alike = 0.05;

@@ -2,6 +2,7 @@
 
 #include "app/overloaded.hpp"
 #include "osculate/contact/mirror.hpp"
+#include "osculate/contact/mortar.hpp"
 #include "osculate/contact/path_crossing.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
@@ -156,8 +157,7 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
         slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
     }
 
-    if (spec.discretisation == Discretisation::mortar)
-        slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
+    if (averages(spec.discretisation)) slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
 
     model::MasterNodes master_nodes;
     const std::vector<double> behind =

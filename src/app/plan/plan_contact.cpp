@@ -64,8 +64,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
         const scene::Pair& spec = *scene::find(scene.contact, pair->name());
         for (Index v = 0; v < pair->surface().vertex_count() && pair->mirrored(); ++v)
             images += pair->own_vertex(v) != v ? 1 : 0;
-        if (spec.discretisation == Discretisation::mortar)
-            slave_facets += static_cast<double>(pair->slaves().facets.size());
+        if (averages(spec.discretisation)) slave_facets += static_cast<double>(pair->slaves().facets.size());
         if (std::holds_alternative<scene::FacetsSurface>(spec.master.surface)) continue;
         add_patches(spec.master, pair->surface(), patches);
         smooth += (smooth.empty() ? "" : ", ") + pair->name() + ": " + in_words(spec.master);
@@ -84,8 +83,8 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
                         : no_pair,
              {sizeof(Vec3) * images, images, "vertices an iteration"});
     list.say("mortar weighting", slave_facets > 0,
-             slave_facets > 0 ? "a pair averages gaps over its slave facets"
-             : contact        ? "no pair asks for discretisation: mortar"
+             slave_facets > 0 ? "a pair averages forces over its slave facets"
+             : contact        ? "every pair asks for discretisation: node"
                               : no_pair,
              {0, slave_facets, "slave facets an iteration"});
 }

@@ -348,7 +348,7 @@ private:
             const model::ContactPair& one = **pair;
             const std::vector<Index>& slaves = one.slaves().node;
             const bool known = std::ranges::count(slaves, intrusion.node) > 0;
-            if (one.options().discretisation == Discretisation::mortar) by_nodes(one);
+            if (averages(one.options().discretisation)) by_nodes(one);
             if (intrusion.edge)
                 edges_cross(one, intrusion);
             else if (!known)

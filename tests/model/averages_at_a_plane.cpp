@@ -1,5 +1,6 @@
-/// Half of a mortar pair at a symmetry plane that misses the origin, against the whole pair.
+/// Half of a pair with forces averaged over facets at a symmetry plane that misses the origin, against the whole pair.
 
+#include "osculate/contact/mortar.hpp"
 #include "osculate/model/contact_evaluation.hpp"
 #include "support/random.hpp"
 
@@ -22,7 +23,7 @@ struct Bowl {
     std::unique_ptr<ContactEvaluation> evaluation;
     Timings timings;
 
-    explicit Bowl(bool half) {
+    Bowl(bool half, Discretisation discretisation) {
         const auto bowl = [](double r, double y) { return Vec3(plane + r, y, 0.03 * (r * r + 0.5 * y * y)); };
         const auto ball = [](double r, double y) { return Vec3(plane + r, y, 0.2 + 0.08 * (r * r + y * y)); };
         // facets symmetric about the plane; those of the slave face down
@@ -79,7 +80,7 @@ struct Bowl {
         ContactOptions options;
         options.friction = 0.3;
         options.hysteresis = 0;
-        options.discretisation = Discretisation::mortar;
+        options.discretisation = discretisation;
         auto master = contact::make_blend_surface(*surface, vertices, {});
         pair = std::make_unique<ContactPair>("pair", x, slaves, std::move(surface), std::move(nodes), std::move(master),
                                              options, &smooth);
@@ -96,8 +97,10 @@ struct Bowl {
     }
 };
 
-TEST(MortarAtAPlane, HasTheGapsNormalsAndDriftsOfTheWhole) {
-    Bowl half(true), whole(false);
+class AtAPlane : public ::testing::TestWithParam<Discretisation> {};
+
+TEST_P(AtAPlane, HasTheGapsNormalsAndDriftsOfTheWhole) {
+    Bowl half(true, GetParam()), whole(false, GetParam());
     half.deform();
     whole.deform();
     half.evaluate();
@@ -119,8 +122,8 @@ TEST(MortarAtAPlane, HasTheGapsNormalsAndDriftsOfTheWhole) {
     EXPECT_EQ(on_plane, 5);
 }
 
-TEST(MortarAtAPlane, VariesAsItsDifferencesSay) {
-    Bowl half(true);
+TEST_P(AtAPlane, VariesAsItsDifferencesSay) {
+    Bowl half(true, GetParam());
     half.deform();
     Random random(92);
     const std::vector<Vec3> x = half.x;
@@ -159,6 +162,11 @@ TEST(MortarAtAPlane, VariesAsItsDifferencesSay) {
         EXPECT_LT((dd * dy - (drifts[0][k] - drifts[1][k]) / (2 * step)).norm(), differences) << j;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(By, AtAPlane, ::testing::Values(Discretisation::mortar, Discretisation::petrov_galerkin),
+                         [](const auto& tested) {
+                             return tested.param == Discretisation::mortar ? "Mortar" : "PetrovGalerkin";
+                         });
 
 } // namespace
 } // namespace osculate::model

@@ -1,5 +1,6 @@
 #include "osculate/contact/master_filter.hpp"
 
+#include "contact/area_vector.hpp"
 #include "osculate/core/rounded_sum.hpp"
 
 #include <Eigen/Geometry>
@@ -13,12 +14,6 @@
 namespace osculate::contact {
 
 namespace {
-
-Vec3 area_vector(std::span<const Index> corners, const std::vector<Vec3>& x) {
-    const auto at = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(corners[k])]; };
-    return corners.size() == 4 ? Vec3((at(2) - at(0)).cross(at(3) - at(1)) / 2)
-                               : Vec3((at(1) - at(0)).cross(at(2) - at(0)) / 2);
-}
 
 /// Whether a vertex has facets all around it and no feature edge.
 std::vector<char> smooth_vertices(const mesh::HalfEdgeSurface& surface) {

@@ -1,5 +1,6 @@
 #include "osculate/contact/master_surface.hpp"
 
+#include "contact/area_vector.hpp"
 #include "contact/fold.hpp"
 #include "contact/merge.hpp"
 #include "contact/reach.hpp"
@@ -7,6 +8,8 @@
 #include "osculate/contact/projection.hpp"
 #include "osculate/contact/rpim_patch.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace osculate::contact {
@@ -124,7 +127,12 @@ private:
             domain.vertices = surface.facet_ring(facet, ring);
             MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2);
             for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[domain.vertices[i]]).transpose();
-            domain.patch = RpimPatch::fit(u, options.basis, options.polynomial_terms);
+            const Multiquadric basis = options.basis                  ? *options.basis
+                                       : options.polynomial_terms < 6 ? r3 // r^5 needs quadratics
+                                                                      : basis_for(turn_of(surface, facet, X));
+            domain.patch = RpimPatch::fit(u, basis, options.polynomial_terms);
+            if (!options.basis && (!domain.patch || domain.patch->polynomial_terms() < options.polynomial_terms))
+                domain.patch = RpimPatch::fit(u, r3, options.polynomial_terms);
             if (!domain.patch) continue;
             domain.corners.resize(static_cast<Index>(corners_own.size()), 2);
             for (Index b = 0; b < domain.corners.rows(); ++b)
@@ -134,6 +142,17 @@ private:
         }
         ++fallbacks_;
         return {};
+    }
+
+    /// Largest angle from a facet to those that share a vertex with it.
+    static double turn_of(const mesh::HalfEdgeSurface& surface, Index facet, const std::vector<Vec3>& X) {
+        const Vec3 own = area_vector(surface.facet_vertices(facet), X);
+        double largest = 0;
+        for (const Index f : surface.ring_facets(facet, 1)) {
+            const Vec3 n = area_vector(surface.facet_vertices(f), X);
+            largest = std::max(largest, std::atan2(n.cross(own).norm(), n.dot(own)));
+        }
+        return largest;
     }
 
     const mesh::HalfEdgeSurface& surface_;

@@ -80,6 +80,14 @@ std::vector<double> turns(const mesh::HalfEdgeSurface& surface, Index vertex, co
     return result;
 }
 
+/// Angle from facet to facet at a vertex: twice the largest to its normal.
+double turn_of(const mesh::HalfEdgeSurface& surface, Index vertex, const std::vector<Index>& sector,
+               const std::vector<Vec3>& X) {
+    double largest = 0;
+    for (const double angle : turns(surface, vertex, sector, sector, X)) largest = std::max(largest, angle);
+    return 2 * largest;
+}
+
 std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Index vertex,
                                       const std::vector<Index>& sector, const std::vector<Vec3>& X,
                                       const BlendOptions& options) {
@@ -129,6 +137,9 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
     const auto q = [&](const Vec2& u) { return u.dot(patch.metric * u); };
     for (const Vec2& u : own) near = std::max(near, q(u));
 
+    const Multiquadric basis = options.basis                  ? *options.basis
+                               : options.polynomial_terms < 6 ? r3 // r^5 needs quadratics
+                                                              : basis_for(turn_of(surface, vertex, sector, X));
     std::vector<Index> facets = sector;
     for (int level = 1; level <= highest_level; ++level) {
         if (level > 1) {
@@ -141,7 +152,9 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
         if (level < options.level && !folds(surface, grown(surface, facets), plane, X)) continue;
         MatrixX2 u(static_cast<Index>(vertices.size()), 2);
         for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[vertices[i]]).transpose();
-        auto shape = RpimPatch::fit(u, options.basis, options.polynomial_terms);
+        auto shape = RpimPatch::fit(u, basis, options.polynomial_terms);
+        if (!options.basis && (!shape || shape->polynomial_terms() < options.polynomial_terms))
+            shape = RpimPatch::fit(u, r3, options.polynomial_terms);
         if (!shape) continue;
         // the bump ends before the nearest node that the patch does not pass through
         double far = std::numeric_limits<double>::max();

@@ -81,7 +81,7 @@ public:
             return std::vector<std::string>{"contact", name, "master", "surface", tag, last};
         };
         const auto q = key("q");
-        if (surface.basis != RadialBasis::multiquadric) {
+        if (surface.basis == RadialBasis::r3 || surface.basis == RadialBasis::r5) {
             const Surface defaults;
             if (surface.R != defaults.R) fault(key("R"), "basis multiquadric with R", "another basis");
             if (surface.q != defaults.q) fault(q, "basis multiquadric with q", "another basis");

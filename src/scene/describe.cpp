@@ -18,10 +18,13 @@ void describe(Visitor& v, FacetsSurface& s) {
 /// What all surfaces through radial point interpolation have in common.
 template <class Surface> void describe_patches(Visitor& v, Surface& s, const char* ring_meaning) {
     v.integer({.name = "ring", .meaning = ring_meaning, .range = {.low = 1, .high = 3}}, s.ring);
-    static const Words bases{"multiquadric", "r3", "r5"};
+    static const Words bases{"automatic", "multiquadric", "r3", "r5"};
     word(v,
          {.name = "basis",
-          .meaning = "Radial functions: multiquadric, or polyharmonic r^3 or r^5, which have no R and q."},
+          .meaning =
+              "Radial functions: multiquadric, or polyharmonic r^3 or r^5, which have no R and q. automatic: with "
+              "petrov_galerkin r5 in patches that resolve the surface, at most 20 degrees a facet, and r3 in others; "
+              "with other discretisations, or if R or q is given, the multiquadric."},
          bases, s.basis);
     v.number({.name = "R",
               .meaning = "Shape parameter of the multiquadric, in mean nearest-neighbour distances of the patch.",

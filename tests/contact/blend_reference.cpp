@@ -48,7 +48,7 @@ protected:
     const json& r = reference();
     const double tolerance = r.at("tolerance");
     const BlendOptions options{.level = r.at("min_level"),
-                               .basis = {r.at("R"), r.at("q")},
+                               .basis = Multiquadric{r.at("R"), r.at("q")},
                                .polynomial_terms = r.at("m"),
                                .coordinates = PatchCoordinates::equal_length};
     const Blend blend{shell().surface("Reference"), options};

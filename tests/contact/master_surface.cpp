@@ -33,8 +33,9 @@ std::vector<MasterCase> cases() {
         const std::string body = bodies[k];
         all.push_back({"Facets" + body, k, false, {}});
         all.push_back({"Rpim" + body, k, true, {}});
-        all.push_back({"RpimTangential" + body, k, true, {.basis = {}, .coordinates = PatchCoordinates::tangential}});
-        all.push_back({"RpimOneRing" + body, k, true, {.ring = 1, .basis = {1.0, 1.03}, .polynomial_terms = 3}});
+        all.push_back({"RpimTangential" + body, k, true, {.coordinates = PatchCoordinates::tangential}});
+        all.push_back(
+            {"RpimOneRing" + body, k, true, {.ring = 1, .basis = Multiquadric{1.0, 1.03}, .polynomial_terms = 3}});
     }
     return all;
 }

@@ -197,10 +197,12 @@ INSTANTIATE_TEST_SUITE_P(
     All, SurfaceKeys,
     testing::Values(std::pair{"{facets: {}}", "{facets: {hysteresis: 0.9}}"},
                     std::pair{"{rpim: {}}", "{rpim: {hysteresis: 0.9}}"}, std::pair{"{rpim: {}}", "{rpim: {R: 1}}"},
-                    std::pair{"{rpim: {}}", "{rpim: {q: 0.5}}"}, std::pair{"{rpim: {}}", "{rpim: {basis: r3}}"},
+                    std::pair{"{rpim: {}}", "{rpim: {q: 0.5}}"},
+                    std::pair{"{rpim: {basis: multiquadric}}", "{rpim: {basis: r3}}"},
                     std::pair{"{rpim: {}}", "{rpim: {basis: r5}}"}, std::pair{"{blend: {}}", "{blend: {R: 1}}"},
                     std::pair{"{blend: {}}", "{blend: {q: 0.5}}"}, std::pair{"{blend: {}}", "{blend: {m: 3}}"},
-                    std::pair{"{blend: {}}", "{blend: {basis: r3}}"}, std::pair{"{blend: {}}", "{blend: {basis: r5}}"},
+                    std::pair{"{blend: {basis: multiquadric}}", "{blend: {basis: r3}}"},
+                    std::pair{"{blend: {}}", "{blend: {basis: r5}}"},
                     std::pair{"{blend: {}}", "{blend: {coordinates: tangential}}"}));
 
 class Keys : public Program {};

@@ -8,6 +8,7 @@
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace osculate::contact {
 
 struct RpimOptions {
     int ring = 2; ///< rings of facets around the temporary facet that form its domain of influence
-    Multiquadric basis;
+    std::optional<Multiquadric> basis = Multiquadric{}; ///< none: basis_for() each patch
     int polynomial_terms = 6;
     PatchCoordinates coordinates = PatchCoordinates::equal_length;
 };
@@ -91,8 +92,8 @@ public:
 [[nodiscard]] std::unique_ptr<MasterSurface> make_facets_surface(const mesh::HalfEdgeSurface& surface);
 
 struct BlendOptions {
-    int level = 2; ///< rings of facets around a vertex that form its patch
-    Multiquadric basis;
+    int level = 2;                                      ///< rings of facets around a vertex that form its patch
+    std::optional<Multiquadric> basis = Multiquadric{}; ///< none: basis_for() each patch
     int polynomial_terms = 6;
     PatchCoordinates coordinates = PatchCoordinates::equal_length;
 };

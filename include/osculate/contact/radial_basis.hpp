@@ -25,4 +25,13 @@ struct Multiquadric {
     }
 };
 
+inline constexpr Multiquadric r3{0, 1.5}, r5{0, 2.5}; ///< polyharmonic
+
+/// The basis for a patch whose facets turn by `angle` from one to the next, rad. r^5 has the smallest error where the
+/// facets resolve the surface, and the largest where they do not (docs/verification/surface_options.md).
+[[nodiscard]] constexpr const Multiquadric& basis_for(double angle) {
+    constexpr double resolved = 0.35; // 20 degrees
+    return angle <= resolved ? r5 : r3;
+}
+
 } // namespace osculate::contact

@@ -197,11 +197,11 @@ struct FacetsSurface {
     bool operator==(const FacetsSurface&) const = default;
 };
 
-enum class RadialBasis { multiquadric, r3, r5 };
+enum class RadialBasis { automatic, multiquadric, r3, r5 };
 
 struct RpimSurface {
     int ring = 2;
-    RadialBasis basis = RadialBasis::multiquadric;
+    RadialBasis basis = RadialBasis::automatic;
     double R = 1.42, q = 1.03; ///< of the multiquadric
     int m = 6;                 ///< terms of the polynomial basis, 3 or 6
     PatchCoordinates coordinates = PatchCoordinates::equal_length;
@@ -211,7 +211,7 @@ struct RpimSurface {
 
 struct BlendSurface {
     int ring = 2; ///< rings of facets around a vertex that form its patch
-    RadialBasis basis = RadialBasis::multiquadric;
+    RadialBasis basis = RadialBasis::automatic;
     double R = 1.42, q = 1.03; ///< of the multiquadric
     int m = 6;
     PatchCoordinates coordinates = PatchCoordinates::equal_length;

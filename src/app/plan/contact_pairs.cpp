@@ -58,32 +58,44 @@ contact::MirroredSurface mirror_at_symmetry(const scene::Scene& scene, const mod
     return contact::mirror(master.facets, model.X, planes, rings * largest);
 }
 
+/// The radial functions asked for; none: those that suit each patch.
+template <class Surface>
+std::optional<contact::Multiquadric> radial_basis(const Surface& s, Discretisation discretisation) {
+    using enum scene::RadialBasis;
+    const Surface defaults;
+    switch (s.basis) {
+    case r3: return contact::r3;
+    case r5: return contact::r5;
+    case multiquadric: break;
+    case automatic:
+        // forces of single nodes press the surface into waves, which r^5 carries on farther than others
+        if (discretisation == Discretisation::petrov_galerkin && s.R == defaults.R && s.q == defaults.q)
+            return std::nullopt;
+    }
+    return contact::Multiquadric{s.R, s.q};
+}
+
 /// The master surface asked for, and the rule against flip-flop that it needs.
-std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spec, const mesh::HalfEdgeSurface& surface,
+std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spec, Discretisation discretisation,
+                                                    const mesh::HalfEdgeSurface& surface,
                                                     const std::vector<Vec3>& vertices, model::ContactOptions& options) {
-    const auto radial_basis = [](const auto& s) -> contact::Multiquadric {
-        switch (s.basis) {
-        case scene::RadialBasis::r3: return {0, 1.5};
-        case scene::RadialBasis::r5: return {0, 2.5};
-        default: return {s.R, s.q};
-        }
-    };
-    return std::visit(
-        Overloaded{
-            [&](const scene::FacetsSurface& s) {
-                options.hysteresis = s.hysteresis;
-                return contact::make_facets_surface(surface);
-            },
-            [&](const scene::RpimSurface& s) {
-                options.hysteresis = s.hysteresis;
-                return contact::make_rpim_surface(surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
-            },
-            [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
-                options.hysteresis = 0;
-                return contact::make_blend_surface(surface, vertices, {s.ring, radial_basis(s), s.m, s.coordinates});
-            },
-        },
-        spec.surface);
+    return std::visit(Overloaded{
+                          [&](const scene::FacetsSurface& s) {
+                              options.hysteresis = s.hysteresis;
+                              return contact::make_facets_surface(surface);
+                          },
+                          [&](const scene::RpimSurface& s) {
+                              options.hysteresis = s.hysteresis;
+                              return contact::make_rpim_surface(
+                                  surface, vertices, {s.ring, radial_basis(s, discretisation), s.m, s.coordinates});
+                          },
+                          [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
+                              options.hysteresis = 0;
+                              return contact::make_blend_surface(
+                                  surface, vertices, {s.ring, radial_basis(s, discretisation), s.m, s.coordinates});
+                          },
+                      },
+                      spec.surface);
 }
 
 /// The surface through the slave nodes that mortar takes its gaps from: as smooth as the master's. None where that is its
@@ -102,7 +114,7 @@ std::optional<contact::SmoothSlave> smooth_slave(const scene::Scene& scene, cons
         smooth.image.push_back(mirrored.images[mirrored.image[node]]);
     }
     model::ContactOptions unused; // rules against flip-flop are of no use to points that stay where they are
-    smooth.shape = make_master(spec, *smooth.surface, smooth.X, unused);
+    smooth.shape = make_master(spec, Discretisation::mortar, *smooth.surface, smooth.X, unused);
     return smooth;
 }
 
@@ -174,7 +186,7 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     options.discretisation = spec.discretisation;
     options.friction = spec.friction;
     options.closing_tolerance = spec.closing_tolerance;
-    auto shape = make_master(spec.master, *surface, vertices, options);
+    auto shape = make_master(spec.master, spec.discretisation, *surface, vertices, options);
     std::optional<contact::SmoothSlave> smooth;
     if (spec.discretisation == Discretisation::mortar)
         smooth = smooth_slave(scene, spec.master, model, slave, slaves.node);

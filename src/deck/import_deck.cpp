@@ -241,7 +241,7 @@ private:
                     if (quadratic != nullptr) {
                         model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
                                     fmt::format("faces of {} cannot be in contact: mesh the body with {}",
-                                                quadratic->deck[0], without_midside_nodes(*quadratic).deck[0]));
+                                                quadratic->deck[0], mesh::without_midside_nodes(*quadratic).deck[0]));
                         continue;
                     }
                     const bool mortar = pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave));
@@ -288,13 +288,6 @@ private:
             if (const mesh::CellInfo& info = mesh::cell_info(block.type); !info.edges.empty()) return &info;
         }
         return nullptr;
-    }
-
-    /// The type with the same corners and faces.
-    static const mesh::CellInfo& without_midside_nodes(const mesh::CellInfo& info) {
-        return *mesh::find_cell_type([&](const mesh::CellInfo& other) {
-            return other.nodes == info.corners() && other.faces.size() == info.faces.size();
-        });
     }
 
     std::string surface_name(const std::string& key) const {

@@ -246,7 +246,8 @@ private:
             const CellInfo* to = find_cell_type([&](const CellInfo& info) { return info.gmsh == some.type; });
             if (to == nullptr && !some.tags.empty())
                 throw MeshError(raw_.file, "element " + std::to_string(some.tags.front()) + " is a " + some.name +
-                                               "; only tetrahedra of 4 or 10 nodes, wedges and hexahedra are read");
+                                               "; only " + cell_names("and", [](const CellInfo&) { return true; }) +
+                                               " are read");
             for (std::size_t e = 0; e < some.tags.size(); ++e) {
                 RawCell cell;
                 cell.id = static_cast<std::int64_t>(some.tags[e]);

@@ -100,8 +100,8 @@ std::vector<Index> add_cells(RawMesh& raw, vtkUnstructuredGrid& grid, std::int64
             if (known == 0) known = is_volume(vtk_type) ? 1 : -1;
             if (known > 0)
                 fail(std::string(" is a ") + vtkCellTypes::GetClassNameFromTypeId(vtk_type) + " (type " +
-                     std::to_string(vtk_type) +
-                     "); only tetrahedra of 4 or 10 nodes, wedges, hexahedra and voxels are read");
+                     std::to_string(vtk_type) + "); only " + cell_names("and", [](const CellInfo&) { return true; }) +
+                     ", and voxels, are read");
         }
         vtkIdType count = 0;
         const vtkIdType* points = nullptr;

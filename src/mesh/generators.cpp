@@ -73,7 +73,7 @@ Mesh make_block(const Vec3& origin, const Vec3& size, const std::array<int, 3>& 
             if (!focus.axes[static_cast<std::size_t>(d)]) continue;
             std::vector<double>& line = lines[static_cast<std::size_t>(d)];
             line = focused_lines(origin(d), end(d), focus.point(d), focus);
-            if (element == CellType::tet10) line = with_middles(line);
+            if (!cell_info(element).edges.empty()) line = with_middles(line);
             n[static_cast<std::size_t>(d)] = static_cast<int>(line.size()) - 1;
         }
     const auto along = [&](std::size_t d, int step) {

@@ -1,15 +1,24 @@
 #include "mesh/structured_grid.hpp"
 
+#include "osculate/mesh/generators.hpp"
+
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <stdexcept>
+#include <string>
 
 namespace osculate::mesh {
 namespace {
 
-using Hex = std::array<Index, 8>;
+/// A hexahedron of the grid, which has a node midway between any two of its corners if its elements need them.
+struct GridCell {
+    std::array<int, 3> at;
+    std::array<Index, 8> corners;
+};
 
 /// Mixes the bits of a number: neighbouring columns get unrelated values, the same on every machine.   [splitmix64]
 std::uint64_t mix(std::uint64_t value) {
@@ -32,16 +41,34 @@ std::vector<char> columns_to_cut(std::size_t columns, CellType element, BlockPat
         for (std::size_t n = 0; n < columns / 2; ++n) cut[order[n]] = 1;
         return cut;
     }
+    if (pattern != BlockPattern::quad && !has_patterns(element))
+        throw std::invalid_argument("elements of type " + std::string(cell_info(element).name) +
+                                    " go with pattern quad only");
     return std::vector<char>(columns, pattern == BlockPattern::triangle || element == CellType::wedge6);
 }
 
+/// Appends an element by its corners in the hexahedron. Node numbers are linear in i, j, k, so that the number half way
+/// between two is that of the node midway.
+void append_element(const GridCell& cell, std::span<const int> corners, const CellInfo& info,
+                    std::vector<Index>& connectivity) {
+    const auto node = [&](int corner) { return cell.corners[corners[corner]]; };
+    for (int corner = 0; corner < info.corners(); ++corner) connectivity.push_back(node(corner));
+    for (const auto& [a, b] : info.edges) connectivity.push_back(node(a) + (node(b) - node(a)) / 2);
+}
+
+void append_hex(const GridCell& cell, const CellInfo& info, std::vector<Index>& connectivity) {
+    constexpr std::array<int, 8> all{0, 1, 2, 3, 4, 5, 6, 7};
+    append_element(cell, all, info, connectivity);
+}
+
 /// The column's diagonals alternate like a chequerboard, so that no direction is preferred.
-void append_wedges(const Hex& hex, bool even, std::vector<Index>& connectivity) {
+void append_wedges(const GridCell& cell, const CellInfo& info, std::vector<Index>& connectivity) {
     constexpr std::array<std::array<int, 3>, 4> triangles{{{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}}};
+    const bool even = (cell.at[0] + cell.at[1]) % 2 == 0;
     for (int t = 0; t < 2; ++t) {
         const auto& [a, b, c] = triangles[(even ? 0 : 2) + t];
         // VTK's wedge: triangle (0, 1, 2) looks out of the element, here down.
-        connectivity.insert(connectivity.end(), {hex[a], hex[c], hex[b], hex[a + 4], hex[c + 4], hex[b + 4]});
+        append_element(cell, std::array{a, c, b, a + 4, c + 4, b + 4}, info, connectivity);
     }
 }
 
@@ -70,25 +97,31 @@ std::array<std::array<int, 4>, 6> tets_of_hex(const std::array<int, 3>& cell) {
     return tets;
 }
 
-void append_tets(const Hex& hex, const std::array<int, 3>& cell, std::vector<Index>& connectivity) {
-    for (const auto& tet : tets_of_hex(cell))
-        for (const int corner : tet) connectivity.push_back(hex[corner]);
+void append_tets(const GridCell& cell, const CellInfo& info, std::vector<Index>& connectivity) {
+    for (const auto& tet : tets_of_hex(cell.at)) append_element(cell, tet, info, connectivity);
 }
 
-/// Ten-node tetrahedra in two by two by two cells of the grid: its nodes between the corners are the midside nodes.
-void append_tet10s(Index first, Index row, Index layer, const std::array<int, 3>& cell,
-                   std::vector<Index>& connectivity) {
-    constexpr std::array<std::array<int, 3>, 8> at{
-        {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}}};
-    constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-    for (const auto& tet : tets_of_hex(cell)) {
-        const auto between = [&](int a, int b) {
-            const auto &p = at[tet[a]], &q = at[tet[b]];
-            return first + (p[0] + q[0]) / 2 + (p[1] + q[1]) / 2 * row + (p[2] + q[2]) / 2 * layer;
-        };
-        for (int corner = 0; corner < 4; ++corner) connectivity.push_back(between(corner, corner));
-        for (const auto& [a, b] : edges) connectivity.push_back(between(a, b));
-    }
+/// How elements of a type fill a hexahedron of the grid.
+struct Filling {
+    CellType type;
+    void (*append)(const GridCell& cell, const CellInfo& info, std::vector<Index>& connectivity);
+};
+
+constexpr Filling fillings[] = {{CellType::tet4, append_tets},
+                                {CellType::wedge6, append_wedges},
+                                {CellType::hex8, append_hex},
+                                {CellType::tet10, append_tets}};
+
+const Filling& filling_of(CellType type) {
+    const auto* const found = std::ranges::find(fillings, type, &Filling::type);
+    if (found == std::end(fillings))
+        throw std::invalid_argument("no generator makes " + std::string(cell_info(type).name) + " elements");
+    return *found;
+}
+
+/// Hexahedra of the grid along each edge of an element.
+int steps_of(CellType element) {
+    return cell_info(element).edges.empty() ? 1 : 2;
 }
 
 /// Names the exterior facets after the side of the grid that all their nodes lie on.
@@ -112,17 +145,27 @@ void name_sides(const StructuredGrid& grid, Mesh& mesh) {
 
 } // namespace
 
+std::span<const CellType> generated_types() {
+    static constexpr auto types = [] {
+        std::array<CellType, std::size(fillings)> all{};
+        std::ranges::transform(fillings, all.begin(), &Filling::type);
+        return all;
+    }();
+    return types;
+}
+
 std::array<int, 3> grid_divisions(std::array<int, 3> elements, CellType element) {
-    if (element != CellType::tet10) return elements;
+    const int steps = steps_of(element);
     for (int& n : elements) {
-        if (n > std::numeric_limits<int>::max() / 2)
+        if (n > std::numeric_limits<int>::max() / steps)
             throw std::invalid_argument("too many divisions: the mesh cannot be numbered");
-        n *= 2;
+        n *= steps;
     }
     return elements;
 }
 
 Mesh mesh_grid(const StructuredGrid& grid, CellType element, BlockPattern pattern) {
+    const Filling &whole = filling_of(element), &wedges = filling_of(CellType::wedge6);
     const auto& n = grid.divisions;
     if (std::min({n[0], n[1], n[2]}) < 1) throw std::invalid_argument("divisions must be 1 or more");
     // In floating point the product cannot overflow; six tetrahedra of four nodes each are the largest array.
@@ -136,27 +179,24 @@ Mesh mesh_grid(const StructuredGrid& grid, CellType element, BlockPattern patter
         for (int j = 0; j <= n[1]; ++j)
             for (int i = 0; i <= n[0]; ++i) mesh.nodes.push_back(grid.position(i, j, k));
 
-    ElementBlock hexes{CellType::hex8, {}}, wedges{CellType::wedge6, {}}, tets{CellType::tet4, {}},
-        tet10s{CellType::tet10, {}};
-    const int step = element == CellType::tet10 ? 2 : 1;
+    std::vector<ElementBlock> blocks;
+    for (const CellInfo& info : cell_types()) blocks.push_back({info.type, {}});
+    const int step = steps_of(element);
     const Index row = n[0] + 1, layer = row * (n[1] + 1);
     for (int k = 0; k < n[2]; k += step)
         for (int j = 0; j < n[1]; j += step)
             for (int i = 0; i < n[0]; i += step) {
-                const Index o = i + j * row + k * layer;
-                const Hex hex{o,         o + 1,         o + 1 + row,         o + row,
-                              o + layer, o + 1 + layer, o + 1 + row + layer, o + row + layer};
-                if (element == CellType::tet10)
-                    append_tet10s(o, row, layer, {i / 2, j / 2, k / 2}, tet10s.connectivity);
-                else if (element == CellType::tet4)
-                    append_tets(hex, {i, j, k}, tets.connectivity);
-                else if (cut[static_cast<std::size_t>(j) * n[0] + i])
-                    append_wedges(hex, (i + j) % 2 == 0, wedges.connectivity);
-                else
-                    hexes.connectivity.insert(hexes.connectivity.end(), hex.begin(), hex.end());
+                const Index o = i + j * row + k * layer, di = step, dj = step * row, dk = step * layer;
+                const GridCell cell{
+                    {i / step, j / step, k / step},
+                    {o, o + di, o + di + dj, o + dj, o + dk, o + di + dk, o + di + dj + dk, o + dj + dk}};
+                const bool into_wedges = cut[static_cast<std::size_t>(j) * n[0] + i] != 0;
+                const Filling& filling = into_wedges ? wedges : whole;
+                ElementBlock& block = *std::ranges::find(blocks, filling.type, &ElementBlock::type);
+                filling.append(cell, cell_info(filling.type), block.connectivity);
             }
-    for (ElementBlock* block : {&hexes, &wedges, &tets, &tet10s})
-        if (block->size() > 0) mesh.blocks.push_back(std::move(*block));
+    for (ElementBlock& block : blocks)
+        if (block.size() > 0) mesh.blocks.push_back(std::move(block));
     name_sides(grid, mesh);
     return mesh;
 }

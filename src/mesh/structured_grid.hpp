@@ -9,7 +9,7 @@
 namespace osculate::mesh {
 
 struct StructuredGrid {
-    std::array<int, 3> divisions{1, 1, 1};       ///< between nodes: one per element, two per tet10
+    std::array<int, 3> divisions{1, 1, 1};       ///< between nodes: one per element, two where edges have midside nodes
     std::array<const char*, 6> sides{};          ///< surface names of i_min, i_max, j_min, j_max, k_min, k_max
     std::function<Vec3(int, int, int)> position; ///< of node (i, j, k), metres; (i, j, k) is right-handed
 };
@@ -19,7 +19,8 @@ struct StructuredGrid {
 
 /// Mesh of the grid with every side as a named surface; nodes numbered with i fastest, k slowest.
 /// Columns along k are cut into wedges as the pattern says. Throws std::invalid_argument for an empty grid, for one with
-/// more nodes than Index can number, and for a pattern that the element does not have.
+/// more nodes than Index can number, for an element that is none of generated_types(), and for a pattern that it does
+/// not have.
 [[nodiscard]] Mesh mesh_grid(const StructuredGrid& grid, CellType element, BlockPattern pattern);
 
 } // namespace osculate::mesh

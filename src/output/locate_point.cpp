@@ -14,18 +14,6 @@ namespace {
 
 constexpr double at_the_edge = 1e-9; ///< natural coordinates
 
-/// Whether shape functions at xi say that xi lies within the element: for a hexahedron by its coordinates.
-template <class E> bool is_inside(const Vec3& xi) {
-    if constexpr (std::is_same_v<E, fe::Hex8>)
-        return xi.cwiseAbs().maxCoeff() <= 1 + at_the_edge;
-    else if constexpr (std::is_same_v<E, fe::Wedge6>)
-        return xi.head<2>().minCoeff() >= -at_the_edge && xi.head<2>().sum() <= 1 + at_the_edge &&
-               E::node_positions().row(2).minCoeff() - at_the_edge <= xi.z() &&
-               xi.z() <= E::node_positions().row(2).maxCoeff() + at_the_edge;
-    else
-        return xi.minCoeff() >= -at_the_edge && xi.sum() <= 1 + at_the_edge;
-}
-
 /// Natural coordinates of X by Newton's method from the element's middle; none where they lie outside.
 template <class E>
 std::optional<Vec3> natural_coordinates(const Eigen::Matrix<double, 3, E::nodes>& nodes, const Vec3& X) {
@@ -42,7 +30,7 @@ std::optional<Vec3> natural_coordinates(const Eigen::Matrix<double, 3, E::nodes>
         xi += step;
         if (step.norm() < 1e-14) break;
     }
-    return is_inside<E>(xi) ? std::optional(xi) : std::nullopt;
+    return E::contains(xi, at_the_edge) ? std::optional(xi) : std::nullopt;
 }
 
 } // namespace

@@ -20,9 +20,8 @@ public:
             fault(path, "pattern hybrid with element hex8", "another element");
         else if (m.pattern == BlockPattern::hybrid && m.divisions[0] * m.divisions[1] < 2)
             fault(path, "at least two columns of elements for pattern hybrid", "one");
-        else if (m.pattern != BlockPattern::quad &&
-                 (m.element == mesh::CellType::tet4 || m.element == mesh::CellType::tet10))
-            fault(path, "pattern quad with tetrahedra", "another pattern");
+        else if (m.pattern != BlockPattern::quad && !mesh::has_patterns(m.element))
+            fault(path, "pattern quad with element " + std::string(mesh::cell_info(m.element).name), "another pattern");
     }
     void check_mesh(const std::string& /*body*/, const HalfTubeMesh& /*m*/) {}
     void check_mesh(const std::string& body, const ContactorMesh& m) {

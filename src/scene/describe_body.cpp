@@ -1,3 +1,5 @@
+#include "osculate/core/error.hpp"
+#include "osculate/mesh/generators.hpp"
 #include "osculate/mesh/repair.hpp"
 #include "scene/describe_parts.hpp"
 
@@ -10,13 +12,26 @@ namespace {
 constexpr Range divisions_range{.low = 1, .high = 10000};
 constexpr double most_elements = 2e7;
 
-/// Names of the cell types, by their numbers.
-const Words cell_words = [] {
-    Words words(mesh::cell_types().size());
-    for (const mesh::CellInfo& info : mesh::cell_types()) words[static_cast<std::size_t>(info.type)] = info.name;
-    return words;
-}();
-constexpr const char* element_meaning = "Element shape. Contact takes no surfaces of tet10.";
+/// Element shape of a generated mesh, by the names of the types that generators make.
+void describe_element(Visitor& v, mesh::CellType& element) {
+    const auto types = mesh::generated_types();
+    static const Words words = [&] {
+        Words names;
+        for (const mesh::CellType type : types) names.emplace_back(mesh::cell_info(type).name);
+        return names;
+    }();
+    static const std::string meaning =
+        "Element shape. Contact takes no surfaces of " +
+        mesh::cell_names("and",
+                         [&](const mesh::CellInfo& info) {
+                             return !info.edges.empty() && std::ranges::count(types, info.type) > 0;
+                         }) +
+        ".";
+    auto index = static_cast<std::size_t>(std::ranges::find(types, element) - types.begin());
+    require(index < types.size(), "a generated mesh of a type that no generator makes");
+    v.word({.name = "element", .meaning = meaning.c_str()}, words, index);
+    element = types[index];
+}
 
 void describe(Visitor& v, mesh::Focus& f) {
     v.vector({.name = "point",
@@ -68,7 +83,7 @@ void describe(Visitor& v, BlockMesh& m) {
                  .range = divisions_range,
                  .largest_product = most_elements},
                 m.divisions);
-    word(v, {.name = "element", .meaning = element_meaning}, cell_words, m.element);
+    describe_element(v, m.element);
     static const Words patterns{"quad", "triangle", "hybrid"};
     word(v,
          {.name = "pattern",
@@ -99,7 +114,7 @@ void describe(Visitor& v, HalfTubeMesh& m) {
                  .range = divisions_range,
                  .largest_product = most_elements},
                 m.divisions);
-    word(v, {.name = "element", .meaning = element_meaning}, cell_words, m.element);
+    describe_element(v, m.element);
 }
 
 void describe(Visitor& v, ContactorMesh& m) {
@@ -123,7 +138,7 @@ void describe(Visitor& v, ContactorMesh& m) {
                  .range = divisions_range,
                  .largest_product = most_elements},
                 m.divisions);
-    word(v, {.name = "element", .meaning = element_meaning}, cell_words, m.element);
+    describe_element(v, m.element);
 }
 
 void describe_portion(Visitor& v, Portion& portion) {

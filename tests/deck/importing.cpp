@@ -186,7 +186,7 @@ TEST_F(Importing, LosesContactOfQuadraticTetrahedra) {
                              "*NSET, NSET=Lid\n1,2,3\n*NSET, NSET=Floor\n14\n"
                              "*SURFACE, NAME=Under\n1,S1\n*SURFACE, NAME=Over\n2,S1\n";
     const ImportedScene imported = import("*STEP\n*STATIC\n*END STEP\n", DeckUnits::mm, mesh + properties);
-    EXPECT_THAT(imported.lost, ElementsAre(HasSubstr("faces of C3D10 cannot be in contact")));
+    EXPECT_THAT(imported.lost, ElementsAre(HasSubstr("faces of C3D10 cannot be in contact: mesh the body with C3D4")));
     EXPECT_TRUE(scene::parse_scene(imported.text, "imported.yaml").contact.empty());
 }
 

@@ -2,7 +2,7 @@
 /// Every element and formulation pair under test, small meshes of them, and a dense assembly.
 
 #include "osculate/fe/element_block.hpp"
-#include "osculate/fe/reference_element.hpp"
+#include "osculate/fe/with_element.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -41,15 +41,15 @@ inline std::string case_name(const ::testing::TestParamInfo<ElementCase>& parame
     return parameter.param.name;
 }
 
+inline std::vector<mesh::CellType> all_types() {
+    std::vector<mesh::CellType> types;
+    for (const mesh::CellInfo& info : mesh::cell_types()) types.push_back(info.type);
+    return types;
+}
+
 /// Natural coordinates of the nodes, 3 x n.
 inline Eigen::Matrix3Xd reference_positions(mesh::CellType type) {
-    switch (type) {
-    case mesh::CellType::tet4: return Tet4::node_positions();
-    case mesh::CellType::wedge6: return Wedge6::node_positions();
-    case mesh::CellType::tet10: return Tet10::node_positions();
-    case mesh::CellType::hex8: break;
-    }
-    return Hex8::node_positions();
+    return with_element(type, []<class E>() { return Eigen::Matrix3Xd(E::node_positions()); });
 }
 
 /// Reproducible numbers in [-1, 1] without symmetry.
@@ -58,17 +58,18 @@ inline double scatter(int k) {
     return 2 * (s - std::floor(s)) - 1;
 }
 
-/// Puts the midside nodes of a tet10 midway between its corners.
-inline void straighten(Eigen::Matrix3Xd& X) {
-    for (int m = 0; m < 6; ++m) X.col(4 + m) = (X.col(Tet10::edges[m][0]) + X.col(Tet10::edges[m][1])) / 2;
+/// Puts every midside node midway between its corners.
+inline void straighten(mesh::CellType type, Eigen::Matrix3Xd& X) {
+    int middle = mesh::cell_info(type).corners();
+    for (const auto& [a, b] : mesh::cell_info(type).edges) X.col(middle++) = (X.col(a) + X.col(b)) / 2;
 }
 
-/// The reference element with every node moved by up to `amount` in every direction, then tilted and stretched; the
-/// edges of a tet10 stay straight.
+/// The reference element with every node moved by up to `amount` in every direction, then tilted and stretched; edges
+/// stay straight.
 inline Eigen::Matrix3Xd distorted_element(mesh::CellType type, double amount = 0.15) {
     Eigen::Matrix3Xd X = reference_positions(type);
     for (int k = 0; k < X.size(); ++k) X(k % 3, k / 3) += amount * scatter(k);
-    if (type == mesh::CellType::tet10) straighten(X);
+    straighten(type, X);
     Mat3 A;
     A << 1.1, 0.2, 0.0, -0.1, 0.9, 0.1, 0.05, 0.0, 1.3;
     return A * X;
@@ -76,18 +77,22 @@ inline Eigen::Matrix3Xd distorted_element(mesh::CellType type, double amount = 0
 
 /// Faces of a cell, outward, in the order of mesh::SurfaceFace.
 inline std::vector<std::vector<Index>> cell_faces(mesh::CellType type) {
-    switch (type) {
-    case mesh::CellType::tet4: return {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}};
-    case mesh::CellType::wedge6: return {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
-    case mesh::CellType::tet10: // corners, then the nodes midway
-        return {{0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {2, 0, 3, 6, 7, 9}, {0, 2, 1, 6, 5, 4}};
-    case mesh::CellType::hex8: break;
+    std::vector<std::vector<Index>> faces;
+    for (const mesh::LocalFace& face : mesh::cell_info(type).faces) {
+        const auto all = mesh::cell_info(type).face_nodes(face);
+        faces.emplace_back(all.nodes.begin(), all.nodes.begin() + all.count);
     }
-    return {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
+    return faces;
 }
 
-/// A box of cells and its dense stiffness. A tet10 spans two boxes in every direction; its divisions are even.
+/// Boxes that a cell spans in every direction, so that its midside nodes are nodes of the grid.
+inline int boxes_per_cell(mesh::CellType type) {
+    return mesh::cell_info(type).edges.empty() ? 1 : 2;
+}
+
+/// A box of cells and its dense stiffness. The divisions are multiples of boxes_per_cell.
 struct Grid {
+    mesh::CellType type;
     std::array<int, 3> divisions;
     Eigen::Matrix3Xd X;
     std::vector<std::vector<int>> cells;
@@ -96,23 +101,24 @@ struct Grid {
     /// Node (i, j, k) of the grid starts at (i, j, k) divided by the divisions and goes where `place` sends it.
     Grid(const ElementCase& element, const material::LinearElastic& material, std::array<int, 3> n,
          const std::function<Vec3(const Vec3&)>& place)
-        : divisions(n), X(3, (n[0] + 1) * (n[1] + 1) * (n[2] + 1)), kernel(element.kernel(material)) {
+        : type(element.type), divisions(n), X(3, (n[0] + 1) * (n[1] + 1) * (n[2] + 1)),
+          kernel(element.kernel(material)) {
         for (int k = 0; k <= n[2]; ++k)
             for (int j = 0; j <= n[1]; ++j)
                 for (int i = 0; i <= n[0]; ++i)
                     X.col(node(i, j, k)) = place(Vec3(double(i) / n[0], double(j) / n[1], double(k) / n[2]));
-        const int step = element.type == mesh::CellType::tet10 ? 2 : 1;
+        const int step = boxes_per_cell(type);
         for (int k = 0; k < n[2]; k += step)
             for (int j = 0; j < n[1]; j += step)
-                for (int i = 0; i < n[0]; i += step) add_cells(element.type, corners(i, j, k, step));
+                for (int i = 0; i < n[0]; i += step) add_cells(corners(i, j, k, step));
     }
 
-    /// Puts every midside node of a tet10 midway between its corners.
+    /// Puts every midside node midway between its corners.
     void straighten_edges() {
         for (const auto& cell : cells) {
             Eigen::Matrix3Xd straight = gather(cell, X);
-            straighten(straight);
-            for (std::size_t a = 4; a < 10; ++a) X.col(cell[a]) = straight.col(int(a));
+            straighten(type, straight);
+            for (std::size_t a = 0; a < cell.size(); ++a) X.col(cell[a]) = straight.col(int(a));
         }
     }
 
@@ -160,17 +166,16 @@ struct Grid {
     }
 
 private:
-    void add_cells(mesh::CellType type, const std::vector<int>& c) {
+    void add_cells(const std::vector<int>& c) {
         std::vector<std::vector<std::size_t>> pieces{{0, 1, 2, 3, 4, 5, 6, 7}};
-        if (type == mesh::CellType::wedge6) pieces = {{0, 2, 1, 4, 6, 5}, {0, 3, 2, 4, 7, 6}};
-        if (type == mesh::CellType::tet4 || type == mesh::CellType::tet10)
+        if (mesh::cell_info(type).faces.size() == 5) pieces = {{0, 2, 1, 4, 6, 5}, {0, 3, 2, 4, 7, 6}};
+        if (mesh::cell_info(type).faces.size() == 4)
             pieces = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
         for (const auto& piece : pieces) {
             std::vector<int> cell;
             for (const std::size_t i : piece) cell.push_back(c[i]);
-            if (type == mesh::CellType::tet10) { // node numbers are linear in (i, j, k)
-                for (const auto& edge : Tet10::edges) cell.push_back((cell[edge[0]] + cell[edge[1]]) / 2);
-            }
+            for (const auto& [a, b] : mesh::cell_info(type).edges) // node numbers are linear in (i, j, k)
+                cell.push_back((cell[std::size_t(a)] + cell[std::size_t(b)]) / 2);
             cells.push_back(cell);
         }
     }

@@ -45,7 +45,7 @@ protected:
     [[nodiscard]] Eigen::Matrix3Xd displacements(double amount = 0.1) const {
         Eigen::Matrix3Xd u(3, n);
         for (int k = 0; k < u.size(); ++k) u(k % 3, k / 3) = amount * scatter(100 + k);
-        if (element.type == mesh::CellType::tet10) u.rightCols<6>() /= 2; // it is half as large between nodes
+        u.rightCols(static_cast<int>(mesh::cell_info(element.type).edges.size())) /= 2; // half as large between nodes
         return u;
     }
     /// The deformed element, turned by an angle.

@@ -53,7 +53,7 @@ TEST_P(Mass, LumpedIsPositiveAtEveryNode) {
 }
 
 TEST_P(Mass, LumpedByRowsKeepsTheCentreOfMass) {
-    if (GetParam().type == mesh::CellType::tet10) GTEST_SKIP() << "row sums are negative at its corners";
+    if (!mesh::cell_info(GetParam().type).edges.empty()) GTEST_SKIP() << "row sums are negative at its corners";
     const Eigen::Matrix3Xd X = distorted_element(GetParam().type);
     const Vec3 moment = X * mass(X).rowwise().sum();
     EXPECT_LT((X * lumped(X) - moment).norm(), round_off * moment.norm());

@@ -1,88 +1,113 @@
-#include "osculate/fe/reference_element.hpp"
+#include "element_cases.hpp"
+#include "exact_rule.hpp"
 
-#include <gtest/gtest.h>
-
-namespace osculate::fe {
+namespace osculate::fe::testing {
 namespace {
 
-constexpr double round_off = 1e-14;   // polynomials of degree three at most, arguments of order one
-constexpr double difference = 1e-9;   // central differences of step 1e-5: error about step^2 times a third derivative
-const Vec3 inside(0.21, 0.34, -0.17); // a point without symmetry, inside every reference element but the tetrahedron
+constexpr double round_off = 1e-14;    // polynomials of degree three at most, arguments of order one
+constexpr double exact_digits = 1e-13; // those of the exact rule's points
+constexpr double difference = 1e-9;    // central differences of step 1e-5: error about step^2 times a third derivative
+const Vec3 inside(0.21, 0.34, -0.17);  // a point without symmetry, inside every reference element but the tetrahedron
 
-template <class E> class ReferenceElementTest : public ::testing::Test {};
+class EveryReferenceElement : public ::testing::TestWithParam<mesh::CellType> {};
 
-template <class E> struct Facts;
-template <> struct Facts<Hex8> { static constexpr double volume = 8; };
-template <> struct Facts<Tet4> { static constexpr double volume = 1.0 / 6; };
-template <> struct Facts<Wedge6> { static constexpr double volume = 1; };
-template <> struct Facts<Tet10> { static constexpr double volume = 1.0 / 6; };
-
-using Elements = ::testing::Types<Hex8, Tet4, Wedge6, Tet10>;
-TYPED_TEST_SUITE(ReferenceElementTest, Elements);
-
-TYPED_TEST(ReferenceElementTest, ShapeFunctionsAreOneAtTheirNodeAndZeroAtTheOthers) {
-    const auto positions = TypeParam::node_positions();
-    for (int b = 0; b < TypeParam::nodes; ++b) {
-        const auto expected = TypeParam::Shape::Unit(b);
-        EXPECT_LT((TypeParam::shape(positions.col(b)) - expected).norm(), round_off) << "node " << b;
-    }
+TEST_P(EveryReferenceElement, HasTheNodesOfItsCellType) {
+    with_element(GetParam(), [&]<class E>() { EXPECT_EQ(E::nodes, mesh::nodes_per_cell(GetParam())); });
 }
 
-TYPED_TEST(ReferenceElementTest, ShapeFunctionsReproduceOneAndTheCoordinates) {
-    const auto N = TypeParam::shape(inside);
-    EXPECT_NEAR(N.sum(), 1, round_off);
-    EXPECT_LT((TypeParam::node_positions() * N - inside).norm(), round_off);
+TEST_P(EveryReferenceElement, HasItsMidsideNodesHalfWayAlongItsEdges) {
+    const Eigen::Matrix3Xd c = reference_positions(GetParam());
+    int middle = mesh::cell_info(GetParam()).corners();
+    for (const auto& [a, b] : mesh::cell_info(GetParam()).edges)
+        EXPECT_LT((c.col(middle++) - (c.col(a) + c.col(b)) / 2).norm(), round_off);
 }
 
-TYPED_TEST(ReferenceElementTest, GradientIsTheDerivativeOfTheShapeFunctions) {
+TEST_P(EveryReferenceElement, ContainsItsNodesAndWhatIsBetweenThemAlone) {
+    constexpr double tolerance = 1e-9, little = 1e-8;
+    with_element(GetParam(), [&]<class E>() {
+        const typename E::Positions c = E::node_positions();
+        const Vec3 middle = c.rowwise().mean();
+        EXPECT_TRUE(E::contains(middle, 0));
+        for (int a = 0; a < E::nodes; ++a) {
+            EXPECT_TRUE(E::contains(c.col(a), tolerance));
+            EXPECT_FALSE(E::contains(c.col(a) + little * (c.col(a) - middle), tolerance));
+        }
+        for (const mesh::LocalFace& face : mesh::cell_info(GetParam()).faces) { // through the middle of every face
+            Vec3 centre = Vec3::Zero();
+            for (int i = 0; i < face.count; ++i) centre += c.col(face.nodes[std::size_t(i)]) / face.count;
+            EXPECT_TRUE(E::contains(centre, tolerance));
+            EXPECT_FALSE(E::contains(centre + little * (centre - middle), tolerance / 10));
+        }
+        for (const QuadraturePoint& point : E::quadrature()) EXPECT_TRUE(E::contains(point.xi, 0));
+        for (const QuadraturePoint& point : E::mass_quadrature()) EXPECT_TRUE(E::contains(point.xi, 0));
+    });
+}
+
+TEST_P(EveryReferenceElement, ShapeFunctionsAreOneAtTheirNodeAndZeroAtTheOthers) {
+    with_element(GetParam(), [&]<class E>() {
+        const auto positions = E::node_positions();
+        for (int b = 0; b < E::nodes; ++b) {
+            const auto expected = E::Shape::Unit(b);
+            EXPECT_LT((E::shape(positions.col(b)) - expected).norm(), round_off) << "node " << b;
+        }
+    });
+}
+
+TEST_P(EveryReferenceElement, ShapeFunctionsReproduceOneAndTheCoordinates) {
+    with_element(GetParam(), [&]<class E>() {
+        const auto N = E::shape(inside);
+        EXPECT_NEAR(N.sum(), 1, round_off);
+        EXPECT_LT((E::node_positions() * N - inside).norm(), round_off);
+    });
+}
+
+TEST_P(EveryReferenceElement, GradientIsTheDerivativeOfTheShapeFunctions) {
     constexpr double step = 1e-5;
-    const auto gradient = TypeParam::gradient(inside);
-    for (int j = 0; j < 3; ++j) {
-        const Vec3 h = step * Vec3::Unit(j);
-        const auto slope = ((TypeParam::shape(inside + h) - TypeParam::shape(inside - h)) / (2 * step)).eval();
-        EXPECT_LT((gradient.col(j) - slope).norm(), difference) << "direction " << j;
-    }
+    with_element(GetParam(), [&]<class E>() {
+        const auto gradient = E::gradient(inside);
+        for (int j = 0; j < 3; ++j) {
+            const Vec3 h = step * Vec3::Unit(j);
+            const auto slope = ((E::shape(inside + h) - E::shape(inside - h)) / (2 * step)).eval();
+            EXPECT_LT((gradient.col(j) - slope).norm(), difference) << "direction " << j;
+        }
+    });
 }
 
-TYPED_TEST(ReferenceElementTest, QuadratureIntegratesOneAndEveryShapeFunction) {
-    double volume = 0;
-    typename TypeParam::Shape integral = TypeParam::Shape::Zero();
-    for (const auto& [xi, weight] : TypeParam::quadrature()) {
-        volume += weight;
-        integral += weight * TypeParam::shape(xi);
-    }
-    EXPECT_NEAR(volume, Facts<TypeParam>::volume, round_off);
-    typename TypeParam::Shape share = TypeParam::Shape::Constant(Facts<TypeParam>::volume / TypeParam::nodes);
-    if constexpr (TypeParam::nodes == 10) share << Vector::Constant(4, -1.0 / 120), Vector::Constant(6, 1.0 / 30);
-    EXPECT_LT((integral - share).norm(), round_off);
+TEST_P(EveryReferenceElement, QuadratureIntegratesOneAndEveryShapeFunction) {
+    with_element(GetParam(), [&]<class E>() {
+        typename E::Shape exact = E::Shape::Zero(), found = E::Shape::Zero();
+        for (const auto& [xi, weight] : exact_rule<E>()) exact += weight * E::shape(xi);
+        for (const auto& [xi, weight] : E::quadrature()) found += weight * E::shape(xi);
+        EXPECT_LT((found - exact).norm(), exact_digits);
+    });
 }
 
-TYPED_TEST(ReferenceElementTest, MassQuadratureIsExactForProductsOfTwoShapeFunctions) {
-    // against a tensor product of Gauss points, exact far beyond the degree needed
-    constexpr std::array<double, 5> x{-0.906179845938664, -0.538469310105683, 0, 0.538469310105683, 0.906179845938664};
-    constexpr std::array<double, 5> w{0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
-                                      0.236926885056189};
-    constexpr int n = TypeParam::nodes;
-    Matrix exact = Matrix::Zero(n, n), found = Matrix::Zero(n, n);
-    for (std::size_t i = 0; i < 5; ++i)
-        for (std::size_t j = 0; j < 5; ++j)
-            for (std::size_t k = 0; k < 5; ++k) {
-                Vec3 xi(x[i], x[j], x[k]);
-                double weight = w[i] * w[j] * w[k];
-                if (n != 8) { // collapse the cube onto the triangle, and on to the tetrahedron
-                    const double u = (1 + x[i]) / 2, v = (1 + x[j]) / 2, t = (1 + x[k]) / 2;
-                    xi = n == 6 ? Vec3(u, v * (1 - u), x[k]) : Vec3(u, v * (1 - u), t * (1 - u) * (1 - v));
-                    weight *= n == 6 ? (1 - u) / 4 : (1 - u) * (1 - u) * (1 - v) / 8;
-                }
-                const Vector N = TypeParam::shape(xi);
-                exact += weight * N * N.transpose();
-            }
-    for (const auto& [xi, weight] : TypeParam::mass_quadrature()) {
-        EXPECT_GT(weight, 0);
-        const Vector N = TypeParam::shape(xi);
-        found += weight * N * N.transpose();
-    }
-    EXPECT_LT((found - exact).norm(), 10 * round_off); // the Gauss points above have fifteen digits
+TEST_P(EveryReferenceElement, MassQuadratureIsExactForProductsOfTwoShapeFunctions) {
+    with_element(GetParam(), [&]<class E>() {
+        Matrix exact = Matrix::Zero(E::nodes, E::nodes), found = exact;
+        for (const auto& [xi, weight] : exact_rule<E>()) exact += weight * E::shape(xi) * E::shape(xi).transpose();
+        for (const auto& [xi, weight] : E::mass_quadrature()) {
+            EXPECT_GT(weight, 0);
+            found += weight * E::shape(xi) * E::shape(xi).transpose();
+        }
+        EXPECT_LT((found - exact).norm(), exact_digits);
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, EveryReferenceElement, ::testing::ValuesIn(all_types()),
+                         [](const auto& type) { return std::string(mesh::cell_info(type.param).name); });
+
+/// Volumes of a cube of edge 2, a wedge and a tetrahedron.
+TEST(ReferenceElements, HaveTheVolumesOfTheirQuadrature) {
+    const auto volume = [](const auto& rule) {
+        double sum = 0;
+        for (const auto& [xi, weight] : rule) sum += weight;
+        return sum;
+    };
+    EXPECT_NEAR(volume(Hex8::quadrature()), 8, round_off);
+    EXPECT_NEAR(volume(Wedge6::quadrature()), 1, round_off);
+    EXPECT_NEAR(volume(Tet4::quadrature()), 1.0 / 6, round_off);
+    EXPECT_NEAR(volume(Tet10::quadrature()), 1.0 / 6, round_off);
 }
 
 TEST(Wedge6, QuadratureIsExactToSecondDegreeInTheTriangleAndThirdAlongTheLine) {
@@ -101,4 +126,4 @@ TEST(Wedge6, QuadratureIsExactToSecondDegreeInTheTriangleAndThirdAlongTheLine) {
 }
 
 } // namespace
-} // namespace osculate::fe
+} // namespace osculate::fe::testing

@@ -142,6 +142,11 @@ TEST_F(GmshFiles, WhatGmshWouldTakeForAScriptOrForTooMuchIsRefusedBefore) {
                 HasSubstr("ends without a section $Elements"));
 }
 
+TEST_F(GmshFiles, ElementsOfOtherShapesAreNamed) {
+    EXPECT_THAT(error_of(write("pyramid.msh", changed(msh2, "8 6 2 3 2 5 8 19 6 7 20", "8 7 2 3 2 5 6 7 8 19"))),
+                AllOf(HasSubstr("element 8 is a Pyramid 5"), HasSubstr("only hex8, wedge6, tet4")));
+}
+
 TEST_F(GmshFiles, SectionsThatNothingIsTakenFromAreLeftOut) {
     const std::string other = "$NodeData\n1\n\"not even a whole one\"\n$EndNodeData\n";
     const Mesh mesh = mesh_of(write("more.msh", changed(msh2, "$Nodes\n", other + "$Nodes\n") + other));

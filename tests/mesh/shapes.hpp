@@ -20,8 +20,9 @@ struct Shape {
 };
 
 inline std::vector<std::pair<std::string, CellType>> element_types() {
-    return {
-        {"hex8", CellType::hex8}, {"wedge6", CellType::wedge6}, {"tet4", CellType::tet4}, {"tet10", CellType::tet10}};
+    std::vector<std::pair<std::string, CellType>> types;
+    for (const CellType type : generated_types()) types.emplace_back(cell_info(type).name, type);
+    return types;
 }
 
 /// Half-tube's cross-section is a ring of trapezia.
@@ -76,9 +77,16 @@ inline SurfaceIntegrals integrate(const std::vector<Facet>& facets, const std::v
     return sum;
 }
 
-/// The facets of a tet10 are half as long as the element.
+/// Facets that end at midside nodes are half as long as the element.
 inline int facets_per_edge(CellType type) {
-    return type == CellType::tet10 ? 2 : 1;
+    return cell_info(type).edges.empty() ? 1 : 2;
+}
+
+/// Whether every node of the grid on a side is a corner of facets there, so that a curved side is that of hex8; faces of
+/// eight nodes leave out the node in their middle.
+inline bool has_facets_of_hex8(CellType type) {
+    const CellInfo& info = cell_info(type);
+    return info.edges.empty() || std::ranges::all_of(info.faces, [](const LocalFace& face) { return face.count == 3; });
 }
 
 inline std::vector<Shape> all_shapes() {
@@ -104,9 +112,10 @@ inline std::vector<Shape> all_shapes() {
     for (const auto& [name, type] : element_types()) {
         const int m = facets_per_edge(type);
         add("block " + name, 6, block, type);
+        add("single cell " + name, 1, cell, type);
+        if (!has_facets_of_hex8(type)) continue;
         add("half_tube " + name, half_tube_volume(3, 1, 12, 13 * m), tube, type);
         add("contactor " + name, contactor_volume(3, 4, 4, 1, 12 * m), contactor, type);
-        add("single cell " + name, 1, cell, type);
     }
     add("block triangle", 6, block, CellType::hex8, BlockPattern::triangle);
     add("block hybrid", 6, block, CellType::hex8, BlockPattern::hybrid);

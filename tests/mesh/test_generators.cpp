@@ -260,6 +260,7 @@ TEST(Generators, RefuseImpossibleArguments) {
     EXPECT_THROW(block({1, 1, 1}, {2, 2, 2}, CellType::tet4, BlockPattern::hybrid), std::invalid_argument);
     EXPECT_THROW(block({1, 1, 1}, {2, 2, 2}, CellType::wedge6, BlockPattern::hybrid), std::invalid_argument);
     EXPECT_THROW(block({1, 1, 1}, {2, 2, 2}, CellType::tet10, BlockPattern::hybrid), std::invalid_argument);
+    EXPECT_THROW(block({1, 1, 1}, {2, 2, 2}, CellType::tet4, BlockPattern::triangle), std::invalid_argument);
     EXPECT_THROW(block({1, 1, 1}, {0, 2, 2}, CellType::tet10, BlockPattern::quad), std::invalid_argument);
     EXPECT_THROW(block({1, 1, 1}, {std::numeric_limits<int>::max(), 2, 2}, CellType::tet10, BlockPattern::quad),
                  std::invalid_argument);
@@ -271,6 +272,14 @@ TEST(Generators, RefuseImpossibleArguments) {
     EXPECT_THROW((void)make_half_tube(3, -1, 12, {4, 4, 4}), std::invalid_argument);
     EXPECT_THROW((void)make_contactor(3, 6.5, 4, 1, 0, {4, 4, 4}), std::invalid_argument);
     EXPECT_THROW((void)make_contactor(3, 4, 4, 0.5, 0, {4, 4, 4}), std::invalid_argument) << "top cuts the underside";
+}
+
+TEST(Block, IsOfTheElementsAskedFor) {
+    for (const CellType type : generated_types()) {
+        const Mesh mesh = make_block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, type);
+        ASSERT_EQ(mesh.blocks.size(), 1u);
+        EXPECT_EQ(mesh.blocks[0].type, type);
+    }
 }
 
 TEST(Place, ScalesRotatesThenTranslates) {

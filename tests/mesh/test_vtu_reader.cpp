@@ -5,12 +5,16 @@
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
+#include <set>
 #include <stdexcept>
+#include <vtkCell.h>
 #include <vtkCellType.h>
+#include <vtkGenericCell.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -23,16 +27,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::Shape;
-
-int vtk_type(CellType type) {
-    switch (type) {
-    case CellType::tet4: return VTK_TETRA;
-    case CellType::wedge6: return VTK_WEDGE;
-    case CellType::hex8: return VTK_HEXAHEDRON;
-    case CellType::tet10: return VTK_QUADRATIC_TETRA;
-    }
-    return VTK_EMPTY_CELL;
-}
 
 void add_cell(vtkUnstructuredGrid* grid, int type, const std::vector<vtkIdType>& points) {
     grid->InsertNextCell(type, static_cast<vtkIdType>(points.size()), points.data());
@@ -49,7 +43,7 @@ vtkNew<vtkUnstructuredGrid> make_grid(const Mesh& mesh) {
         const int stride = nodes_per_cell(block.type);
         for (Index e = 0; e < block.size(); ++e) {
             const auto first = block.connectivity.begin() + e * stride;
-            add_cell(grid, vtk_type(block.type), {first, first + stride});
+            add_cell(grid, cell_info(block.type).vtk, {first, first + stride});
         }
     }
     return grid;
@@ -63,6 +57,29 @@ void add_array(vtkUnstructuredGrid* grid, const char* name, const std::vector<In
     array->Fill(0);
     for (const Index node : nodes) array->SetComponent(node, 0, value);
     grid->GetPointData()->AddArray(array);
+}
+
+TEST(CellTypes, AreVtksWithTheSameFacesAndEdges) {
+    for (const CellInfo& info : cell_types()) {
+        SCOPED_TRACE(info.name);
+        const vtkSmartPointer<vtkCell> cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(info.vtk));
+        ASSERT_EQ(cell->GetNumberOfPoints(), info.nodes);
+        for (int i = 0; i < info.nodes; ++i) cell->GetPointIds()->SetId(i, i);
+        const auto points_of = [](vtkCell* part) {
+            std::set<vtkIdType> points;
+            for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i) points.insert(part->GetPointId(i));
+            return points;
+        };
+        std::set<std::set<vtkIdType>> faces, vtks_faces, vtks_edges;
+        for (const LocalFace& face : info.faces) {
+            const auto local = info.face_nodes(face);
+            faces.emplace(local.nodes.begin(), local.nodes.begin() + local.count);
+        }
+        for (int f = 0; f < cell->GetNumberOfFaces(); ++f) vtks_faces.insert(points_of(cell->GetFace(f)));
+        EXPECT_EQ(faces, vtks_faces);
+        for (int e = 0; e < cell->GetNumberOfEdges(); ++e) vtks_edges.insert(points_of(cell->GetEdge(e)));
+        for (const auto& [a, b] : info.edges) EXPECT_TRUE(vtks_edges.contains({a, b, info.midway(a, b)}));
+    }
 }
 
 class VtuReader : public ::testing::Test {
@@ -188,7 +205,8 @@ TEST_F(VtuReader, NamesAVolumeCellItCannotRead) {
     auto grid = make_grid(make_block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}));
     add_cell(grid, VTK_PYRAMID, {0, 1, 2, 3, 7});
     write(grid);
-    EXPECT_THAT(error(), AllOf(HasSubstr("cell 1"), HasSubstr("vtkPyramid"), HasSubstr("type 14")));
+    EXPECT_THAT(error(), AllOf(HasSubstr("cell 1"), HasSubstr("vtkPyramid"), HasSubstr("type 14"),
+                               HasSubstr("only hex8, wedge6, tet4")));
 }
 
 TEST_F(VtuReader, SaysWhyAFileIsBad) {

@@ -242,6 +242,10 @@ TEST(BadScene, ShapesThatCannotBe) {
     expect_override_fault(
         {"bodies.cap.mesh.block", "{pattern: hybrid, element: tet4}"},
         "--set: bodies.cap.mesh.block.pattern: expected pattern hybrid with element hex8, found another element");
+    for (const std::string element : {"tet4", "tet10"})
+        expect_override_fault({"bodies.cap.mesh.block", "{pattern: triangle, element: " + element + "}"},
+                              "--set: bodies.cap.mesh.block.pattern: expected pattern quad with element " + element +
+                                  ", found another pattern");
     for (const std::string body : {"ball", "cylinder"})
         expect_override_fault({"bodies.cap.mesh", "{" + body + ": {divisions: [7, 4, 4]}}"},
                               "--set: bodies.cap.mesh." + body +

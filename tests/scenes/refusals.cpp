@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "there"}},
         Refusal{"contact_of_tet10",
                 {"32:12: contact.joint.master.set: expected facets of hex8, wedge6 or tet4 elements (tet10 carries "
-                 "loads, but no contact: mesh this body with `element: hex8` or `tet4`, `cad: {quadratic: false}` or "
+                 "loads, but no contact: mesh this body with `element: tet4`, `cad: {quadratic: false}` or "
                  "C3D4), found 128 of its 128 facets are parts of faces of tet10 elements of body 'base'"}},
         Refusal{"bad_yaml", {"7:82: expected valid YAML, found illegal flow end"}},
         Refusal{"unsupported_body",

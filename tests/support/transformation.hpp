@@ -144,24 +144,15 @@ inline void turn_scene(scene::Scene& scene, const Mat3& turn) {
     }
 }
 
-/// Local nodes of an element, seen in a mirror.
-inline std::vector<std::size_t> mirrored(mesh::CellType type) {
-    switch (type) {
-    case mesh::CellType::tet4: return {0, 2, 1, 3};
-    case mesh::CellType::wedge6: return {0, 2, 1, 3, 5, 4};
-    case mesh::CellType::hex8: return {0, 3, 2, 1, 4, 7, 6, 5};
-    case mesh::CellType::tet10: return {0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
-    }
-    throw std::logic_error("unknown cell");
-}
-
 inline void mirror_orientation(mesh::Mesh& m) {
     for (mesh::ElementBlock& block : m.blocks) {
-        const auto order = mirrored(block.type);
-        for (std::size_t e = 0; e < block.connectivity.size(); e += order.size()) {
+        const mesh::CellInfo& info = mesh::cell_info(block.type);
+        const auto n = static_cast<std::size_t>(info.nodes);
+        for (std::size_t e = 0; e < block.connectivity.size(); e += n) {
             const std::vector<Index> old(block.connectivity.begin() + static_cast<long>(e),
-                                         block.connectivity.begin() + static_cast<long>(e + order.size()));
-            for (std::size_t k = 0; k < order.size(); ++k) block.connectivity[e + k] = old[order[k]];
+                                         block.connectivity.begin() + static_cast<long>(e + n));
+            for (std::size_t k = 0; k < n; ++k)
+                block.connectivity[e + k] = old[static_cast<std::size_t>(info.mirrored[k])];
         }
     }
     for (auto& [name, facets] : m.surfaces)

@@ -14,14 +14,15 @@ struct QuadraturePoint {
     double weight; ///< the weights of a rule sum to the volume of the reference element
 };
 
-/// What a volume element must provide: its degree, counts, natural coordinates of its nodes, N(xi), dN/dxi and two
-/// quadrature rules: one for stiffness and stress, and one for mass, body forces and volume, exact for N_a N_b on an
-/// affine element.
+/// What a volume element must provide: its degree, counts, natural coordinates of its nodes, whether it contains xi
+/// (give or take a tolerance in natural coordinates), N(xi), dN/dxi and two quadrature rules: one for stiffness and
+/// stress, and one for mass, body forces and volume, exact for N_a N_b on an affine element.
 template <class E>
-concept ReferenceElement = requires(const Vec3& xi) {
+concept ReferenceElement = requires(const Vec3& xi, double tolerance) {
     requires E::nodes >
     0 && E::degree > 0 && E::points > 0 && E::mass_points > 0;
     { E::node_positions() } -> std::same_as<Eigen::Matrix<double, 3, E::nodes>>;
+    { E::contains(xi, tolerance) } -> std::same_as<bool>;
     { E::shape(xi) } -> std::same_as<Eigen::Matrix<double, E::nodes, 1>>;
     { E::gradient(xi) } -> std::same_as<Eigen::Matrix<double, E::nodes, 3>>;
     { E::quadrature() } -> std::same_as<std::array<QuadraturePoint, E::points>>;
@@ -45,6 +46,8 @@ struct Hex8 {
         c.row(2) << -1, -1, -1, -1, 1, 1, 1, 1;
         return c;
     }
+
+    static bool contains(const Vec3& xi, double tolerance) { return xi.cwiseAbs().maxCoeff() <= 1 + tolerance; }
 
     /// N_a = (1 + xi_a xi) (1 + eta_a eta) (1 + zeta_a zeta) / 8
     static Shape shape(const Vec3& xi) {
@@ -91,6 +94,10 @@ struct Tet4 {
         return c;
     }
 
+    static bool contains(const Vec3& xi, double tolerance) {
+        return xi.minCoeff() >= -tolerance && xi.sum() <= 1 + tolerance;
+    }
+
     static Shape shape(const Vec3& xi) { return {1 - xi.sum(), xi[0], xi[1], xi[2]}; }
 
     static Gradient gradient(const Vec3&) {
@@ -127,6 +134,8 @@ struct Tet10 {
         for (int m = 0; m < 6; ++m) c.col(4 + m) = (c.col(edges[m][0]) + c.col(edges[m][1])) / 2;
         return c;
     }
+
+    static bool contains(const Vec3& xi, double tolerance) { return Tet4::contains(xi, tolerance); }
 
     /// N_a = L_a (2 L_a - 1) at a corner, 4 L_a L_b midway between a and b
     static Shape shape(const Vec3& xi) {
@@ -187,6 +196,11 @@ struct Wedge6 {
         c.row(1) << 0, 1, 0, 0, 1, 0;
         c.row(2) << -1, -1, -1, 1, 1, 1;
         return c;
+    }
+
+    static bool contains(const Vec3& xi, double tolerance) {
+        return xi.head<2>().minCoeff() >= -tolerance && xi.head<2>().sum() <= 1 + tolerance &&
+               std::abs(xi[2]) <= 1 + tolerance;
     }
 
     static Shape shape(const Vec3& xi) {

@@ -4,8 +4,10 @@
 
 #include "osculate/mesh/face_shape.hpp"
 
+#include <algorithm>
 #include <array>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace osculate::mesh {
@@ -199,6 +201,31 @@ template <class F> [[nodiscard]] constexpr const CellInfo* find_cell_type(F&& f)
     for (const CellInfo& info : cell_types())
         if (f(info)) return &info;
     return nullptr;
+}
+
+/// The type with the same corners and faces and no midside nodes.
+[[nodiscard]] constexpr const CellInfo& without_midside_nodes(const CellInfo& info) {
+    return *find_cell_type([&](const CellInfo& other) {
+        return other.nodes == info.corners() && other.faces.size() == info.faces.size();
+    });
+}
+static_assert(std::ranges::all_of(cell_types(),
+                                  [](const CellInfo& info) { return without_midside_nodes(info).edges.empty(); }),
+              "advice names the type without midside nodes");
+
+/// Names of the types for which f is true, in a sentence, "hex8, wedge6 or tet4"; empty if there is none.
+/// @param last  the word before the last name
+template <class F> [[nodiscard]] std::string cell_names(std::string_view last, F&& f) {
+    std::string names;
+    const CellInfo* open = nullptr; // not yet written: only what follows tells whether it is the last
+    const auto write = [&](std::string_view joint) { names.append(names.empty() ? "" : joint).append(open->name); };
+    for (const CellInfo& info : cell_types()) {
+        if (!f(info)) continue;
+        if (open != nullptr) write(", ");
+        open = &info;
+    }
+    if (open != nullptr) write(" " + std::string(last) + " ");
+    return names;
 }
 
 } // namespace osculate::mesh

@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes of simple bodies from a few numbers. The midside nodes of tet10 are on the true surface, also if it is
+/// Meshes of simple bodies from a few numbers. Midside nodes are on the true surface, also if it is
 /// curved. Every generator throws std::invalid_argument for impossible arguments.
 
 #include "osculate/mesh/block_pattern.hpp"
@@ -7,7 +7,12 @@
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/mesh/portion.hpp"
 
+#include <span>
+
 namespace osculate::mesh {
+
+/// Types of elements that make_block, make_half_tube and make_contactor make; they refuse all others.
+[[nodiscard]] std::span<const CellType> generated_types();
 
 /// Axis-parallel block. Surfaces x_min x_max y_min y_max z_min z_max.
 ///

@@ -6,7 +6,6 @@
 #include "app/plan/gaps.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <stdexcept>
 
 namespace osculate::app {
@@ -31,14 +30,6 @@ QuadraticFacets quadratic_facets(const Draft& draft, const model::Set& set) {
     return found;
 }
 
-/// Names of the types without midside nodes: "hex8, wedge6 or tet4".
-std::string linear_types() {
-    std::vector<std::string_view> names;
-    for (const mesh::CellInfo& info : mesh::cell_types())
-        if (info.edges.empty()) names.push_back(info.name);
-    return fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
-}
-
 } // namespace
 
 void add_pairs(Draft& draft) {
@@ -55,11 +46,13 @@ void add_pairs(Draft& draft) {
             } else if (const QuadraticFacets quadratic = quadratic_facets(draft, *group); quadratic.count > 0) {
                 // Their corners carry nothing or less under a uniform pressure, but contact has one law and one share of
                 // the area per node: linear shares on them would press with 0.8 to 1.7 times the pressure.
+                const mesh::CellInfo& linear = mesh::without_midside_nodes(*quadratic.of);
                 draft.faults.push_back(fault(
                     key + part,
                     fmt::format("facets of {} elements ({} carries loads, but no contact: mesh this body with "
-                                "`element: hex8` or `tet4`, `cad: {{quadratic: false}}` or C3D4)",
-                                linear_types(), quadratic.of->name),
+                                "`element: {}`, `cad: {{quadratic: false}}` or {})",
+                                mesh::cell_names("or", [](const mesh::CellInfo& info) { return info.edges.empty(); }),
+                                quadratic.of->name, linear.name, linear.deck[0]),
                     fmt::format("{} of its {} facets are parts of faces of {} elements of body '{}'", quadratic.count,
                                 group->facets.size(), quadratic.of->name, draft.plan.model.bodies[group->body].name)));
                 broken = true;

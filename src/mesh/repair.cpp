@@ -279,8 +279,27 @@ void check_dangling(RawMesh& raw, bool wanted, MeshFaults& all) {
     dropped.finish(all, raw, std::string("dangling ") + raw.point_word + "s left out");
 }
 
+/// Neighbours that do not match: the body would be open between them. Returns whether all do.
+bool check_neighbours(const RawMesh& raw, const NonManifold& found, MeshFaults& all) {
+    Kind mixed(all, raw, " (mesh the body with elements of one kind, all with midside nodes or all without)"),
+        apart(all, raw, " (repair: [coincident_nodes] mends this where they are at the same place)");
+    for (const auto& [a, b] : found.unlike_faces) {
+        const RawCell &one = raw.cells[a.cell], &other = raw.cells[b.cell];
+        const std::string both = name_of(raw, one) + " and " + name_of(raw, other) + " share a face";
+        const bool in_one = !cell_info(one.type).edges.empty(), in_other = !cell_info(other.type).edges.empty();
+        if (in_one != in_other)
+            mixed.add(both + ", which has midside nodes in " + name_of(raw, in_one ? one : other) + " alone");
+        else
+            apart.add(both + ", but not its midside nodes");
+    }
+    mixed.finish("such faces");
+    apart.finish("such faces");
+    return found.unlike_faces.empty();
+}
+
 void check_manifold(RawMesh& raw, bool wanted, MeshFaults& all) {
     const NonManifold found = find_non_manifold(raw);
+    if (!check_neighbours(raw, found, all)) return; // what follows is of little use on an open body
     Kind kind(all, raw, mends(Repair::non_manifold)), lasting(all, raw, "");
     for (const FaceOfCell& face : found.crowded_faces)
         lasting.add(name_of(raw, raw.cells[face.cell]) + " has a face that two other " + raw.cell_word +

@@ -20,11 +20,13 @@ Index slot_of(const RawCell& cell, Index number, Index node) {
     return number * stride + static_cast<Index>(std::find(cell.begin(), cell.end(), node) - cell.begin());
 }
 
-/// Node of a quadratic cell midway between two corners.
+/// Node of a cell midway between two corners; -1 if it has none.
 Index middle(const RawCell& cell, Index a, Index b) {
     const CellInfo& info = cell_info(cell.type);
+    if (info.edges.empty()) return -1;
     const auto place = [&](Index n) { return static_cast<int>(std::find(cell.begin(), cell.end(), n) - cell.begin()); };
-    return cell.nodes[static_cast<std::size_t>(info.midway(place(a), place(b)))];
+    const int local = info.midway(place(a), place(b));
+    return local < 0 ? -1 : cell.nodes[static_cast<std::size_t>(local)];
 }
 
 std::array<Index, 4> key_of(const RawFace& face) {
@@ -66,14 +68,18 @@ NonManifold find_non_manifold(const RawMesh& raw) {
             const Index a = face.cell, b = faces[other].cell;
             for (const Index node : face.corners)
                 if (node >= 0) join(a, b, node);
-            if (cell_info(raw.cells[a].type).edges.empty() || cell_info(raw.cells[b].type).edges.empty()) continue;
+            bool alike = true;
             const LocalFace& local = cell_info(raw.cells[a].type).faces[static_cast<std::size_t>(face.face)];
             for (int i = 0; i < local.count; ++i) {
                 const Index p = raw.cells[a].nodes[local.nodes[i]],
                             q = raw.cells[a].nodes[local.nodes[(i + 1) % local.count]],
                             mid = middle(raw.cells[a], p, q);
-                if (middle(raw.cells[b], p, q) == mid) join(a, b, mid);
+                if (middle(raw.cells[b], p, q) != mid)
+                    alike = false;
+                else if (mid >= 0)
+                    join(a, b, mid);
             }
+            if (!alike) found.unlike_faces.emplace_back(face, faces[other]);
         }
     }
     std::sort(edges.begin(), edges.end());

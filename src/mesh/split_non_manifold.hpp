@@ -1,5 +1,6 @@
 #pragma once
-/// Where the surface of a body is no surface: edges of more than two facets, points at which it touches itself.
+/// Where the surface of a body is no surface: faces inside that do not match, edges of more than two facets, points at
+/// which it touches itself.
 
 #include "mesh/face_cells.hpp"
 
@@ -8,10 +9,12 @@
 namespace osculate::mesh {
 
 struct NonManifold {
-    std::vector<FaceOfCell> crowded_faces;              ///< the third and later cells at a face
+    std::vector<FaceOfCell> crowded_faces; ///< the third and later cells at a face
+    /// Neighbours with a face of the same corners, but not of the same midside nodes.
+    std::vector<std::pair<FaceOfCell, FaceOfCell>> unlike_faces;
     std::vector<std::pair<Index, Index>> crowded_edges; ///< of more than two exterior faces
     std::vector<Index> touching_points;                 ///< whose cells are not all connected by faces at the point
-    std::vector<Index> group;                           ///< per cell and node (10 c + i): cells connected at that node
+    std::vector<Index> group; ///< per cell and its place for a node: cells connected at that node
 };
 
 [[nodiscard]] NonManifold find_non_manifold(const RawMesh& raw);

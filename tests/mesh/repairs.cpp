@@ -124,6 +124,38 @@ TEST_F(MeshRepairs, BodiesThatTouchAtAnEdgeOrANodeArePulledApart) {
     EXPECT_EQ(make_mesh(at_node, repairing({Repair::non_manifold})).node_count(), 8);
 }
 
+/// A straight ten-node tetrahedron on the triangle of nodes 1, 2, 3 and the nodes of another below it, which may share
+/// the nodes 5, 6, 7 in the middle of the triangle's edges or have 15, 16, 17 at their places, 17 moved by a length.
+std::string two_tetrahedra(const std::string& below, double moved = 0) {
+    return "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,.5,0,0\n6,.5,.5,0\n7,0,.5,0\n8,0,0,.5\n9,.5,0,.5\n"
+           "10,0,.5,.5\n11,0,0,-1\n12,0,0,-.5\n13,.5,0,-.5\n14,0,.5,-.5\n15,.5,0,0\n16,.5,.5,0\n17," +
+           std::to_string(moved) + ",.5,0\n*ELEMENT, TYPE=C3D10\n40, 1,2,3,4,5,6,7,8,9,10\n" + below;
+}
+
+TEST_F(MeshRepairs, FacesWithMidsideNodesInOneElementAloneAreNamed) {
+    const MeshFileOptions mended = repairing({Repair::dangling_nodes, Repair::non_manifold});
+    EXPECT_THAT(
+        reasons(raw(two_tetrahedra("*ELEMENT, TYPE=C3D4\n50, 1,3,2,11\n")), mended),
+        AllOf(HasSubstr("deck: element 40 and element 50 share a face, which has midside nodes in element 40 "
+                        "alone (mesh the body with elements of one kind, all with midside nodes or all without)"),
+              Not(HasSubstr("surface"))));
+    EXPECT_THAT(reasons(raw("*NODE\n21,5,5,5\n" + two_tetrahedra("*ELEMENT, TYPE=C3D4\n30, 1,3,2,11\n")), mended),
+                HasSubstr("share a face, which has midside nodes in element 40 alone"));
+    // an edge between them is no face
+    EXPECT_THAT(reasons(raw(two_tetrahedra("51, 1,3,2,11,7,6,5,12,14,13\n")), mended), IsEmpty());
+}
+
+TEST_F(MeshRepairs, FacesWithOtherMidsideNodesInEachElementAreNamed) {
+    const std::string below = "50, 1,3,2,11,17,16,15,12,14,13\n";
+    const char* const what = "deck: element 40 and element 50 share a face, but not its midside nodes (repair: "
+                             "[coincident_nodes] mends this where they are at the same place)";
+    EXPECT_THAT(reasons(raw(two_tetrahedra(below))), HasSubstr(what));
+    const Mesh merged = make_mesh(raw(two_tetrahedra(below)), repairing({Repair::coincident_nodes}));
+    EXPECT_EQ(merged.node_count(), 14);
+    EXPECT_EQ(exterior_facets(merged).size(), 6u * 4);
+    EXPECT_THAT(reasons(raw(two_tetrahedra(below, 0.01)), repairing({Repair::coincident_nodes})), HasSubstr(what));
+}
+
 TEST_F(MeshRepairs, CellsThatOverlapCannotBeMended) {
     const RawMesh three = raw(cubes(1) +
                               "21,2,0,0\n22,2,1,0\n23,2,1,1\n24,2,0,1\n31,3,0,0\n32,3,1,0\n33,3,1,1\n34,3,0,1\n"

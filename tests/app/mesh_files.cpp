@@ -78,6 +78,26 @@ TEST_F(MeshFilesOfScenes, ShortFormsStandForAPathAndForAllRepairs) {
     }
 }
 
+TEST_F(MeshFilesOfScenes, ElementsFoldedBetweenTheirNodesAreFaultsOfTheScene) {
+    // its Jacobian is positive at every node, and not at a quadrature point
+    std::ofstream("folded.inp")
+        << "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,.5,-.3,0\n6,.1,.5,0\n7,0,.8,0\n8,0,0,.5\n"
+           "9,.5,0,.5\n10,0,.5,.5\n*ELEMENT, TYPE=C3D10\n8, 1,2,3,4,5,6,7,8,9,10\n";
+    const scene::Scene scene = scene_with("  b: {mesh: {file: folded.inp, translate: [0, 0, 100]}, "
+                                          "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n");
+    Timings timings;
+    try {
+        (void)compile(scene, build_meshes(scene), 1, timings);
+        FAIL() << "no kernel can compute it";
+    } catch (const SceneError& error) {
+        ASSERT_EQ(error.faults().size(), 1u);
+        EXPECT_EQ(error.faults()[0].key, "bodies.b.mesh");
+        EXPECT_THAT(
+            error.what(),
+            HasSubstr("tet10 element 0 of block 0: Jacobian is not positive at [0.00875388, 0.659574, 100.138] m"));
+    }
+}
+
 TEST_F(MeshFilesOfScenes, GeometryIsMeshedAsTheSceneSays) {
     if (!OSCULATE_HAS_GMSH) GTEST_SKIP() << "built without Gmsh's library";
     std::filesystem::copy_file(support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep", "part.brep");

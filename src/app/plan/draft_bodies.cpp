@@ -4,9 +4,12 @@
 #include "app/overloaded.hpp"
 #include "app/plan/draft.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/fe/bad_jacobians.hpp"
 #include "osculate/mesh/quality.hpp"
 #include "osculate/mesh/select.hpp"
 #include "osculate/scene/nearest.hpp"
+
+#include <fmt/format.h>
 
 namespace osculate::app {
 
@@ -55,6 +58,30 @@ mesh::Region select(Draft& draft, const std::string& set_name, const std::string
     return {};
 }
 
+/// Elements that are folded over where only their shape functions show it.
+std::vector<std::string> folded_elements(const mesh::Mesh& m, const Vec3& origin) {
+    constexpr std::size_t listed = 20;
+    std::vector<std::string> faults;
+    std::size_t count = 0;
+    for (std::size_t b = 0; b < m.blocks.size(); ++b)
+        for (const fe::BadJacobian& bad : fe::bad_jacobians(m.blocks[b], m.nodes)) {
+            if (++count > listed) continue;
+            const Vec3 place = bad.place + origin;
+            faults.push_back(
+                fmt::format("{} element {} of block {}: Jacobian is not positive at [{:.6g}, {:.6g}, {:.6g}] m",
+                            mesh::cell_info(m.blocks[b].type).name, bad.element, b, place[0], place[1], place[2]));
+        }
+    if (count > listed) faults.push_back(fmt::format("and {} more", count - listed));
+    return faults;
+}
+
+void check_mesh(Draft& draft, const std::string& body, const mesh::Mesh& m) {
+    std::vector<std::string> faults = mesh::faults(m);
+    if (faults.empty()) faults = folded_elements(m, draft.plan.model.origin);
+    for (const std::string& what : faults)
+        draft.faults.push_back(fault("bodies." + body + ".mesh", "a sound mesh", what));
+}
+
 } // namespace
 
 Index Draft::body_index(const std::string& name) const {
@@ -83,8 +110,7 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
     move_origin(draft, meshes);
     for (std::size_t b = 0; b < meshes.size(); ++b) {
         const auto& [name, spec] = draft.scene.bodies[b];
-        for (const std::string& what : mesh::faults(meshes[b]))
-            draft.faults.push_back(fault("bodies." + name + ".mesh", "a sound mesh", what));
+        check_mesh(draft, name, meshes[b]);
         model::Body body;
         body.name = name;
         body.density = scene::elastic(spec.material).density;

@@ -147,6 +147,22 @@ TEST(MasterFilter, RemovesWavesOfTwoFacetsAndKeepsLongOnes) {
     EXPECT_NEAR(left(10), 1 - std::pow(std::sin(std::numbers::pi * 0.5 / 10), 4), 1e-12);
 }
 
+TEST(MasterFilter, ActsFromVerticesInsideTheBoundaryAlone) {
+    const Surface surface = testing::block_top(mesh::BlockPattern::quad);
+    const MasterFilter filter = strongest(surface);
+    const auto at = [&](const Vec3& where) {
+        Index v = 0;
+        while ((surface.x[v] - where).norm() > 1e-9) ++v;
+        return v;
+    };
+    const Index edge =
+        at({2.5, 0, 0}); // L is -1/8 from the vertex behind it, -1/16 from those beside that; m is half theirs
+    double own = 0;
+    for (const MasterFilter::Entry& e : filter.row(edge))
+        if (e.vertex == edge) own = e.share;
+    EXPECT_NEAR(own, 1 - (1.0 / 64 + 2.0 / 256) * 2, 1e-12);
+}
+
 TEST(MasterFilter, MovesPositionsByItsMatrix) {
     const Surface surface = testing::half_tube();
     MasterFilter filter = strongest(surface);

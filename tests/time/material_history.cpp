@@ -137,6 +137,14 @@ TEST_F(PulledBar, SoftensOnTheWayOutAndComesBackAlongTheStiffnessThatIsLeft) {
     }
 }
 
+TEST_F(PulledBar, GivesEveryElementItsOwnHistory) {
+    // at rest an element remembers what it remembered
+    model::MaterialHistory history(16);
+    for (std::size_t e = 0; e < history.size(); ++e) history[e] = 0.1 * static_cast<double>(e + 1);
+    const Field at_rest(small.model.X.size());
+    EXPECT_EQ(small.model.nonlinear->history(small.model.X, {at_rest, at_rest, history}, 1), history);
+}
+
 TEST_F(PulledBar, CarriesOneNumberAnElementInItsState) {
     const support::Record record = run();
     const model::MaterialHistory& carried = record.steps.back().state.material;

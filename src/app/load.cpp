@@ -9,9 +9,7 @@ LoadedScene load(const std::string& path, const std::vector<scene::Override>& ov
                  Timings& timings) {
     LoadedScene loaded{scene::read_scene(path, overrides), {}, path};
     try {
-        std::vector<std::string> notes;
-        loaded.plan = compile(loaded.scene, build_meshes(loaded.scene, &notes), threads, timings);
-        loaded.plan.mesh_notes = std::move(notes);
+        loaded.plan = compile(loaded.scene, threads, timings);
     } catch (const SceneError& error) {
         throw SceneError(scene::locate(error.faults(), path, overrides));
     }

@@ -19,7 +19,8 @@ constexpr double least_cover = 1e-3;
 ///     gap, normal  those of slave node j over the smooth surface through the filtered vertices, see MasterFilter
 ///     weights      W_ji of the unfiltered vertices: a force lambda on j loads vertex i with -W_ji lambda
 /// The forces are not the work conjugates of the gaps, hence the name. Where a slave node is beyond the master's boundary,
-/// but some of its facets are above the master, its gap is that over the closest facet, extended.
+/// but some of its facets are above the master, its gap is that over the closest facet, extended. Where it is above the
+/// master, but none of its facets is (a vertex on a vertex), it loads the closest facet: W_ji = N_i at the closest point.
 ///
 /// ContactPoint::nodes: the vertices that carry force, ascending; the other slave nodes of j's facets, on which the
 /// weights depend, numbered from surface.vertex_count() on; then the vertices on which only the gap depends.
@@ -30,7 +31,7 @@ public:
         : surface_(surface), weights_(surface, facets, S, least_cover), nodes_(make_node_discretisation(surface)),
           extended_(make_facets_surface(surface)), in_plane_(std::move(in_plane)), raw_(S.size()),
           carriers_(S.size(), 0), moving_(S.size(), 0), normal_length_(S.size(), 1.0), outside_(S.size(), 0),
-          below_(facets.size(), -1) {
+          alone_(S.size(), 0), below_(facets.size(), -1) {
         std::vector<std::vector<Vec3>> corners;
         for (Index f = 0; f < weights_.facet_count(); ++f) corners.push_back(weights_.X(f));
         if (!corners.empty()) filter_ = MasterFilter(surface, vertices, with_images(mesh_metric(corners)));
@@ -78,9 +79,12 @@ public:
                 outside_[j] = !raw_[j].found && !raw_[j].behind && share > 0;
                 if (outside_[j])
                     extended_->evaluate(at.slaves[j], onto_facet(tracking.hits[j]), smooth.vertices, raw_[j]);
+                alone_[j] = raw_[j].found && !(share > 0);
                 points[j].facet = raw_[j].facet;
                 points[j].side = raw_[j].side;
-                gather(j, share, at.vertices, points[j]);
+                ContactPoint below;
+                if (alone_[j]) extended_->evaluate(at.slaves[j], onto_facet(tracking.hits[j]), at.vertices, below);
+                gather(j, share, at.vertices, below, points[j]);
             }
         });
         return changed;
@@ -134,11 +138,12 @@ public:
         }
         // nothing else moves the weights: these are the first columns
         variation.dweights.setZero(carriers_[j], 3 + 3 * moving_[j]);
+        variation.dpressing.resize(0, 0);
+        if (alone_[j]) return vary_alone(j, at, hit, column, variation.dweights);
         weights_.add_variations(
             j, point.weights, [&](Index v) { return column.carrier(v); },
             [&](Index slave) { return slave == j ? 0 : column.of_slave(surface_.vertex_count() + slave); },
             [&](Index v) { return 3 + 3 * column.carrier(v); }, variation.dweights);
-        variation.dpressing.resize(0, 0);
     }
 
     [[nodiscard]] Index carriers(Index j, const ContactPoint&) const override { return carriers_[j]; }
@@ -166,6 +171,11 @@ public:
 
     [[nodiscard]] bool overlooks() const override { return true; }
 
+    [[nodiscard]] double loaded_area(Index j, double tributary) const override {
+        const double share = weights_.share(j);
+        return share > 0 ? share : tributary;
+    }
+
 private:
     /// Finds nodes in ContactPoint::nodes, whose first two parts ascend: carriers, then slaves.
     class Columns {
@@ -189,7 +199,7 @@ private:
         : Discretisation(other), surface_(other.surface_), weights_(other.weights_), nodes_(other.nodes_->clone()),
           extended_(other.extended_), filter_(other.filter_), in_plane_(other.in_plane_), filtered_(other.filtered_),
           filtered_tails_(other.filtered_tails_), raw_(other.raw_), carriers_(other.carriers_), moving_(other.moving_),
-          normal_length_(other.normal_length_), outside_(other.outside_), below_(other.below_) {
+          normal_length_(other.normal_length_), outside_(other.outside_), alone_(other.alone_), below_(other.below_) {
         for (ContactPoint& point : raw_) point.trace.reset(); // refers to the other's placement
     }
 
@@ -228,14 +238,31 @@ private:
         return {at.master, at.search, at.slaves, filtered_, at.slave_tails, filtered_tails_};
     }
 
-    void gather(Index j, double share, const std::vector<Vec3>& x, ContactPoint& point) {
+    /// Variations of the weights of a slave node that no facet of its own carries.
+    void vary_alone(Index j, const PairPositions& at, const FacetHit& hit, const Columns& column,
+                    Matrix& dweights) const {
+        ContactPoint below;
+        ContactVariation own;
+        extended_->evaluate(at.slaves[j], onto_facet(hit), at.vertices, below, &own);
+        for (std::size_t i = 0; i < below.nodes.size(); ++i) {
+            const auto row = static_cast<Index>(i);
+            const Index carrier = column.carrier(below.nodes[i]);
+            dweights.row(carrier).head<3>() = own.dweights.row(row).head<3>();
+            for (std::size_t k = 0; k < below.nodes.size(); ++k)
+                dweights.row(carrier).segment<3>(3 + 3 * column.carrier(below.nodes[k])) =
+                    own.dweights.row(row).segment<3>(3 + 3 * static_cast<Index>(k));
+        }
+    }
+
+    /// @param below  the closest facet, for a slave node that no facet of its own carries
+    void gather(Index j, double share, const std::vector<Vec3>& x, const ContactPoint& below, ContactPoint& point) {
         const ContactPoint& raw = raw_[j];
         point.found = false;
         point.behind = raw.behind;
         point.gap = raw.gap;
         point.nodes.clear();
         carriers_[j] = moving_[j] = 0;
-        if (!raw.found || !(share > 0)) return;
+        if (!raw.found || (!below.found && !(share > 0))) return;
         point.normal = raw.normal;
         if (!in_plane_.empty()) {
             const Vec3 in_plane = in_plane_[j] * raw.normal;
@@ -246,11 +273,15 @@ private:
         point.found = true;
 
         std::vector<Index> carrying, slaves, sensing;
-        weights_.add_vertices(j, carrying);
+        if (below.found)
+            carrying = below.nodes;
+        else
+            weights_.add_vertices(j, carrying);
         sort_unique(carrying);
-        for (const auto& [f, c] : weights_.around(j))
-            for (const Index k : weights_.corners(f))
-                if (k != j) slaves.push_back(surface_.vertex_count() + k);
+        if (!below.found)
+            for (const auto& [f, c] : weights_.around(j))
+                for (const Index k : weights_.corners(f))
+                    if (k != j) slaves.push_back(surface_.vertex_count() + k);
         sort_unique(slaves);
         if (!filter_.active())
             sensing = raw.nodes;
@@ -274,7 +305,11 @@ private:
                             std::back_inserter(point.nodes));
 
         point.weights = Vector::Zero(static_cast<Index>(point.nodes.size()));
-        weights_.add_weights(j, carrying, point.weights);
+        if (below.found)
+            for (std::size_t i = 0; i < below.nodes.size(); ++i)
+                point.weights(place_in(carrying, below.nodes[i])) = below.weights(static_cast<Index>(i));
+        else
+            weights_.add_weights(j, carrying, point.weights);
         point.pressing = -point.weights * point.normal.transpose();
         point.foot.setZero();
         for (std::size_t i = 0; i < carrying.size(); ++i)
@@ -292,6 +327,7 @@ private:
     std::vector<Index> carriers_, moving_;        ///< (slaves) nodes that carry force; on which the weights depend
     std::vector<double> normal_length_;           ///< (slaves) of the raw normal in the symmetry planes
     std::vector<char> outside_;                   ///< (slaves) beyond the boundary: over an extended facet
+    std::vector<char> alone_;                     ///< (slaves) above the master, which none of its facets is
     std::vector<Index> below_;                    ///< (slave facets) master facet below the centre
 };
 

@@ -249,10 +249,10 @@ private:
                         model_.note(
                             pair.place, "surface to surface from the nodes of " + pair.slave,
                             "nodes alone have no facets to take averages over: node to surface is used instead");
-                    // nodes of a deck meet the facets of the mesh; averages over facets go well with a smooth master
+                    // nodes of a deck meet the facets of the mesh; averages over facets are what we do anyway
                     text += "  " + fresh_name(slave + "_on_" + master, taken) + ":\n    slave: " + slave +
                             "\n    master: {set: " + master + (mortar ? "" : ", surface: facets") + "}\n";
-                    if (mortar) text += "    discretisation: mortar  # surface to surface\n";
+                    if (!mortar) text += "    discretisation: node  # node to surface\n";
                     if (const auto mu = model_.friction.find(pair.interaction);
                         mu == model_.friction.end() && !pair.interaction.empty())
                         model_.lose(pair.place, "friction of " + pair.slave + " and " + pair.master,

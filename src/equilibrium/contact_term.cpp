@@ -175,8 +175,14 @@ Vec3 ContactTerm::law_magnitudes(const Iterate& at, std::size_t p, Index j) cons
 }
 
 bool ContactTerm::rows_within(const Iterate& at, const ConstVectorRef& F, double share) const {
+    // a contact force that grows without bound makes any gap its round-off
+    constexpr double no_gap = 1e-6; // of the facet size
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
+            const contact::ContactPoint& point = evaluations_[p].point(j);
+            if (point.found && contact::is_closed(statuses_[p][j]) &&
+                !(std::abs(point.gap) <= no_gap * evaluations_[p].pair().surface().facet_size(point.facet)))
+                return false;
             const Vec3 sums = law_magnitudes(at, p, j);
             for (int k = 0; k < 3; ++k)
                 if (!(std::abs(F[unknowns_.contact_row(first_[p] + j, k)]) <= share * sums(k))) return false;

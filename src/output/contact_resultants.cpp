@@ -26,7 +26,7 @@ ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
         sum.moment += snapshot.x()[term.slaves().node[j]].cross(contact.lambda);
         sum.normal += p_N;
         sum.friction += (contact.lambda - p_N * contact.normal).norm();
-        sum.area += term.slaves().area[j];
+        sum.area += snapshot.evaluation(pair).area(j);
     }
     sum.moment += snapshot.model().origin.cross(sum.force);
     return sum;

@@ -126,20 +126,19 @@ Values contact_force(const Snapshot& snapshot, Index pair) {
 }
 
 Values normal_stress(const Snapshot& snapshot, Index pair) {
-    const std::vector<double>& area = snapshot.model().pairs[pair]->slaves().area;
     Values values;
     for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool closed) {
-        values.push_back(closed ? contact.lambda.dot(contact.normal) / area[j] : 0);
+        values.push_back(closed ? contact.lambda.dot(contact.normal) / snapshot.evaluation(pair).area(j) : 0);
     });
     return values;
 }
 
 Values tangential_traction(const Snapshot& snapshot, Index pair) {
-    const std::vector<double>& area = snapshot.model().pairs[pair]->slaves().area;
+    const model::ContactEvaluation& evaluation = snapshot.evaluation(pair);
     Values values;
     for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool closed) {
         const Vec3& n = contact.normal;
-        append(values, closed ? Vec3((contact.lambda - n * n.dot(contact.lambda)) / area[j]) : Vec3::Zero());
+        append(values, closed ? Vec3((contact.lambda - n * n.dot(contact.lambda)) / evaluation.area(j)) : Vec3::Zero());
     });
     return values;
 }
@@ -252,7 +251,10 @@ Values master_normal_stress(const Snapshot& snapshot, Index pair) {
 }
 
 Values area(const Snapshot& snapshot, Index pair) {
-    return snapshot.model().pairs[pair]->slaves().area;
+    Values values;
+    for (Index j = 0; j < snapshot.model().pairs[pair]->size(); ++j)
+        values.push_back(snapshot.evaluation(pair).area(j));
+    return values;
 }
 
 constexpr OutputField table[] = {

@@ -216,6 +216,13 @@ output::ContactResultants resultants(const PairOf& pair) {
     return output::contact_resultants(snapshot(session_of(pair)), pair.index);
 }
 
+std::vector<double> areas(const PairOf& pair) {
+    const output::Snapshot at = snapshot(session_of(pair));
+    std::vector<double> all;
+    for (Index j = 0; j < pair_of(pair).size(); ++j) all.push_back(at.evaluation(pair.index).area(j));
+    return all;
+}
+
 /// Body of the slave nodes, and their numbers within it.
 py::tuple slave_nodes(const PairOf& pair) {
     const std::vector<Index>& global = pair_of(pair).slaves().node;
@@ -231,8 +238,8 @@ void add_pair(py::module_& module) {
     pair.def_property_readonly("name", [](const PairOf& p) { return pair_of(p).name(); })
         .def_property_readonly("nodes", slave_nodes, "(body, numbers of the slave nodes within it)")
         .def_property_readonly(
-            "area", [](const PairOf& p) { return view(std::span(pair_of(p).slaves().area), p.run); },
-            "(n) m^2, tributary to each slave node in the reference configuration; a view")
+            "area", [](const PairOf& p) { return owned(areas(p), 1); },
+            "(n) m^2, that the force on each slave node presses on, in the reference configuration")
         .def_property_readonly(
             "contact_force",
             [](const PairOf& p) {

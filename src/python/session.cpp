@@ -14,7 +14,7 @@ namespace {
 app::LoadedScene compiled(scene::Scene scene, int threads) {
     Timings unused;
     app::LoadedScene loaded{std::move(scene), {}, {}};
-    loaded.plan = app::compile(loaded.scene, app::build_meshes(loaded.scene), threads, unused);
+    loaded.plan = app::compile(loaded.scene, threads, unused);
     return loaded;
 }
 

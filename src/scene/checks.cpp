@@ -69,10 +69,32 @@ public:
     }
 
     void check_pair(const std::string& name, const Pair& pair) {
-        if (!pair.slave.empty() && pair.slave == pair.master.set)
-            fault({"contact", name, "slave"}, "another set than the master's", "'" + pair.slave + "' for both");
+        check_sides(name, pair);
         if (const auto* rpim = std::get_if<RpimSurface>(&pair.master.surface)) check_basis(name, "rpim", *rpim);
         if (const auto* blend = std::get_if<BlendSurface>(&pair.master.surface)) check_basis(name, "blend", *blend);
+    }
+
+    /// Slave and master, or two sides without roles.
+    void check_sides(const std::string& name, const Pair& pair) {
+        const auto written = [&](std::vector<std::string> path) {
+            path.insert(path.begin(), {"contact", name});
+            const Tree* node = &tree_;
+            for (const std::string& part : path)
+                if (node = node->find(part); node == nullptr) return false;
+            return true;
+        };
+        const bool slave = written({"slave"}), master = written({"master", "set"});
+        if (written({"between"})) {
+            if (slave) fault({"contact", name, "slave"}, "between, or slave and master.set", "both");
+            if (master) fault({"contact", name, "master", "set"}, "between, or slave and master.set", "both");
+            if (!pair.between[0].empty() && pair.between[0] == pair.between[1])
+                fault({"contact", name, "between"}, "two sets", "'" + pair.between[0] + "' twice");
+            return;
+        }
+        if (!slave) fault({"contact", name, "slave"}, "the name of a set, or between with two", "nothing");
+        if (!master) fault({"contact", name, "master", "set"}, "the name of a set, or between with two", "nothing");
+        if (!pair.slave.empty() && pair.slave == pair.master.set)
+            fault({"contact", name, "slave"}, "another set than the master's", "'" + pair.slave + "' for both");
     }
 
     template <class Surface> void check_basis(const std::string& name, const char* tag, const Surface& surface) {

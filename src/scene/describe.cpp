@@ -54,7 +54,12 @@ void describe(Visitor& v, BlendSurface& s) {
 }
 
 void describe(Visitor& v, MasterSpec& master) {
-    v.text({.name = "set", .meaning = "Master surface.", .required = true, .names = Names::set}, master.set);
+    v.text({.name = "set",
+            .meaning = "Master surface.",
+            .required = true,
+            .names = Names::set,
+            .instead = "contact.<pair>.between"},
+           master.set);
     v.group({.name = "surface",
              .meaning = "Geometry of the master; contact.<pair>.surface is short for it.",
              .bare_word = true},
@@ -74,18 +79,28 @@ void describe(Visitor& v, Pair& pair) {
     v.text({.name = "slave",
             .meaning = "Slave surface: its nodes carry the contact.",
             .required = true,
-            .names = Names::set},
+            .names = Names::set,
+            .instead = "between"},
            pair.slave);
-    v.group({.name = "master", .meaning = "Master side.", .required = true}, [&] { describe(v, pair.master); });
-    static const Words discretisations{"node", "mortar", "petrov_galerkin"};
-    word(v,
-         {.name = "discretisation",
-          .meaning =
-              "Where gaps are measured and how forces reach the master. node: at the slave nodes alone. mortar: "
-              "gaps and forces are averaged over the slave facets with dual shape functions, which passes the "
-              "patch test on any meshes. petrov_galerkin: gaps at the slave nodes, averaged forces; passes it too, "
-              "and ripples least."},
-         discretisations, pair.discretisation);
+    v.group({.name = "master", .meaning = "Master side.", .required = true, .instead = "between"},
+            [&] { describe(v, pair.master); });
+    v.two_names({.name = "between",
+                 .meaning = "The two sides, in place of slave and master.set: the slave is the softer one if the other "
+                            "is 100 times as stiff, else the finer one by 10 percent, else the softer one by as much, "
+                            "else the first.",
+                 .names = Names::set},
+                pair.between);
+    static const Words discretisations{"automatic", "node", "mortar", "petrov_galerkin"};
+    std::size_t index = pair.discretisation ? 1 + static_cast<std::size_t>(*pair.discretisation) : 0;
+    v.word({.name = "discretisation",
+            .meaning =
+                "Where gaps are measured and how forces reach the master. node: at the slave nodes alone, which "
+                "conserves energy. mortar: gaps and forces are averaged over the slave facets with dual shape "
+                "functions, which passes the patch test on any meshes. petrov_galerkin: gaps at the slave nodes, "
+                "averaged forces; passes it too, and ripples least. automatic: petrov_galerkin if every stage is "
+                "static, else node."},
+           discretisations, index);
+    pair.discretisation = index == 0 ? std::nullopt : std::optional(static_cast<Discretisation>(index - 1));
     v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
     v.number({.name = "closing_tolerance",
               .meaning = "The first solve closes nodes whose gap is smaller than this fraction of the facet size.",

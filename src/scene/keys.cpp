@@ -48,6 +48,9 @@ public:
                                         : "text",
              value.empty() ? "none" : value);
     }
+    void two_names(const Key& key, std::array<std::string, 2>& /*value*/) override {
+        list(key, "list of the names of two sets", "none");
+    }
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override {
         list(key, "one of " + join(vocabulary), vocabulary[index]);
     }
@@ -109,7 +112,8 @@ private:
         if (!choice.empty())
             text_ += "; one of " + choice;
         else if (key.required)
-            text_ += "; required";
+            text_ +=
+                key.instead == nullptr ? "; required" : std::string("; required unless ") + key.instead + " is given";
         else if (key.default_text || !value.empty())
             text_ += "; default " + std::string(key.default_text ? key.default_text : value);
         text_ += ". ";

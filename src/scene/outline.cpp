@@ -52,6 +52,9 @@ public:
     void text(const Key& key, std::string& value) override {
         if (!value.empty()) add(key, value);
     }
+    void two_names(const Key& key, std::array<std::string, 2>& value) override {
+        if (!value[0].empty()) add(key, value[0] + ", " + value[1]);
+    }
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override { add(key, vocabulary[index]); }
     void words(const Key& key, const Words& /*vocabulary*/, std::vector<std::string>& value) override {
         std::string list;

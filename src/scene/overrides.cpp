@@ -57,6 +57,17 @@ void expand_mesh(Tree& mesh) {
     }
 }
 
+/// An override that gives a pair roles takes the place of `between`, and the other way round.
+void switch_sides(Tree& pair, const std::vector<std::string>& path) {
+    const auto drop = [](Tree& map, const std::string& key) {
+        std::erase_if(map.children, [&](const Tree& child) { return child.key == key; });
+    };
+    if (path[2] == "slave" || (path[2] == "master" && path.back() == "set")) drop(pair, "between");
+    if (path[2] != "between") return;
+    drop(pair, "slave");
+    if (Tree* master = pair.find("master")) drop(*master, "set");
+}
+
 } // namespace
 
 void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
@@ -107,6 +118,8 @@ void apply(const Override& change, Tree& scene, std::vector<Fault>& faults) {
     }
     set_place(value);
 
+    if (Tree* pairs = scene.find("contact"); pairs && path.size() > 2 && path[0] == "contact")
+        if (Tree* pair = pairs->find(path[1])) switch_sides(*pair, path);
     Tree* node = &scene;
     for (std::size_t i = 0; i < path.size(); ++i) {
         if (node->kind == Tree::Kind::list) {

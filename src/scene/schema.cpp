@@ -25,7 +25,7 @@ void allow(Json& value, const Json& short_form) {
 }
 
 /// What expand_short_forms takes: a file's name for its map, true or false for its repairs, and
-/// `contact.<pair>.surface` for `contact.<pair>.master.surface`.
+/// `contact.<pair>.surface` for `contact.<pair>.master.surface`; and that a pair has either roles or two sides.
 void add_short_forms(Json& scene) {
     Json& mesh = scene["properties"]["bodies"]["additionalProperties"]["properties"]["mesh"]["properties"];
     allow(mesh["file"]["properties"]["repair"], {{"type", "boolean"}});
@@ -37,6 +37,11 @@ void add_short_forms(Json& scene) {
     pair["not"] = {{"type", "object"},
                    {"required", {"surface", "master"}},
                    {"properties", {{"master", {{"type", "object"}, {"required", {"surface"}}}}}}};
+    const Json named_master{{"type", "object"}, {"required", {"set"}}},
+        unnamed_master{{"not", {{"type", "object"}, {"required", {"set"}}}}};
+    pair["if"] = {{"type", "object"}, {"required", {"between"}}};
+    pair["then"]["properties"] = {{"slave", false}, {"master", unnamed_master}};
+    pair["else"] = {{"type", "object"}, {"required", {"slave", "master"}}, {"properties", {{"master", named_master}}}};
 }
 
 } // namespace

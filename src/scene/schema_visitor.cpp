@@ -154,7 +154,8 @@ void SchemaVisitor::add(const Key& key, Json schema, const std::string& what, co
         if (tag)
             text += "; one of " + join(level.tags);
         else if (key.required)
-            text += "; required";
+            text +=
+                key.instead == nullptr ? "; required" : std::string("; required unless ") + key.instead + " is given";
         else if (key.default_text)
             text += std::string("; default ") + key.default_text;
         else if (!value.is_null())
@@ -164,7 +165,7 @@ void SchemaVisitor::add(const Key& key, Json schema, const std::string& what, co
     if (!text.empty()) property["description"] = text;
     property.update(schema);
     if (!key.required && !tag && !key.default_text && !value.is_null()) property["default"] = value;
-    if (key.required && !tag) level.required.push_back(key.name);
+    if (key.required && !tag && key.instead == nullptr) level.required.push_back(key.name);
     level.properties[key.name] = std::move(property);
 }
 
@@ -284,6 +285,11 @@ void SchemaVisitor::text(const Key& key, std::string& value) {
     if (key.names == Names::identifier) schema["pattern"] = identifier;
     if (key.required) schema["minLength"] = 1;
     add(key, schema, what(), value.empty() ? Json(nullptr) : Json(value));
+}
+
+void SchemaVisitor::two_names(const Key& key, std::array<std::string, 2>& /*value*/) {
+    const Json name{{"type", {"string", "number", "boolean"}}, {"minLength", 1}};
+    add(key, list_of(name, 2), "names of two sets", nullptr);
 }
 
 void SchemaVisitor::word(const Key& key, const Words& vocabulary, std::size_t& index) {

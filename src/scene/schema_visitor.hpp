@@ -28,6 +28,7 @@ public:
     void divisions(const Key& key, std::array<int, 3>& value) override;
     void flag(const Key& key, bool& value) override;
     void text(const Key& key, std::string& value) override;
+    void two_names(const Key& key, std::array<std::string, 2>& value) override;
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override;
     void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) override;
     void axes(const Key& key, Mat3& value) override;

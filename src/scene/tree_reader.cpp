@@ -69,7 +69,7 @@ const Tree* TreeReader::take(const Key& key, const std::string& expected) {
     Level& level = levels_.back();
     level.known.push_back(key.name);
     const Tree* value = level.map->find(key.name);
-    if (!value && key.required) fault(*level.map, key, expected, "nothing");
+    if (!value && key.required && key.instead == nullptr) fault(*level.map, key, expected, "nothing");
     return value;
 }
 
@@ -244,6 +244,20 @@ void TreeReader::text(const Key& key, std::string& value) {
     if (!tree) return;
     if (tree->kind != Tree::Kind::scalar || (key.required && tree->scalar.empty())) return fault(*tree, key, expected);
     if (check_name(*tree, tree->place, key, tree->scalar, key.names)) value = tree->scalar;
+}
+
+void TreeReader::two_names(const Key& key, std::array<std::string, 2>& value) {
+    const std::string expected = "a list of the names of two sets";
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind != Tree::Kind::list || tree->children.size() != 2) return fault(*tree, key, expected);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Tree& name = tree->children[i];
+        if (name.kind != Tree::Kind::scalar)
+            fault(name, key, expected);
+        else if (check_name(name, name.place, key, name.scalar, key.names))
+            value[i] = name.scalar;
+    }
 }
 
 void TreeReader::word(const Key& key, const Words& vocabulary, std::size_t& index) {

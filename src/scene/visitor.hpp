@@ -58,6 +58,7 @@ struct Key {
     const char* item = "";              ///< what a named map holds: "body"
     double largest_product = 0;         ///< of divisions
     const char* default_text = nullptr; ///< where the default is not the member's own value
+    const char* instead = nullptr;      ///< of a required key: the key that may stand in its place, which a rule judges
 };
 
 /// Exactly one of several tags, as keys of the current map.
@@ -92,6 +93,7 @@ public:
     virtual void divisions(const Key& key, std::array<int, 3>& value) = 0;
     virtual void flag(const Key& key, bool& value) = 0;
     virtual void text(const Key& key, std::string& value) = 0;
+    virtual void two_names(const Key& key, std::array<std::string, 2>& value) = 0; ///< empty: not given
     virtual void word(const Key& key, const Words& vocabulary, std::size_t& index) = 0;
     virtual void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) = 0;
     virtual void axes(const Key& key, Mat3& value) = 0; ///< columns; the first two are written

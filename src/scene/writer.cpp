@@ -71,6 +71,9 @@ public:
     void text(const Key& key, std::string& value) override {
         if (!value.empty()) line(key, in_quotes(value));
     }
+    void two_names(const Key& key, std::array<std::string, 2>& value) override {
+        if (!value[0].empty()) line(key, "[" + in_quotes(value[0]) + ", " + in_quotes(value[1]) + "]");
+    }
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override { line(key, vocabulary[index]); }
     void words(const Key& key, const Words& /*vocabulary*/, std::vector<std::string>& value) override {
         line(key, "[" + join(value) + "]");

@@ -99,21 +99,22 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
         {"blend_1", [](const SurfaceMesh& s) { return make_blend(s, 1); }},
         {"blend_2", [](const SurfaceMesh& s) { return make_blend(s, 2); }},
         {"blend_3", [](const SurfaceMesh& s) { return make_blend(s, 3); }},
+        {"blend", [](const SurfaceMesh& s) { return make_blend(s, 2, std::nullopt); }},
         {"blend_2_r3",
          [](const SurfaceMesh& s) {
-             return make_blend(s, 2, {0, 1.5});
+             return make_blend(s, 2, contact::Multiquadric{0, 1.5});
          }},
         {"blend_1_r5",
          [](const SurfaceMesh& s) {
-             return make_blend(s, 1, {0, 2.5});
+             return make_blend(s, 1, contact::Multiquadric{0, 2.5});
          }},
         {"blend_2_r5",
          [](const SurfaceMesh& s) {
-             return make_blend(s, 2, {0, 2.5});
+             return make_blend(s, 2, contact::Multiquadric{0, 2.5});
          }},
         {"blend_3_r5",
          [](const SurfaceMesh& s) {
-             return make_blend(s, 3, {0, 2.5});
+             return make_blend(s, 3, contact::Multiquadric{0, 2.5});
          }},
     };
     return list;
@@ -135,7 +136,8 @@ std::unique_ptr<Approximation> make_rpim(const SurfaceMesh& surface, int ring) {
     return std::make_unique<Master>(surface, contact::make_rpim_surface(surface.topology, surface.x, options));
 }
 
-std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level, const contact::Multiquadric& basis) {
+std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level,
+                                          const std::optional<contact::Multiquadric>& basis) {
     contact::BlendOptions options;
     options.basis = basis;
     options.level = level;

@@ -42,7 +42,7 @@ TEST_F(Importing, TranslatesContactSupportsAndLoads) {
     const scene::Scene scene = checked(imported);
     ASSERT_EQ(scene.contact.size(), 1u);
     EXPECT_EQ(scene.contact[0].second.friction, 0.25);
-    EXPECT_EQ(scene.contact[0].second.discretisation, Discretisation::mortar);
+    EXPECT_EQ(scene.contact[0].second.discretisation, std::nullopt);
     ASSERT_TRUE(scene::find(scene.supports, "Floor") != nullptr && scene::find(scene.supports, "Lid") != nullptr);
     EXPECT_EQ(scene::find(scene.supports, "Floor")->fixed, (std::array{true, true, true}));
     EXPECT_EQ(scene::find(scene.supports, "Lid")->fixed, (std::array{true, true, false}));
@@ -267,7 +267,7 @@ TEST_F(Importing, PairsAreNamedWithAndWithoutBlanks) {
     };
     for (const char* mortar :
          {"TYPE=MORTAR", "TYPE=SURFACETOSURFACE", "type=Surface to Surface", "TYPE=SURFACE  TO SURFACE"})
-        EXPECT_EQ(pair(mortar).discretisation, Discretisation::mortar) << mortar;
+        EXPECT_EQ(pair(mortar).discretisation, std::nullopt) << mortar;
     for (const char* nodes : {"TYPE=NODE TO SURFACE", "TYPE=nodetosurface", "ADJUST=0."}) {
         EXPECT_EQ(pair(nodes).discretisation, Discretisation::node) << nodes;
         EXPECT_TRUE(std::holds_alternative<scene::FacetsSurface>(pair(nodes).master.surface)) << nodes;

@@ -31,7 +31,7 @@ TEST_F(Command, CheckReportsSizesPairsAndGaps) {
             "pair joint: 16 slave nodes, 16 master facets\n"
             "  16 slave nodes above the master, initial gap 0.02 m to 0.02 m\n"
             "  no overlap\n"
-            "  advice: the meshes do not match: discretisation: mortar would even out the pressures at single nodes\n"
+            "  advice: the meshes do not match: discretisation: petrov_galerkin would even out the pressures at single nodes\n"
             "stage press: 1 step(s) in 1 s\n"
             "stage pull: 3 step(s) in 3 s\n"
             "free: cap slides along y; friction alone can hold that\n");

@@ -81,6 +81,7 @@ public:
     void divisions(const scene::Key& /*key*/, std::array<int, 3>& /*value*/) override {}
     void flag(const scene::Key& /*key*/, bool& /*value*/) override {}
     void text(const scene::Key& /*key*/, std::string& /*value*/) override {}
+    void two_names(const scene::Key& /*key*/, std::array<std::string, 2>& /*names*/) override {}
     void word(const scene::Key& /*key*/, const scene::Words& /*all*/, std::size_t& /*index*/) override {}
     void words(const scene::Key& /*key*/, const scene::Words& /*all*/, std::vector<std::string>& /*value*/) override {}
     void axes(const scene::Key& /*key*/, Mat3& /*value*/) override {}
@@ -231,7 +232,10 @@ inline NamedScene transformed(NamedScene named, const Transformation& by, std::v
         std::ranges::reverse(meshes);
     }
     if (by.swap_sides) {
-        for (auto& [name, pair] : scene.contact) std::swap(pair.slave, pair.master.set);
+        for (auto& [name, pair] : scene.contact) {
+            std::swap(pair.slave, pair.master.set);
+            std::swap(pair.between[0], pair.between[1]);
+        }
         scene.solver.smallest_step = std::max(scene.solver.smallest_step, 0.1); // where it fails, soon
     }
     return named;

@@ -35,8 +35,15 @@ struct PlannedProbe {
     std::unique_ptr<output::Probe> probe;
 };
 
+/// Why a choice was made that a pair leaves to the program; empty: the scene makes it.
+struct PairChoice {
+    std::string discretisation, roles;
+};
+
 struct Plan {
     model::Model model;
+    scene::Named<scene::Pair> contact; ///< the scene's pairs, in its order: with roles and discretisation
+    std::vector<PairChoice> choices;   ///< of each of them
     std::vector<time::Stage> stages;
     time::StepperOptions stepper;
     std::vector<Index> constrained_sets; ///< of model.sets, in the scene's order
@@ -54,5 +61,8 @@ struct Plan {
 /// bodies without support, initial overlaps, elements turned inside out.
 /// @param meshes  one per body; build_meshes(scene), or the same bodies with another numbering
 [[nodiscard]] Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings);
+
+/// Builds the meshes, compiles, and writes into the scene what its pairs left to the program.
+[[nodiscard]] Plan compile(scene::Scene& scene, int threads, Timings& timings);
 
 } // namespace osculate::app

@@ -68,6 +68,13 @@ public:
     /// few vertices.
     virtual void follow(const FacetHit& hit, const ContactPoint& point, Index carried, std::vector<Index>& vertices,
                         std::vector<double>& shares) const = 0;
+    /// Area that the force on slave j presses on, m^2, in the reference configuration: where forces are averages over the
+    /// slave facets, the part of these that is above the master.
+    /// @param tributary  the whole area for which the node stands
+    [[nodiscard]] virtual double loaded_area(Index j, double tributary) const {
+        (void)j;
+        return tributary;
+    }
     /// Whether a slave node without a point may still be inside the master, because no average detects it.
     [[nodiscard]] virtual bool overlooks() const { return false; }
 };

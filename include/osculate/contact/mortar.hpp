@@ -55,6 +55,10 @@ public:
     /// weights.
     void vary(Index j, const PairPositions& at, const FacetHit& hit, const ContactPoint& point,
               ContactVariation& variation) const override;
+    [[nodiscard]] double loaded_area(Index j, double tributary) const override {
+        const double share = weights_.share(j);
+        return share > 0 ? share : tributary;
+    }
     [[nodiscard]] Index carriers(Index j, const ContactPoint& point) const override;
     void force_change(const ContactPoint& point, const Vec3& lambda, const Vec3& dn, std::span<const double> dweights,
                       const double* dpressing, double* df) const override;

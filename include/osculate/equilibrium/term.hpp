@@ -54,7 +54,8 @@ public:
     /// Adds the absolute values of the summands of its forces, (nodes) N: the round-off is a few last digits of their
     /// sum.
     virtual void add_magnitudes(const Iterate& at, Field& sums) const = 0;
-    /// Whether each of its own rows in F is at most `share` times the sum of the absolute values of its summands.
+    /// Whether each of its own rows in F is at most `share` times the sum of the absolute values of its summands, and
+    /// these are of a size that leaves the row a meaning.
     [[nodiscard]] virtual bool rows_within(const Iterate& at, const ConstVectorRef& F, double share) const {
         (void)at, (void)F, (void)share;
         return true;

@@ -33,6 +33,9 @@ public:
     void evaluate(const std::vector<Vec3>& x, Timings& timings, int threads, const std::vector<Vec3>& tails = {});
 
     [[nodiscard]] const contact::ContactPoint& point(Index j) const { return points_[j]; }
+    /// Area that the force on slave j presses on, m^2: of the reference configuration, and only the part above the
+    /// master where the discretisation knows it.
+    [[nodiscard]] double area(Index j) const { return discretisation_->loaded_area(j, pair_->slaves().area[j]); }
     /// Smallest gap of all slave nodes with a contact partner, m; infinite if none has one.
     [[nodiscard]] double least_gap() const;
     /// Closest point of slave j on its facet, whether or not there is contact.

@@ -227,8 +227,9 @@ struct MasterSpec {
 struct Pair {
     std::string slave; ///< set
     MasterSpec master;
-    Discretisation discretisation = Discretisation::node;
-    double friction = 0;                ///< Coulomb's coefficient mu
+    std::array<std::string, 2> between{};         ///< sets, in place of slave and master.set; empty: not given
+    std::optional<Discretisation> discretisation; ///< none: automatic
+    double friction = 0;                          ///< Coulomb's coefficient mu
     double closing_tolerance = 0.02;    ///< of the facet size: the first solve closes nodes with a smaller gap
     double initial_overlap_limit = 0.1; ///< of the facet size: a deeper initial overlap is a fault
     double stiffness_scale =

@@ -49,12 +49,14 @@ public:
 
 /// The master surfaces `rpim` and `blend` of contact, m = 6 and equal lengths. The result is the foot to which s <- s -
 /// g n converges from the facet's point.
+/// @param basis  none: the one that suits each patch, as with contact.<pair>.discretisation: petrov_galerkin
 [[nodiscard]] std::unique_ptr<Approximation> make_rpim(const SurfaceMesh& surface, int ring);
-[[nodiscard]] std::unique_ptr<Approximation> make_blend(const SurfaceMesh& surface, int level,
-                                                        const contact::Multiquadric& basis = {});
+[[nodiscard]] std::unique_ptr<Approximation>
+make_blend(const SurfaceMesh& surface, int level,
+           const std::optional<contact::Multiquadric>& basis = contact::Multiquadric{});
 
-/// Names of all methods: facets, nagata, height_1, rpim_1, rpim_2, blend_1, blend_2, blend_3 and, with
-/// polyharmonic bases r^3 and r^5, blend_2_r3, blend_1_r5, blend_2_r5, blend_3_r5.
+/// Names of all methods: facets, nagata, height_1, rpim_1, rpim_2, blend_1, blend_2, blend_3, blend with
+/// the basis that suits each patch and, with polyharmonic bases r^3 and r^5, blend_2_r3, blend_1_r5, blend_2_r5, blend_3_r5.
 [[nodiscard]] const std::vector<std::string>& method_names();
 /// @pre  the name is one of method_names()
 [[nodiscard]] std::unique_ptr<Approximation> make_approximation(const std::string& method, const SurfaceMesh& surface);

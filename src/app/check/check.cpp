@@ -9,6 +9,7 @@
 #include "app/check/twice_paired.hpp"
 #include "app/check/unit_warnings.hpp"
 #include "app/plan/gaps.hpp"
+#include "app/plan/settle_pairs.hpp"
 #include "osculate/app/estimate.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/version.hpp"

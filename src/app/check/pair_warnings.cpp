@@ -1,6 +1,7 @@
 #include "app/check/pair_warnings.hpp"
 
 #include "app/check/surface_shape.hpp"
+#include "app/plan/settle_pairs.hpp"
 
 #include <fmt/format.h>
 #include <numbers>

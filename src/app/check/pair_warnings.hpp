@@ -11,9 +11,6 @@
 
 namespace osculate::app {
 
-/// Slave over master: then it weighs more than which side is meshed finer.
-inline constexpr double much_stiffer = 100;
-
 /// What check knows of a pair, evaluated in the reference configuration.
 struct ExaminedPair {
     const model::ContactEvaluation& evaluation;

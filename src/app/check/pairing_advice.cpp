@@ -67,7 +67,7 @@ std::vector<std::string> advice(const Pairing& pairing) {
                         "nodes the finer side should be the slave",
                         ratio));
     sentences.emplace_back(
-        "the meshes do not match: discretisation: mortar would even out the pressures at single nodes");
+        "the meshes do not match: discretisation: petrov_galerkin would even out the pressures at single nodes");
     return sentences;
 }
 

@@ -4,9 +4,12 @@
 #include "app/plan/draft.hpp"
 #include "app/plan/plan_items.hpp"
 #include "app/plan/planned_probe.hpp"
+#include "app/plan/settle_pairs.hpp"
 #include "app/plan/supports.hpp"
 #include "app/report/plots.hpp"
 #include "osculate/core/error.hpp"
+
+#include <utility>
 
 namespace osculate::app {
 
@@ -40,6 +43,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft); // nothing below can be trusted on a broken mesh
     add_sets(draft);
     throw_faults(draft);
+    settle_pairs(draft);
     add_stages(draft);
     add_pairs(draft);
     throw_faults(draft);
@@ -57,8 +61,17 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
                           .stabilisation = scene.solver.stabilisation,
                           .threads = threads,
                           .audit = draft.audited()};
-    draft.plan.items = plan_items(scene, draft.plan);
+    draft.plan.items = plan_items(draft.scene, draft.plan);
     return std::move(draft.plan);
+}
+
+Plan compile(scene::Scene& scene, int threads, Timings& timings) {
+    std::vector<std::string> notes;
+    std::vector<mesh::Mesh> meshes = build_meshes(scene, &notes);
+    Plan plan = compile(std::as_const(scene), std::move(meshes), threads, timings);
+    plan.mesh_notes = std::move(notes);
+    scene.contact = plan.contact;
+    return plan;
 }
 
 } // namespace osculate::app

@@ -144,6 +144,10 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
                                                             const model::Set& slave, const model::Set& master,
                                                             const std::vector<mesh::Facet>* exterior) {
     const std::vector<Vec3>& X = model.X;
+    model::ContactOptions options;
+    options.discretisation = spec.discretisation.value();
+    options.friction = spec.friction;
+    options.closing_tolerance = spec.closing_tolerance;
     const contact::MirroredSurface mirrored = mirror_at_symmetry(scene, model, master);
     auto surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
 
@@ -169,7 +173,7 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
         slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
     }
 
-    if (averages(spec.discretisation)) slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
+    if (averages(options.discretisation)) slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
 
     model::MasterNodes master_nodes;
     const std::vector<double> behind =
@@ -182,13 +186,9 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
         if (mirrored.images.size() > 1) master_nodes.image.push_back(mirrored.image[node]);
     }
     master_nodes.images = mirrored.images;
-    model::ContactOptions options;
-    options.discretisation = spec.discretisation;
-    options.friction = spec.friction;
-    options.closing_tolerance = spec.closing_tolerance;
-    auto shape = make_master(spec.master, spec.discretisation, *surface, vertices, options);
+    auto shape = make_master(spec.master, options.discretisation, *surface, vertices, options);
     std::optional<contact::SmoothSlave> smooth;
-    if (spec.discretisation == Discretisation::mortar)
+    if (options.discretisation == Discretisation::mortar)
         smooth = smooth_slave(scene, spec.master, model, slave, slaves.node);
     return std::make_unique<model::ContactPair>(name, X, std::move(slaves), std::move(surface), std::move(master_nodes),
                                                 std::move(shape), options, smooth ? &*smooth : nullptr);

@@ -12,7 +12,7 @@
 namespace osculate::app {
 
 struct Draft {
-    const scene::Scene& scene;
+    scene::Scene scene; ///< pairs are settled in it
     int threads;
     Timings& timings;
     Plan plan{};

@@ -34,7 +34,7 @@ QuadraticFacets quadratic_facets(const Draft& draft, const model::Set& set) {
 
 void add_pairs(Draft& draft) {
     const bool paths = std::ranges::any_of(draft.plan.stages, &time::Stage::follow_paths);
-    for (const auto& [name, spec] : draft.scene.contact) {
+    for (const auto& [name, spec] : draft.plan.contact) {
         const model::Set& slave = draft.set(spec.slave);
         const model::Set& master = draft.set(spec.master.set);
         const std::string key = "contact." + name;
@@ -72,10 +72,10 @@ void check_gaps(Draft& draft) {
     for (std::size_t p = 0; p < draft.plan.model.pairs.size(); ++p) {
         model::ContactEvaluation evaluation(*draft.plan.model.pairs[p]);
         const PairGaps gaps = initial_gaps(evaluation, draft.plan.model.X, draft.timings, draft.threads);
-        const double limit = draft.scene.contact[p].second.initial_overlap_limit;
+        const double limit = draft.plan.contact[p].second.initial_overlap_limit;
         if (gaps.largest_overlap > limit)
             draft.faults.push_back(
-                fault("contact." + draft.scene.contact[p].first,
+                fault("contact." + draft.plan.contact[p].first,
                       fmt::format("bodies that overlap by less than {:.3g} of the facet size at the start", limit),
                       fmt::format("an overlap of {:.4g} m at slave {}, {:.3g} of the facet size", -gaps.least,
                                   node_name(draft.plan.model, gaps.worst_node), gaps.largest_overlap)));

@@ -44,7 +44,7 @@ Slaves slaves(const scene::Scene& scene, const Plan& plan) {
     Slaves sum;
     for (const auto& pair : plan.model.pairs) {
         const scene::Pair& spec = *scene::find(scene.contact, pair->name());
-        const double n = pair->size() * (spec.discretisation == Discretisation::mortar ? mortar : 1.0);
+        const double n = pair->size() * (pair->options().discretisation == Discretisation::mortar ? mortar : 1.0);
         if (const auto* rpim = std::get_if<scene::RpimSurface>(&spec.master.surface))
             sum.rpim += n * patch(rpim->ring);
         else if (const auto* blend = std::get_if<scene::BlendSurface>(&spec.master.surface))

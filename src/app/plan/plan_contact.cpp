@@ -5,6 +5,7 @@
 #include "osculate/time/collision_check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -55,6 +56,18 @@ std::string in_words(const scene::MasterSpec& master) {
     return "facets";
 }
 
+/// "tube: petrov_galerkin: every stage is static, floor: node"
+std::string discretisations(const Plan& plan) {
+    static constexpr std::array names{"node", "mortar", "petrov_galerkin"};
+    std::string text;
+    for (std::size_t p = 0; p < plan.contact.size(); ++p) {
+        const std::string& why = plan.choices[p].discretisation;
+        text += (text.empty() ? "" : ", ") + plan.contact[p].first + ": " +
+                (why.empty() ? names[static_cast<std::size_t>(*plan.contact[p].second.discretisation)] : why);
+    }
+    return text;
+}
+
 void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& list) {
     const bool contact = !plan.model.pairs.empty();
     PlanCost patches{0, 0, "patches fitted once"};
@@ -64,7 +77,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
         const scene::Pair& spec = *scene::find(scene.contact, pair->name());
         for (Index v = 0; v < pair->surface().vertex_count() && pair->mirrored(); ++v)
             images += pair->own_vertex(v) != v ? 1 : 0;
-        if (averages(spec.discretisation)) slave_facets += static_cast<double>(pair->slaves().facets.size());
+        if (averages(pair->options().discretisation)) slave_facets += static_cast<double>(pair->slaves().facets.size());
         if (std::holds_alternative<scene::FacetsSurface>(spec.master.surface)) continue;
         add_patches(spec.master, pair->surface(), patches);
         smooth += (smooth.empty() ? "" : ", ") + pair->name() + ": " + in_words(spec.master);
@@ -82,10 +95,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
              : contact  ? "no master is cut at a plane of symmetry"
                         : no_pair,
              {sizeof(Vec3) * images, images, "vertices an iteration"});
-    list.say("mortar weighting", slave_facets > 0,
-             slave_facets > 0 ? "a pair averages forces over its slave facets"
-             : contact        ? "every pair asks for discretisation: node"
-                              : no_pair,
+    list.say("mortar weighting", slave_facets > 0, contact ? discretisations(plan) : no_pair,
              {0, slave_facets, "slave facets an iteration"});
 }
 
@@ -95,6 +105,15 @@ void add_contact_items(const scene::Scene& scene, const Plan& plan, PlanList& li
     const bool contact = !plan.model.pairs.empty();
     list.say("contact", contact, contact ? fmt::format("{} pair(s)", scene.contact.size()) : no_pair,
              contact_cost(plan));
+    std::string roles;
+    for (std::size_t p = 0; p < plan.contact.size(); ++p)
+        if (!plan.choices[p].roles.empty())
+            roles += (roles.empty() ? "" : ", ") + plan.contact[p].first + ": " + plan.choices[p].roles;
+    list.say("choice of slaves", !roles.empty(),
+             !roles.empty() ? roles
+             : contact      ? "every pair names slave and master"
+                            : no_pair,
+             {0, 0, {}});
     const double rubbing = slave_nodes(plan, [](const auto& pair) { return pair.options().friction > 0; });
     list.say("friction", rubbing > 0,
              rubbing > 0 ? "a pair has mu > 0"

@@ -13,7 +13,7 @@ namespace osculate::app {
 
 namespace {
 
-sigset_t watched() {
+sigset_t watched_signals() {
     sigset_t set;
     sigemptyset(&set);
     for (const int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&set, signal);
@@ -22,7 +22,7 @@ sigset_t watched() {
 
 /// In the child: no signal is held back, and the parent's end is its own.
 void begin_child(pid_t parent) {
-    const sigset_t set = watched();
+    const sigset_t set = watched_signals();
     sigprocmask(SIG_UNBLOCK, &set, nullptr);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1); // it ended before it could be watched
@@ -64,17 +64,17 @@ pid_t start_copy(const std::function<int()>& body) {
 }
 
 SignalWatch::SignalWatch() {
-    const sigset_t set = watched();
+    const sigset_t set = watched_signals();
     sigprocmask(SIG_BLOCK, &set, nullptr);
 }
 
 SignalWatch::~SignalWatch() {
-    const sigset_t set = watched();
+    const sigset_t set = watched_signals();
     sigprocmask(SIG_UNBLOCK, &set, nullptr);
 }
 
 int SignalWatch::wait() const {
-    const sigset_t set = watched();
+    const sigset_t set = watched_signals();
     const timespec a_while{1, 0};
     const int signal = sigtimedwait(&set, nullptr, &a_while);
     return signal == SIGINT || signal == SIGTERM ? signal : 0;
@@ -82,7 +82,7 @@ int SignalWatch::wait() const {
 
 void SignalWatch::end_by(int signal) const {
     std::signal(signal, SIG_DFL);
-    const sigset_t set = watched();
+    const sigset_t set = watched_signals();
     sigprocmask(SIG_UNBLOCK, &set, nullptr);
     raise(signal);
     std::exit(128 + signal);

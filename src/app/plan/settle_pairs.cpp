@@ -1,0 +1,85 @@
+#include "app/plan/settle_pairs.hpp"
+
+#include "osculate/fe/facet_quadrature.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+#include <utility>
+
+namespace osculate::app {
+
+namespace {
+
+/// By how much sides must differ before their order does not decide.
+constexpr double clearly = 1.1;
+
+/// One side of a pair that has no roles.
+struct Side {
+    std::string set;
+    double size; ///< root of the mean area of its facets, m
+    double E;    ///< Young's modulus of its body, Pa
+};
+
+Side side_of(const Draft& draft, const std::string& name) {
+    const model::Set& set = draft.set(name);
+    double area = 0;
+    for (const mesh::Facet& facet : set.facets) {
+        const auto parts = fe::tributary_areas(facet, draft.plan.model.X);
+        area = std::accumulate(parts.begin(), parts.end(), area);
+    }
+    const double count = std::max<double>(1, static_cast<double>(set.facets.size()));
+    const auto body = static_cast<std::size_t>(set.body);
+    return {name, std::sqrt(area / count), scene::elastic(draft.scene.bodies[body].second.material).E};
+}
+
+/// Gaps are measured at the slave's nodes: a finer side sees more of the other, and a softer one gives way to it.
+std::string choose_slave(const Draft& draft, scene::Pair& pair) {
+    Side slave = side_of(draft, pair.between[0]), master = side_of(draft, pair.between[1]);
+    const auto softer = [&](double times) { return slave.E * times < master.E; };
+    const auto finer = [&] { return slave.size * clearly < master.size; };
+    const auto decide = [&](auto&& first_is) { // of either order
+        if (first_is()) return true;
+        std::swap(slave, master);
+        if (first_is()) return true;
+        std::swap(slave, master);
+        return false;
+    };
+    std::string why;
+    if (decide([&] { return softer(much_stiffer); }))
+        why =
+            fmt::format("the slave is {}, as '{}' is {:.3g} times as stiff", slave.set, master.set, master.E / slave.E);
+    else if (decide(finer))
+        why = fmt::format("the slave is {}, whose facets are {:.3g} times as long as those of '{}'", slave.set,
+                          slave.size / master.size, master.set);
+    else if (decide([&] { return softer(clearly); }))
+        why = fmt::format("the slave is {}, as '{}' is {:.3g} times as stiff and meshed alike", slave.set, master.set,
+                          master.E / slave.E);
+    else
+        why = fmt::format("the slave is {}, the first of two sides that are meshed alike and as stiff", slave.set);
+    pair.slave = slave.set;
+    pair.master.set = master.set;
+    pair.between = {};
+    return why;
+}
+
+} // namespace
+
+void settle_pairs(Draft& draft) {
+    const bool dynamic = std::ranges::any_of(draft.scene.stages, [](const auto& stage) {
+        return std::holds_alternative<scene::DynamicAnalysis>(stage.second.analysis);
+    });
+    for (auto& [name, pair] : draft.scene.contact) {
+        PairChoice& choice = draft.plan.choices.emplace_back();
+        if (!pair.between[0].empty()) choice.roles = choose_slave(draft, pair);
+        if (pair.discretisation) continue;
+        // forces that are not the work conjugates of the gaps add energy, or take it, in every impact
+        pair.discretisation = dynamic ? Discretisation::node : Discretisation::petrov_galerkin;
+        choice.discretisation =
+            dynamic ? "node, which conserves energy: a stage is dynamic" : "petrov_galerkin: every stage is static";
+    }
+    draft.plan.contact = draft.scene.contact;
+}
+
+} // namespace osculate::app

@@ -49,7 +49,7 @@ public:
              value.empty() ? "none" : value);
     }
     void two_names(const Key& key, std::array<std::string, 2>& /*value*/) override {
-        list(key, "list of the names of two sets", "none");
+        list(key, "names of two sets", "none");
     }
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override {
         list(key, "one of " + join(vocabulary), vocabulary[index]);

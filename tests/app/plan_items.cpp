@@ -46,10 +46,11 @@ courses over time            x . x . . . . . . x x . . .
 predictor                    . . x . . . . . x x x x x x
 moved origin                 . . . . . . . . . . . . . .
 contact                      x x x x x x x x x x x x x x
+choice of slaves             . . . . . . . . . . . . . .
 friction                     x . x x . x x x x x x x x x
 smooth master surface        x . x x . x x x x x x x x x
 mirror images                . . . . . . . . . . . . . .
-mortar weighting             . . . . . . . . . . . . . .
+mortar weighting             . . . . . x x x x . . x x x
 interpenetration control     x x x x x x x x x x x x x x
 collision check              x x x x x . . . . x x . . .
 multigrid                    . . . . . . . . . . . . . .
@@ -176,7 +177,7 @@ supports:
   ground: )" +
            bed + R"(
 contact:
-  joint: {slave: under, master: {set: ground, surface: )" +
+  joint: {discretisation: node, slave: under, master: {set: ground, surface: )" +
            surface + R"(}, friction: 0.3}
 stages:
   press: {pressure: {top: 100 kPa}, displacement: {rear: {x: 0 m}}}

@@ -75,8 +75,38 @@ TEST_P(PetrovGalerkin, LosesNothingOfAPressureOnThePartAboveTheMaster) {
     }
     const double area = (end - begin) * 1.2;
     EXPECT_NEAR(force, area, 1e-10);
+    double loaded = 0;
+    for (Index j = 0; j < static_cast<Index>(pairing.points.size()); ++j)
+        loaded += pairing.discretisation->loaded_area(j, 0); // 0 for those that no part stands for
+    EXPECT_NEAR(loaded, area, 1e-10);
     EXPECT_LT((moment - area * Vec3((begin + end) / 2, 1.5, 0)).norm(), 1e-10);
     EXPECT_LT((of_slaves - moment).norm(), 1e-10);
+}
+
+TEST_P(PetrovGalerkin, AVertexThatNoneOfItsFacetsCarriesLoadsTheFacetBelowIt) {
+    // the slave's facets stand on an edge and face away from the master
+    Surface master = testing::block_top(GetParam().master);
+    Random random(5);
+    for (Vec3& x : master.x) x += shaken(0.02, random);
+    Slave slave({1.1, 0.9, 0.02}, {1.2, 1.2, 1}, {4, 5}, GetParam().slave);
+    std::vector<Index> edge;
+    for (Vec3& at : slave.X) {
+        const double from_edge = at.x() - 1.1;
+        if (from_edge < 1e-9) edge.push_back(static_cast<Index>(&at - slave.X.data()));
+        at = Vec3(1.1 + std::cos(2.1) * from_edge, at.y(), 0.02 + std::sin(2.1) * from_edge);
+    }
+    Pairing pairing(master, make_blend_surface(master.topology, master.x, {}), slave, on(master));
+    std::vector<Vec3> s = slave.X;
+    pairing.evaluate(s, master.x);
+    ASSERT_GE(edge.size(), 6u);
+    for (const Index j : edge) {
+        const ContactPoint& point = pairing.points[static_cast<std::size_t>(j)];
+        ASSERT_TRUE(point.found);
+        EXPECT_NEAR(point.weights.sum(), 1, 1e-14);
+        EXPECT_LE(pairing.carriers(j), 4);
+        EXPECT_EQ(pairing.discretisation->loaded_area(j, 0.7), 0.7);
+        testing::expect_variations(pairing, s, master.x, j);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, PetrovGalerkin,

@@ -30,8 +30,8 @@ TEST(BadScene, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(faults[0].column, 5);
     EXPECT_EQ(faults[0].key, "contact.joint.frcition");
     EXPECT_EQ(faults[0].expected,
-              "one of the keys slave, master, discretisation, friction, closing_tolerance, initial_overlap_limit, "
-              "stiffness_scale");
+              "one of the keys slave, master, between, discretisation, friction, closing_tolerance, "
+              "initial_overlap_limit, stiffness_scale");
     EXPECT_EQ(faults[0].found, "unknown key 'frcition'");
     EXPECT_EQ(faults[0].nearest, "friction");
 }
@@ -66,6 +66,41 @@ TEST(BadScene, MissingAndDoubleKeys) {
         replaced(small_scene, "slave: under", "slave: under\n    friction: 0.1"),
         "bad.yaml:20:5: contact.joint.friction: expected every key once, found 'friction' again (first in line "
         "18)");
+}
+
+TEST(BadScene, PairsHaveEitherRolesOrTwoSides) {
+    const std::string roles = "    slave: under\n    master: {set: ground, surface";
+    const std::string pair = "bad.yaml:17:5: contact.joint";
+    expect_fault(replaced(small_scene, roles, "    between: [under, ground]\n    master: {set: ground, surface"),
+                 "bad.yaml:18:19: contact.joint.master.set: expected between, or slave and master.set, found both");
+    expect_fault(replaced(small_scene, roles, "    slave: under\n    between: [under, ground]\n    master: {surface"),
+                 "bad.yaml:17:12: contact.joint.slave: expected between, or slave and master.set, found both");
+    expect_fault(replaced(small_scene, roles, "    between: [under, under]\n    master: {surface"),
+                 "bad.yaml:17:14: contact.joint.between: expected two sets, found 'under' twice");
+    expect_fault(replaced(small_scene, roles, "    between: [under]\n    master: {surface"),
+                 "bad.yaml:17:14: contact.joint.between: expected a list of the names of two sets, found a list of 1");
+    expect_fault(replaced(small_scene, roles, "    between: [under, gruond]\n    master: {surface"),
+                 "bad.yaml:17:22: contact.joint.between: expected the name of a set: bed, ground, under, top, found "
+                 "'gruond' (did you mean 'ground'?)");
+    expect_fault(replaced(small_scene, roles, "    master: {set: ground, surface"),
+                 pair + ".slave: expected the name of a set, or between with two, found nothing");
+    expect_fault(replaced(small_scene, roles, "    slave: under\n    master: {surface"),
+                 "bad.yaml:18:13: contact.joint.master.set: expected the name of a set, or between with two, found "
+                 "nothing");
+    EXPECT_THAT(messages(faults_of(replaced(small_scene, roles, "    between: [under, ground]\n    master: {surface"))),
+                IsEmpty());
+}
+
+TEST(BadScene, AnOverrideThatNamesASideReplacesTheOtherWay) {
+    const Scene roles = parse_scene(small_scene, "roles", {{"contact.joint.between", "[ground, under]"}});
+    EXPECT_EQ(roles.contact[0].second.slave, "");
+    EXPECT_EQ(roles.contact[0].second.between[1], "under");
+    const std::string sides = replaced(small_scene, "    slave: under\n    master: {set: ground, surface",
+                                       "    between: [under, ground]\n    master: {surface");
+    const Scene named =
+        parse_scene(sides, "sides", {{"contact.joint.slave", "ground"}, {"contact.joint.master.set", "under"}});
+    EXPECT_EQ(named.contact[0].second.slave, "ground");
+    EXPECT_EQ(named.contact[0].second.between[0], "");
 }
 
 TEST(BadScene, NumbersOutOfRange) {
@@ -203,7 +238,7 @@ TEST(BadScene, FaultInAnOverride) {
     expect_override_fault({"contact..friction", "1"},
                           "--set: contact..friction: expected key.path=value, found 'contact..friction'");
     expect_override_fault({"contact.joint.ring", "1"},
-                          "--set: contact.joint.ring: expected one of the keys slave, master, discretisation, "
+                          "--set: contact.joint.ring: expected one of the keys slave, master, between, discretisation, "
                           "friction, closing_tolerance, "
                           "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
 }

@@ -116,7 +116,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EverySurface, testing::Values("facets", "rpim", 
 TEST_F(SurfaceCommand, BlendHasNoJumpOfTheNormalWhereFacetsAndPatchesDo) {
     std::vector<double> jumps;
     for (const char* kind : {"facets", "rpim", "blend"}) {
-        const Outcome outcome = surface(kind);
+        // with the multiquadric the largest jump is across an edge, not across a corner, which is no edge
+        const Outcome outcome = surface(kind, {"--set", "contact.sliding.discretisation=node"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
         jumps.push_back(jump(*read(std::string(kind) + "/sliding.vtp")));
         const std::string words = "jump of the normal across facet edges ";

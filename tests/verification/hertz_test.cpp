@@ -33,12 +33,14 @@ struct Variant {
     bool curved_is_slave = false;
     double size = 0.25e-3; ///< of the curved body's elements, the block's are 0.88 as long; m
     std::string model{};   ///< "", "_half", "_full"
+    std::string discretisation = "automatic";
 };
 
 std::vector<SlaveNode> solve(const Problem& problem, const Variant& variant) {
     const std::string curved = problem.curved, flat = problem.flat, where = std::string("_") + problem.where;
     std::vector<scene::Override> overrides{
         {"contact.touch.surface", variant.surface},
+        {"contact.touch.discretisation", variant.discretisation},
         {"bodies." + curved + ".mesh.block.focus.size", std::to_string(variant.size)},
         {"bodies." + flat + ".mesh.block.focus.size", std::to_string(0.88 * variant.size)}};
     if (variant.curved_is_slave) {
@@ -73,19 +75,27 @@ Errors errors(const Problem& problem, const Variant& variant) {
 }
 
 /// Of peak and radius with 8 elements across the contact. Hat functions over a half ellipse and over r^2 make up to 1 %
-/// and 2.5 % (cylinder, edge of the contact at a node); forces handed over at single points, which do not balance a uniform
-/// pressure exactly, 1 % more or less; bodies of finite size less than 0.1 %.
+/// and 2.5 % (cylinder, edge of the contact at a node); with contact at nodes forces handed over at single points, which do
+/// not balance a uniform pressure exactly, 1 % more or less; bodies of finite size less than 0.1 %.
 constexpr double close = 0.02;
 
 class Hertz : public testing::TestWithParam<bool> {};
 
-TEST_P(Hertz, IsWithinTwoPercentAndBetterThanFacets) {
+TEST_P(Hertz, IsWithinTwoPercent) {
+    for (const Problem& problem : {sphere, cylinder})
+        for (const char* discretisation : {"automatic", "node"}) {
+            const Errors smooth = errors(problem, {.curved_is_slave = GetParam(), .discretisation = discretisation});
+            EXPECT_LT(smooth.peak, close);
+            EXPECT_LT(smooth.radius, close);
+            EXPECT_LT(smooth.profile, close);
+        }
+}
+
+TEST_P(Hertz, AtNodesIsBetterOnASmoothMasterThanOnFacets) {
     for (const Problem& problem : {sphere, cylinder}) {
-        const Errors smooth = errors(problem, {.curved_is_slave = GetParam()});
-        EXPECT_LT(smooth.peak, close);
-        EXPECT_LT(smooth.radius, close);
-        EXPECT_LT(smooth.profile, close);
-        const Errors facets = errors(problem, {.surface = "facets", .curved_is_slave = GetParam()});
+        const Errors smooth = errors(problem, {.curved_is_slave = GetParam(), .discretisation = "node"});
+        const Errors facets =
+            errors(problem, {.surface = "facets", .curved_is_slave = GetParam(), .discretisation = "node"});
         EXPECT_LT(smooth.peak, facets.peak);
         EXPECT_LT(smooth.profile, facets.profile);
     }
@@ -95,8 +105,9 @@ TEST_P(Hertz, ErrorsOfTheProfileAndTheRadiusFallWithTheElements) {
     for (const Problem& problem : {sphere, cylinder}) {
         const Errors coarse = errors(problem, {.curved_is_slave = GetParam(), .size = 0.5e-3});
         const Errors fine = errors(problem, {.curved_is_slave = GetParam()});
-        EXPECT_LT(fine.profile, 0.7 * coarse.profile) << problem.scene; // between first and second order
+        EXPECT_LT(fine.profile, 0.8 * coarse.profile) << problem.scene; // less where the edge of the contact lies well
         EXPECT_LT(fine.radius, 0.5 * coarse.radius) << problem.scene;   // of second order, but for the edge
+        EXPECT_LT(fine.profile + fine.radius + fine.peak, coarse.profile + coarse.radius + coarse.peak);
     }
 }
 

@@ -203,5 +203,18 @@ TEST(RoundOff, TheTutorialsBlockMayBePressedAsLightlyAsOneLikes) {
     }
 }
 
+TEST(RoundOff, OfAForceWithoutBoundHidesNoGap) {
+    // nothing can give way, so forces grow from iteration to iteration until any gap is a last digit of them
+    for (const char* discretisation : {"node", "mortar", "petrov_galerkin"}) {
+        support::SceneRun run;
+        EXPECT_THROW(support::run_scene(run, support::shipped("extreme/driven_through_a_wall.yaml"),
+                                        {{"contact.sole.discretisation", discretisation}}),
+                     RunFailure)
+            << discretisation;
+        for (const support::RunStep& step : run.steps)
+            EXPECT_LT(step.pairs[0].penetration, 1e-6 * 0.2) << discretisation; // facets of 0.2 m
+    }
+}
+
 } // namespace
 } // namespace osculate

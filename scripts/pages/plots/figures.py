@@ -16,23 +16,25 @@ import vtk
 
 import prose
 import results
-from results import INERTIA, LINES as MESH_LINES, MASTERS, MESHES, OPTIONS, THREADS
+from results import INERTIA, LINES as MESH_LINES, MESHES, METHODS, OPTIONS, THREADS
 
 RUNS = Path("out/figures")
 IMAGES = Path("docs/images")
-# name of a master: its value of the key `surface`
-SURFACES = {
-    "facets": "facets", "rpim": "rpim", "blend": "blend", "blend_ring3": "{blend: {ring: 3}}",
-    "blend_r3": "{blend: {basis: r3}}", "blend_r5": "{blend: {basis: r5}}", "blend_q05": "{blend: {q: 0.5}}",
-}
-DRAWN = MASTERS[:3]
-LINES = {"facets": 'lw 1.5 lc rgb "#d95f02" title "facets"', "rpim": 'lw 1.5 lc rgb "#1f78b4" title "rpim"',
-         "blend": 'lw 2 lc rgb "#111111" title "blend"'}
+# name of a method: keys of the pair
+KEYS = {
+    "facets": {"surface": "facets", "discretisation": "node"},
+    "facets_h0": {"surface": "{facets: {hysteresis: 0}}", "discretisation": "node"},
+    "rpim": {"surface": "rpim", "discretisation": "node"}, "blend": {"surface": "blend", "discretisation": "node"},
+    "default": {}, "default_ring3": {"surface": "{blend: {ring: 3}}"},
+} | {f"default_{basis}": {"surface": f"{{blend: {{basis: {basis}}}}}"} for basis in ("multiquadric", "r3", "r5")}
+LINES = {"facets_h0": 'lw 1.5 lc rgb "#d95f02" title "facets, node"', "rpim": 'lw 1.5 lc rgb "#1f78b4" title "rpim, node"',
+         "default": 'lw 2 lc rgb "#111111" title "default"'}
+DRAWN = tuple(LINES)
 TIMED = ("half_tube", "foundation_quad", "foundation_tri", "foundation_hybrid")
 REPETITIONS = 3  # of these; the fastest is kept
 
 HALVED = "bodies.tube.mesh.half_tube.divisions=[26, 24, 3]"
-# name of a run: scene, pair, further settings; each runs once per master
+# name of a run: scene, pair, further settings; each runs once per method
 SCENES = {
     "half_tube": ("half_tube", "sliding", []),
     "half_tube_fine_steps": ("half_tube", "sliding", ["stages.slide.steps=120"]),
@@ -53,36 +55,38 @@ SCENES |= {name: (name, "sliding", []) for name in INERTIA}
 RUNS_OF_OPTIONS = set(OPTIONS.values()) | {(name, "blend") for name in INERTIA}
 
 
-def folder(name, master):
-    return RUNS / f"{name}_{master}"
+def folder(name, method):
+    return RUNS / f"{name}_{method}"
 
 
 def runs():
-    named = [(name, master) for name in SCENES for master in MASTERS if (name, "blend") not in RUNS_OF_OPTIONS]
-    return named + [("half_tube", master) for master in MASTERS] + sorted(RUNS_OF_OPTIONS - {("half_tube", "blend")})
+    alone = {name for name, _ in RUNS_OF_OPTIONS} - {"half_tube"}
+    return ([(name, method) for name in SCENES if name not in alone for method in METHODS]
+            + sorted(RUNS_OF_OPTIONS - {("half_tube", "default")}))
 
 
 def run_scenes(osculate, keep):
     # the sparse solvers call small dense kernels, where threads cost more than they give
     environment = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"} | os.environ
-    for name, master in runs():
+    for name, method in runs():
         scene, pair, settings = SCENES[name]
-        where = folder(name, master)
+        where = folder(name, method)
         done = where / "summary.json"
         if keep and done.is_file() and json.loads(done.read_text())["status"] == "done":
             continue
-        words = [word for setting in [f"contact.{pair}.surface={SURFACES[master]}", *settings]
+        keys = [f"contact.{pair}.{key}={value}" for key, value in KEYS[method].items()]
+        words = [word for setting in [*keys, *settings]
                  for word in ("--set", setting)]
         least = math.inf
         for _ in range(REPETITIONS if name in TIMED else 1):
-            print(f"running {name} with {master} ...", file=sys.stderr, flush=True)
+            print(f"running {name} with {method} ...", file=sys.stderr, flush=True)
             last = RUNS / "last"
             shutil.rmtree(last, ignore_errors=True)
             ended = subprocess.run([osculate, "run", f"configs/paper/{scene}.yaml", "-o", last, "--quiet",
                                     "--threads", str(THREADS), *words], env=environment)
             # a run that gives up (exit 3) is a result, too
             if ended.returncode not in (0, 3):
-                sys.exit(f"figures: {name} with {master} ended with exit code {ended.returncode}")
+                sys.exit(f"figures: {name} with {method} ended with exit code {ended.returncode}")
             total = json.loads((last / "summary.json").read_text())["seconds"]["total"]
             if total < least:
                 least = total
@@ -95,12 +99,12 @@ def read_table(path):
         return [{key: float(value) if value else None for key, value in row.items()} for row in csv.DictReader(file)]
 
 
-def summary(name, master):
-    return json.loads((folder(name, master) / "summary.json").read_text())
+def summary(name, method):
+    return json.loads((folder(name, method) / "summary.json").read_text())
 
 
-def attempts(name, master):
-    with open(folder(name, master) / "steps.csv", newline="") as file:
+def attempts(name, method):
+    with open(folder(name, method) / "steps.csv", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -108,15 +112,15 @@ def mean(values):
     return sum(values) / len(values)
 
 
-def slides(name, master):
+def slides(name, method):
     """Rows of the history after the pressure step."""
-    return read_table(folder(name, master) / "history.csv")[1:]
+    return read_table(folder(name, method) / "history.csv")[1:]
 
 
-def centre_line(name, master):
+def centre_line(name, method):
     """(x, pressure) of the slave nodes on y = 0 at the end: contact force along the normal over tributary area."""
     reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(str(sorted((folder(name, master) / "frames").glob("base.slave_*.vtp"))[-1]))
+    reader.SetFileName(str(sorted((folder(name, method) / "frames").glob("base.slave_*.vtp"))[-1]))
     reader.Update()
     surface = reader.GetOutput()
     stress = surface.GetPointData().GetArray("normal_stress")
@@ -131,9 +135,9 @@ def roughness(pressures):
     return math.sqrt(mean([d * d for d in second])) / mean(p[1:-1])
 
 
-def iterations(name, master):
+def iterations(name, method):
     """Of the first step, mean and largest of the others; all attempts of a step count. At last the attempts cut."""
-    rows = attempts(name, master)
+    rows = attempts(name, method)
     steps, sum_ = [], 0
     for row in rows:
         sum_ += int(row["iterations"])
@@ -145,9 +149,9 @@ def iterations(name, master):
             len(rows) - len(steps))
 
 
-def late_forces(name, master):
+def late_forces(name, method):
     """Normal and driving force of the half-tube over the distances of the paper's sliding steps 5 to 30."""
-    rows = slides(name, master)
+    rows = slides(name, method)
     rows = rows[len(rows) // 6 - 1:]  # 30 steps or 120: from 0.5 m on
     return [row["pair.sliding.normal"] for row in rows], [abs(row["set.rear.reaction_y"]) for row in rows]
 
@@ -160,8 +164,8 @@ def driven(name):
     return [(3 * (s - math.sin(2 * math.pi * s) / (2 * math.pi)), row) for s, row in zip(parts, rows)]
 
 
-def of_half_tube(name, master):
-    N, D = late_forces(name, master)
+def of_half_tube(name, method):
+    N, D = late_forces(name, method)
     return {"normal": mean(N), "driving": mean(D), "ripple": 100 * (max(D) - min(D)) / mean(D)}
 
 
@@ -175,30 +179,30 @@ def of_inertia(name):
             "unbalance": max(abs(row["energy.balance"]) for _, row in steps) / energy}
 
 
-def of_foundation(name, master):
-    return {"roughness": roughness([value for _, value in centre_line(name, master)]),
-            "normal": read_table(folder(name, master) / "history.csv")[-1]["pair.base.normal"]}
+def of_foundation(name, method):
+    return {"roughness": roughness([value for _, value in centre_line(name, method)]),
+            "normal": read_table(folder(name, method) / "history.csv")[-1]["pair.base.normal"]}
 
 
-def of_mesh_line(name, master):
-    first = [row for row in read_table(folder(name, master) / "iterations.csv") if row["attempt"] == 1]
+def of_mesh_line(name, method):
+    first = [row for row in read_table(folder(name, method) / "iterations.csv") if row["attempt"] == 1]
     return {"status_changes": [int(row["status_changes"]) for row in first],
             "residuals": [row["residual"] for row in first[-4:]]}
 
 
-def measured(name, master):
+def measured(name, method):
     """Everything that tables are made of, as the run gives it."""
-    run, rows = summary(name, master), attempts(name, master)
+    run, rows = summary(name, method), attempts(name, method)
     figures = {"status": run["status"], "seconds": run["seconds"], "factorisations": run["factorisations"],
-               "attempts": int(rows[-1]["attempt"]), "iterations": iterations(name, master),
+               "attempts": int(rows[-1]["attempt"]), "iterations": iterations(name, method),
                "first_residual": float(rows[0]["value"]), "last_residual": float(rows[-1]["value"])}
     if name in INERTIA:
         return figures | of_inertia(name)
     if name in MESH_LINES:
-        return figures | of_mesh_line(name, master)
+        return figures | of_mesh_line(name, method)
     if name.startswith("foundation"):
-        return figures if name.endswith("_tight") else figures | of_foundation(name, master)
-    return figures | of_half_tube(name, master)
+        return figures if name.endswith("_tight") else figures | of_foundation(name, method)
+    return figures | of_half_tube(name, method)
 
 
 def short(figures):
@@ -212,11 +216,11 @@ def short(figures):
 
 def store():
     of = {}
-    for name, master in sorted(set(runs())):
-        of.setdefault(name, {})[master] = short(measured(name, master))
+    for name, method in sorted(set(runs())):
+        of.setdefault(name, {})[method] = short(measured(name, method))
     results.DATA.parent.mkdir(parents=True, exist_ok=True)
-    lines = [f'"{name}": {{\n' + ",\n".join(f'  "{master}": {json.dumps(run)}' for master, run in masters.items()) + "\n}"
-             for name, masters in of.items()]
+    lines = [f'"{name}": {{\n' + ",\n".join(f'  "{method}": {json.dumps(run)}' for method, run in methods.items()) + "\n}"
+             for name, methods in of.items()]
     results.DATA.write_text("{\n" + ",\n".join(lines) + "\n}\n")
 
 
@@ -235,8 +239,8 @@ set key top right samplen 2 spacing 1.2
 
 
 def draw_friction():
-    curves = {master: [(0.025 * k, row["set.rear.reaction_y"] / 1e6)
-                       for k, row in enumerate(slides("half_tube_fine_steps", master), 1)] for master in DRAWN}
+    curves = {method: [(0.025 * k, row["set.rear.reaction_y"] / 1e6)
+                       for k, row in enumerate(slides("half_tube_fine_steps", method), 1)] for method in DRAWN}
     gnuplot(f"""
 set terminal pngcairo size 900,380 font "sans,12" background "white"
 set output "{IMAGES}/friction.png"
@@ -244,7 +248,7 @@ set output "{IMAGES}/friction.png"
 set xlabel "sliding distance, m"; set ylabel "driving force, MN"
 set xrange [0:3.05]; set yrange [1.64:1.80]; set ytics 0.04; set format y "%.2f"
 set key bottom right
-plot {", ".join(f"${master} with lines {LINES[master]}" for master in DRAWN)}
+plot {", ".join(f"${method} with lines {LINES[method]}" for method in DRAWN)}
 """, **curves)
 
 
@@ -264,13 +268,13 @@ plot $static with linespoints pt 7 ps 0.5 lw 1.5 lc rgb "#111111" title "static"
 
 
 def draw_pressure():
-    curves = {f"{master}_{mesh}": [(x, p / 1e6) for x, p in centre_line(f"foundation_{mesh}", master)]
-              for master in DRAWN for mesh in MESHES}
+    curves = {f"{method}_{mesh}": [(x, p / 1e6) for x, p in centre_line(f"foundation_{mesh}", method)]
+              for method in DRAWN for mesh in MESHES}
     panels = "".join(f"""
 set title "{title}"
 set ylabel "{'contact pressure, MPa' if mesh == 'quad' else ''}"
 {'unset key' if mesh != 'hybrid' else 'set key top center'}
-plot {", ".join(f"${master}_{mesh} with linespoints pt 7 ps 0.35 {LINES[master]}" for master in DRAWN)}
+plot {", ".join(f"${method}_{mesh} with linespoints pt 7 ps 0.35 {LINES[method]}" for method in DRAWN)}
 """ for mesh, title in (("quad", "quadrilaterals"), ("tri", "triangles"), ("hybrid", "both")))
     gnuplot(f"""
 set terminal pngcairo size 1200,380 font "sans,12" background "white"
@@ -285,7 +289,7 @@ unset multiplot
 
 def draw_half_tube():
     subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24", "/usr/bin/python3",
-                    Path(__file__).with_name("half_tube.py"), folder("half_tube", "blend"),
+                    Path(__file__).with_name("half_tube.py"), folder("half_tube", "default"),
                     IMAGES / "half_tube.png"], check=True)
 
 

@@ -50,11 +50,13 @@ SURFACE_TEXTS = {
         "problem": "Surfaces through the nodes of small hybrid meshes on a sphere and a saddle, as in Table 1 of the paper. "
                    "Its mesh is not\npublished; the meshes here have its errors of position and normal with plain facets. "
                    "`height_1` is the paper's form, the\nheight x3(x1, x2) on the 1-ring of each facet; `rpim_k` and "
-                   "`blend_k` are those of Osculate, on k rings.",
+                   "`blend_k` are those of Osculate, on k rings. `blend` is what contact uses by "
+                   "default: 2 rings, with r^5 or r^3\npatch by patch.",
         "source": f"the exact surfaces; {PAPER}, Table 1, for the ratio of `height_1` to facets",
         "defects": "On the saddle the facets (0.9 m) are larger than the radius of curvature at its centre (0.47 m): no "
                    "surface on turned\nreference planes resolves it there. `height_1` has an advantage: it knows in which direction "
-                   "the surface is a height.",
+                   "the surface is a height. On one of the\neight meshes positions are wrong by several times those of facets; it "
+                   "makes most of the ratio of `blend` in position.",
     },
     "surface_convergence": {
         "problem": "How fast position, normal and mean curvature of surfaces through the nodes converge on irregular hybrid "
@@ -66,7 +68,7 @@ SURFACE_TEXTS = {
     "surface_options": {
         "problem": "Which rings and which radial basis for the blended surface: errors on irregular hybrid meshes. `blend_k` "
                    "is the k-ring with\nthe multiquadric R = 1.42, q = 1.03; `_r3` and `_r5` are polyharmonic, R = 0, q = 1.5 "
-                   "and 2.5.",
+                   "and 2.5.\n`blend` takes r^5 or r^3 patch by patch, which is the default of contact.",
         "source": "the exact surfaces",
         "defects": "None of the options is better everywhere.",
     },

@@ -2,6 +2,7 @@
 
 #include "contact/area_vector.hpp"
 #include "contact/fold.hpp"
+#include "contact/largest_turn.hpp"
 #include "contact/merge.hpp"
 #include "contact/reach.hpp"
 #include "osculate/contact/facet_patch.hpp"
@@ -127,9 +128,10 @@ private:
             domain.vertices = surface.facet_ring(facet, ring);
             MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2);
             for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[domain.vertices[i]]).transpose();
-            const Multiquadric basis = options.basis                  ? *options.basis
-                                       : options.polynomial_terms < 6 ? r3 // r^5 needs quadratics
-                                                                      : basis_for(turn_of(surface, facet, X));
+            const Multiquadric basis = options.basis ? *options.basis
+                                       : options.polynomial_terms < 6
+                                           ? r3 // r^5 needs quadratics
+                                           : basis_for(largest_turn(surface, surface.ring_facets(facet, ring), X));
             domain.patch = RpimPatch::fit(u, basis, options.polynomial_terms);
             if (!options.basis && (!domain.patch || domain.patch->polynomial_terms() < options.polynomial_terms))
                 domain.patch = RpimPatch::fit(u, r3, options.polynomial_terms);
@@ -142,17 +144,6 @@ private:
         }
         ++fallbacks_;
         return {};
-    }
-
-    /// Largest angle from a facet to those that share a vertex with it.
-    static double turn_of(const mesh::HalfEdgeSurface& surface, Index facet, const std::vector<Vec3>& X) {
-        const Vec3 own = area_vector(surface.facet_vertices(facet), X);
-        double largest = 0;
-        for (const Index f : surface.ring_facets(facet, 1)) {
-            const Vec3 n = area_vector(surface.facet_vertices(f), X);
-            largest = std::max(largest, std::atan2(n.cross(own).norm(), n.dot(own)));
-        }
-        return largest;
     }
 
     const mesh::HalfEdgeSurface& surface_;

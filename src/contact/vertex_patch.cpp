@@ -1,6 +1,7 @@
 #include "contact/vertex_patch.hpp"
 
 #include "contact/fold.hpp"
+#include "contact/largest_turn.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -80,14 +81,6 @@ std::vector<double> turns(const mesh::HalfEdgeSurface& surface, Index vertex, co
     return result;
 }
 
-/// Angle from facet to facet at a vertex: twice the largest to its normal.
-double turn_of(const mesh::HalfEdgeSurface& surface, Index vertex, const std::vector<Index>& sector,
-               const std::vector<Vec3>& X) {
-    double largest = 0;
-    for (const double angle : turns(surface, vertex, sector, sector, X)) largest = std::max(largest, angle);
-    return 2 * largest;
-}
-
 std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Index vertex,
                                       const std::vector<Index>& sector, const std::vector<Vec3>& X,
                                       const BlendOptions& options) {
@@ -137,9 +130,11 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
     const auto q = [&](const Vec2& u) { return u.dot(patch.metric * u); };
     for (const Vec2& u : own) near = std::max(near, q(u));
 
+    std::vector<Index> within = sector;
+    for (int level = 1; level < options.level; ++level) within = grown(surface, within);
     const Multiquadric basis = options.basis                  ? *options.basis
                                : options.polynomial_terms < 6 ? r3 // r^5 needs quadratics
-                                                              : basis_for(turn_of(surface, vertex, sector, X));
+                                                              : basis_for(largest_turn(surface, within, X));
     std::vector<Index> facets = sector;
     for (int level = 1; level <= highest_level; ++level) {
         if (level > 1) {

@@ -3,7 +3,9 @@
 #include "contact/surfaces.hpp"
 #include "osculate/contact/master_surface.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
 namespace osculate::contact {
 namespace {
@@ -39,6 +41,27 @@ TEST(RadialBasis, IsR5WhereTheFacetsResolveTheSurfaceAndR3WhereTheyDoNot) {
         EXPECT_EQ(gaps(coarse, blend, std::nullopt), gaps(coarse, blend, r3));
         EXPECT_NE(gaps(fine, blend, r3), gaps(fine, blend, r5));
     }
+}
+
+TEST(RadialBasis, IsR3WherePatchesReachOverABend) {
+    // flat up to x = 3, then steep by 25 degrees; patches of vertices at 2.5 reach 3.5, those at 1.5 end at 2.5
+    mesh::Mesh block = mesh::make_block({0, 0, -1}, {5, 4, 1}, {10, 8, 1});
+    for (Vec3& x : block.nodes) x.z() -= std::max(0.0, x.x() - 3) * std::tan(25 * std::numbers::pi / 180);
+    const Surface surface = testing::surface_of("Bent", block, "z_max");
+    const auto gap = [&](double x, std::optional<Multiquadric> basis) {
+        BlendOptions options;
+        options.basis = basis;
+        const auto blend = make_blend_surface(surface.topology, surface.x, options);
+        FacetSearch search(surface.topology);
+        search.build(surface.x);
+        ContactPoint point;
+        const Vec3 s(x, 2.1, 0.05);
+        blend->evaluate(s, search.global(s, surface.x), surface.x, point);
+        return point.gap;
+    };
+    EXPECT_NE(gap(2.6, r3), gap(2.6, r5));
+    EXPECT_EQ(gap(2.6, std::nullopt), gap(2.6, r3));
+    EXPECT_EQ(gap(0.8, std::nullopt), gap(0.8, r5));
 }
 
 TEST(RadialBasis, IsR3WithoutQuadraticPolynomials) {

@@ -1,5 +1,5 @@
 """Solves the paper's half-tube and foundation with CalculiX and with Osculate on the same meshes, one thread, and writes
-docs/data/calculix.md. Runs are kept in out/calculix.
+docs/data/calculix.md and docs/images/ripple_calculix.png. Runs are kept in out/calculix.
 
     calculix_decks.py OSCULATE      called by scripts/measure/calculix, from the root of the repository
 """
@@ -19,6 +19,7 @@ import yaml
 
 OUT = Path("out/calculix")
 PAGE = Path("docs/data/calculix.md")
+PLOT = Path("docs/images/ripple_calculix.png")
 REPETITIONS = 2  # of every run, by turns; the one with the least CPU time is kept
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 # Faces S1 to S6 of a C3D8, whose nodes have the order of VTK's hexahedron.
@@ -27,9 +28,20 @@ PENALTIES = (50, 5)  # times E of the softer body over the side of a slave facet
 STICK_SLOPE = 0.1    # times the penalty, as CalculiX's manual advises
 TENSION = 0.0025     # times the applied pressure: the manual's 0.25 % of the largest stress; node-to-surface alone reads it
 MEAN_FROM = 11       # first slide of means and ripples: 11 to 30 are two facets of the tube
-HALF_TUBE, FOUNDATION = "half_tube", "foundation_quad"
+HALF_TUBE, HALVED, FOUNDATION = "half_tube", "half_tube_halved", "foundation_quad"
+# scene: its file, its pair, further settings, kinds of contact in CalculiX, runs
+SCENES = {
+    HALF_TUBE: ("half_tube", "sliding", (), ("SURFACE TO SURFACE", "NODE TO SURFACE"), REPETITIONS),
+    HALVED: ("half_tube", "sliding", ("bodies.tube.mesh.half_tube.divisions=[26, 24, 3]",), ("SURFACE TO SURFACE",), 1),
+    FOUNDATION: ("foundation_quad", "base", (), ("SURFACE TO SURFACE", "NODE TO SURFACE"), REPETITIONS),
+}
+# name of a method of Osculate: keys of the pair
+METHODS = {
+    "default": (), "blend, nodes": ("surface=blend", "discretisation=node"),
+    "facets, nodes": ("surface={facets: {hysteresis: 0}}", "discretisation=node"),
+}
 # Known not to be solved at one increment, reported as it ends; everything else has to come to its end.
-MAY_FAIL = {(HALF_TUBE, "NODE TO SURFACE", 50)}
+MAY_FAIL = {(HALF_TUBE, "NODE TO SURFACE", 50), (HALVED, "SURFACE TO SURFACE", 50), (HALVED, "SURFACE TO SURFACE", 5)}
 # Measures from a process of its own: a child's peak memory begins with that of who started it.
 MEASURE = """
 import json, os, sys, time
@@ -312,12 +324,13 @@ def figures(scene, model, run):
 
 
 def table(scene, model, runs):
-    cells = {HALF_TUBE: ["iterations, press + slides", "D, MN", "ripple, %"], FOUNDATION: ["iterations", "reaction of the bed, MN"]}
-    head = ["program, contact", "CPU s", "over blend", "over facets", "over mortar", "wall s", "memory, MB", *cells[scene],
+    cells = (["iterations", "reaction of the bed, MN"] if scene == FOUNDATION
+             else ["iterations, press + slides", "D, MN", "ripple, %"])
+    head = ["program, contact", "CPU s", "over default", "over blend", "over facets", "wall s", "memory, MB", *cells,
             "mean settlement, mm", "largest, mm"]
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     against = [next(run["cpu"] for name, run in runs.items() if name.startswith(f"Osculate, {start}"))
-               for start in ("blend", "facets, nodes", "facets, mortar")]
+               for start in METHODS]
     for name, run in runs.items():
         row = [name, f"{run['cpu']:.2f}"]
         if "why" in run:
@@ -330,48 +343,73 @@ def table(scene, model, runs):
     return lines
 
 
+def draw(models, runs):
+    """Ripple over CPU seconds, a line per method from the tube's mesh to that halved."""
+    series = {}
+    for scene in (HALF_TUBE, HALVED):
+        for name, run in runs[scene].items():
+            if "why" not in run:
+                series.setdefault(name, []).append((run["cpu"], float(figures(scene, models[scene], run)[2])))
+    colours = ["#111111", "#1f78b4", "#6a3d9a", "#d95f02", "#e6ab02", "#a6761d", "#e7298a"]
+    blocks = "".join(f"$s{k} << EOD\n" + "\n".join(f"{x!r} {y!r}" for x, y in points) + "\nEOD\n"
+                     for k, points in enumerate(series.values()))
+    curves = ", ".join(f'$s{k} with linespoints pt {7 if name.startswith("Osculate") else 5} lw 1.5 lc rgb "{colours[k % 7]}" '
+                       f'title "{name}"' for k, name in enumerate(series))
+    subprocess.run(["gnuplot"], text=True, check=True, input=blocks + f"""
+set terminal pngcairo size 900,420 font "sans,12" background "white"
+set output "{PLOT}"
+set border 3 lc rgb "#444444"; set tics nomirror out textcolor rgb "#222222"; set grid lc rgb "#dddddd" lt 1
+set logscale xy; set yrange [0.1:10]
+set xlabel "CPU seconds"; set ylabel "ripple of the driving force, %"
+set key outside right samplen 2 spacing 1.2
+plot {curves}
+""")
+
+
 def main(program):
     program = str(Path(program).resolve())
     OUT.mkdir(parents=True, exist_ok=True)
     models, jobs, runs, same = {}, [], {}, {}
-    for scene, pair in ((HALF_TUBE, "sliding"), (FOUNDATION, "base")):
-        path = Path("configs/paper") / f"{scene}.yaml"
+    for scene, (file, pair, settings, kinds, _) in SCENES.items():
+        path = Path("configs/paper") / f"{file}.yaml"
         # Not counted: the mesh, from a first run.
-        models[scene] = model = Model(run_osculate(program, path, f"{scene}_mesh", [f"contact.{pair}.surface=facets"])["folder"])
+        models[scene] = model = Model(run_osculate(program, path, f"{scene}_mesh",
+                                                   [f"contact.{pair}.surface=facets", *settings])["folder"])
         same[scene] = without_contact(program, scene, model)
         if same[scene] > 1e-5:
             raise Failure(f"{scene} without contact: displacements of the two programs differ by {same[scene]:.1e}")
-        for surface, where in (("blend", "node"), ("facets", "node"), ("facets", "mortar")):
-            changes = f"contact.{pair}.surface={surface}", f"contact.{pair}.discretisation={where}"
-            jobs.append((scene, f"Osculate, {surface}, {where.replace('node', 'nodes')}",
-                         partial(run_osculate, program, path, changes=changes)))
+        for method, keys in METHODS.items():
+            changes = [f"contact.{pair}.{change}" for change in keys]
+            jobs.append((scene, f"Osculate, {method}", partial(run_osculate, program, path, changes=[*changes, *settings])))
         increments = sum(stage["steps"] for stage in model.scene["stages"].values())
-        for kind in ("SURFACE TO SURFACE", "NODE TO SURFACE"):
+        for kind in kinds:
             for penalty in PENALTIES:
                 run = run_or_failure if (scene, kind, penalty) in MAY_FAIL else run_calculix
                 jobs.append((scene, f"CalculiX, {kind.lower().replace(' ', '-')}, {penalty} E/h",
                              partial(run, deck(model, kind, penalty), increments)))
     for turn in range(REPETITIONS):
         for scene, name, job in jobs:
+            if turn >= SCENES[scene][-1]:
+                continue
             run = job(name=re.sub(r"\W+", "_", f"{scene}_{name}_{turn}"))
             print(f"{scene}, {name}: {run['cpu']:.2f} CPU s, {run['wall']:.2f} s", file=sys.stderr)
             best = runs.setdefault(scene, {})
             if name not in best or run["cpu"] < best[name]["cpu"]:
                 best[name] = run
     calculix = re.search(r"Version (\S+)", subprocess.run(["ccx", "-v"], capture_output=True, text=True).stdout)[1]
-    blend = {scene: next(iter(runs[scene].values())) for scene in runs}
+    default = {scene: next(iter(runs[scene].values())) for scene in runs}
     residual = max(run["residual"] for best in runs.values() for run in best.values() if "residual" in run)
     tolerance = {scene: model.scene["solver"]["tolerance"] for scene, model in models.items()}
     page = f"""\
 Written by `scripts/measure/calculix`: CalculiX {calculix} (`ccx`, Debian's, with its default solver SPOOLES) and Osculate
-{blend[HALF_TUBE]['version']} on the meshes, loads and supports of `configs/paper`, one thread, one after the other. Each ran {REPETITIONS} times, by turns; the run with the
+{default[HALF_TUBE]['version']} on the meshes, loads and supports of `configs/paper`, one thread, one after the other. Each ran {REPETITIONS} times, by turns; the run with the
 least CPU time is shown. CPU is user and system time, and memory is the largest resident set. The operating system counts both,
 and they include reading and writing. *Over* is CPU time divided by that of the Osculate run of that name.
 
-- Osculate: the scenes as shipped (`blend, nodes`), with `contact.<pair>.surface=facets`, and with
-  `contact.<pair>.discretisation=mortar` too, on facets like CalculiX's contact. `nodes` does the same as node-to-surface;
-  `mortar` comes closest to surface-to-surface. Osculate writes the bodies and both surfaces after every step
-  ({100 * blend[HALF_TUBE]['output']:.0f} % of its time on the half-tube with blend, {100 * blend[FOUNDATION]['output']:.0f} % on the foundation).
+- Osculate: the scenes as shipped (*default*: smooth, forces averaged as in surface-to-surface), and with
+  `contact.<pair>.discretisation=node` on `blend` and on `facets` without hysteresis; *facets, nodes* does the same as
+  node-to-surface. Osculate writes the bodies and both surfaces after every step
+  ({100 * default[HALF_TUBE]['output']:.0f} % of its time on the half-tube, {100 * default[FOUNDATION]['output']:.0f} % on the foundation).
 - CalculiX: C3D8, no NLGEOM, pressures as nodal forces, so they are dead loads; `*STATIC, DIRECT` with the scene's steps as increments.
   `PRESSURE-OVERCLOSURE=LINEAR`, its slope {' and '.join(str(p) for p in PENALTIES)} times E of the softer body over h, the side of a slave facet; stick slope
   {STICK_SLOPE} of that. It prints totals of reactions, and displacements of the loaded face after the press; no fields.
@@ -383,14 +421,22 @@ and they include reading and writing. *Over* is CPU time divided by that of the 
 
 ## Half-tube: pressed, then slid by 3 m in 30 steps
 D is the force that drives the contactor, its mean and peak-to-peak ripple over slides {MEAN_FROM} to 30; settlements are those of
-the loaded face after the press. The contactor settles furthest on `blend`, because facets of the tube lie inside the
+the loaded face after the press. The contactor settles furthest on smooth masters, because facets of the tube lie inside the
 cylinder through its nodes, by up to their sagitta of 22 mm.
 
 """ + "\n".join(table(HALF_TUBE, models[HALF_TUBE], runs[HALF_TUBE])) + """
 
+## The same with the tube's mesh halved
+The tube has twice as many facets in both directions; one run each.
+
+""" + "\n".join(table(HALVED, models[HALVED], runs[HALVED])) + """
+
+![Ripple over CPU seconds](../images/ripple_calculix.png)
+
 ## Foundation: pressed on soil, one step
 """ + "\n" + "\n".join(table(FOUNDATION, models[FOUNDATION], runs[FOUNDATION])) + "\n"
     PAGE.write_text(page)
+    draw(models, runs)
     print(page)
 
 

@@ -55,8 +55,8 @@ SURFACE_TEXTS = {
         "source": f"the exact surfaces; {PAPER}, Table 1, for the ratio of `height_1` to facets",
         "defects": "On the saddle the facets (0.9 m) are larger than the radius of curvature at its centre (0.47 m): no "
                    "surface on turned\nreference planes resolves it there. `height_1` has an advantage: it knows in which direction "
-                   "the surface is a height. On one of the\neight meshes positions are wrong by several times those of facets; it "
-                   "makes most of the ratio of `blend` in position.",
+                   "the surface is a height. On one of the\neight meshes, where patches fold, positions are wrong by twice those of "
+                   "facets; without it `blend` is as good as they are.",
     },
     "surface_convergence": {
         "problem": "How fast position, normal and mean curvature of surfaces through the nodes converge on irregular hybrid "

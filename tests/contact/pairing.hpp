@@ -77,7 +77,9 @@ struct Pairing {
 };
 
 /// Expects that vary() of slave j is the difference of the points around slaves at s, vertices at x.
-inline void expect_variations(Pairing& pairing, const std::vector<Vec3>& s, const std::vector<Vec3>& x, Index j) {
+/// @param every  of the nodes on which the point depends is tried: evaluating the whole pairing takes its time
+inline void expect_variations(Pairing& pairing, const std::vector<Vec3>& s, const std::vector<Vec3>& x, Index j,
+                              std::size_t every = 5) {
     pairing.evaluate(s, x);
     pairing.discretisation->prepare_variations(pairing.at(s, x), std::vector<char>(s.size(), 1), 1);
     const Index V = pairing.master.topology.vertex_count();
@@ -88,8 +90,8 @@ inline void expect_variations(Pairing& pairing, const std::vector<Vec3>& s, cons
     std::vector<Index> nodes{V + j};
     nodes.insert(nodes.end(), point.nodes.begin(), point.nodes.end());
     const Index carried = pairing.carriers(j);
-    constexpr double h = 1e-5, truncation = 1e-7;     // h^2 over the facets' size, round-off / h
-    for (std::size_t k = 0; k < nodes.size(); k += 5) // evaluating the whole pairing takes its time
+    constexpr double h = 1e-5, truncation = 1e-7; // h^2 over the facets' size, round-off / h
+    for (std::size_t k = 0; k < nodes.size(); k += every)
         for (int c = 0; c < 3; ++c) {
             std::array<ContactPoint, 2> moved;
             for (const int side : {0, 1}) {

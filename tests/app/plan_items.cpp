@@ -50,7 +50,7 @@ choice of slaves             . . . . . . . . . . . . . .
 friction                     x . x x . x x x x x x x x x
 smooth master surface        x . x x . x x x x x x x x x
 mirror images                . . . . . . . . . . . . . .
-mortar weighting             . . . . . x x x x . . x x x
+averaged forces              . . . . . x x x x . . x x x
 interpenetration control     x x x x x x x x x x x x x x
 collision check              x x x x x . . . . x x . . .
 multigrid                    . . . . . . . . . . . . . .

@@ -98,15 +98,15 @@ TEST(SettledPairs, ASceneThatIsWrittenHasTheRolesAndCompilesTheSame) {
 
 TEST(SettledPairs, StagesDecideTheDiscretisationAndExplainSaysSo) {
     EXPECT_EQ(compiled({}).plan.model.pairs[0]->options().discretisation, Discretisation::petrov_galerkin);
-    EXPECT_EQ(compiled({}).item("mortar weighting").reason, "joint: petrov_galerkin: every stage is static");
+    EXPECT_EQ(compiled({}).item("averaged forces").reason, "joint: petrov_galerkin: every stage is static");
     const Compiled dynamic = compiled({{"stages.press.analysis", "dynamic"}});
     EXPECT_EQ(dynamic.plan.model.pairs[0]->options().discretisation, Discretisation::node);
-    EXPECT_FALSE(dynamic.item("mortar weighting").present);
-    EXPECT_EQ(dynamic.item("mortar weighting").reason, "joint: node, which conserves energy: a stage is dynamic");
+    EXPECT_FALSE(dynamic.item("averaged forces").present);
+    EXPECT_EQ(dynamic.item("averaged forces").reason, "joint: node, which conserves energy: a stage is dynamic");
     for (const auto& [word, choice] : {std::pair{"node", Discretisation::node}, {"mortar", Discretisation::mortar}}) {
         const Compiled asked = compiled({{"contact.joint.discretisation", word}});
         EXPECT_EQ(asked.plan.model.pairs[0]->options().discretisation, choice);
-        EXPECT_EQ(asked.item("mortar weighting").reason, std::string("joint: ") + word);
+        EXPECT_EQ(asked.item("averaged forces").reason, std::string("joint: ") + word);
     }
     // one dynamic stage is enough
     std::string two = text;

@@ -105,8 +105,9 @@ TEST_P(PetrovGalerkin, AVertexThatNoneOfItsFacetsCarriesLoadsTheFacetBelowIt) {
         EXPECT_NEAR(point.weights.sum(), 1, 1e-14);
         EXPECT_LE(pairing.carriers(j), 4);
         EXPECT_EQ(pairing.discretisation->loaded_area(j, 0.7), 0.7);
-        testing::expect_variations(pairing, s, master.x, j, 2); // two of the four that carry it among them
     }
+    for (const Index j : {edge[1], edge[3]})
+        testing::expect_variations(pairing, s, master.x, j, 2); // two of the four that carry it among them
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, PetrovGalerkin,

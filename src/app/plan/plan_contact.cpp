@@ -95,7 +95,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
              : contact  ? "no master is cut at a plane of symmetry"
                         : no_pair,
              {sizeof(Vec3) * images, images, "vertices an iteration"});
-    list.say("mortar weighting", slave_facets > 0, contact ? discretisations(plan) : no_pair,
+    list.say("averaged forces", slave_facets > 0, contact ? discretisations(plan) : no_pair,
              {0, slave_facets, "slave facets an iteration"});
 }
 

@@ -249,7 +249,7 @@ private:
                         model_.note(
                             pair.place, "surface to surface from the nodes of " + pair.slave,
                             "nodes alone have no facets to take averages over: node to surface is used instead");
-                    // nodes of a deck meet the facets of the mesh; averages over facets are what we do anyway
+                    // nodes of a deck meet the facets of the mesh; averages over facets are the default in statics
                     text += "  " + fresh_name(slave + "_on_" + master, taken) + ":\n    slave: " + slave +
                             "\n    master: {set: " + master + (mortar ? "" : ", surface: facets") + "}\n";
                     if (!mortar) text += "    discretisation: node  # node to surface\n";

@@ -217,7 +217,7 @@ output::ContactResultants resultants(const PairOf& pair) {
 }
 
 std::vector<double> areas(const PairOf& pair) {
-    const output::Snapshot at = snapshot(session_of(pair));
+    const output::Snapshot& at = snapshot(session_of(pair));
     std::vector<double> all;
     for (Index j = 0; j < pair_of(pair).size(); ++j) all.push_back(at.evaluation(pair.index).area(j));
     return all;

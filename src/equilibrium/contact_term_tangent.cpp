@@ -40,6 +40,59 @@ void ContactTerm::linearise(std::size_t p, Index j, contact::VariationForm form,
     evaluation.fold(j, tangent.G);
 }
 
+std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
+    std::vector<LinearisedContact> list;
+    for (std::size_t p = 0; p < evaluations_.size(); ++p) {
+        model::ContactEvaluation& evaluation = evaluations_[p];
+        const Index size = evaluation.pair().size();
+        std::vector<char> wanted(static_cast<std::size_t>(size), 0);
+        for (Index j = 0; j < size; ++j) {
+            const contact::ContactPoint& point = evaluation.point(j);
+            wanted[j] = point.found &&
+                        (reaches(p, j) || point.gap < reach * evaluation.pair().surface().facet_size(point.facet));
+        }
+        evaluation.prepare_variations(wanted, threads_);
+        contact::ContactVariation variation;
+        Matrix dd;
+        for (Index j = 0; j < size; ++j) {
+            if (wanted[j] == 0) continue;
+            LinearisedContact& one = list.emplace_back();
+            one.coupling = first_[p] + j;
+            one.slave = evaluation.pair().slaves().node[j];
+            one.masters = evaluation.point_nodes(j);
+            one.friction = evaluation.pair().options().friction;
+            const contact::ContactState state = evaluation.state(j, lambda_[p][j]);
+            const Vec3& n = state.normal;
+            const Mat3 mirrored = symmetry_directions(one.slave), kept = Mat3::Identity() - mirrored,
+                       T = Mat3::Identity() - n * n.transpose();
+            int least = 0;
+            n.cwiseAbs().minCoeff(&least);
+            one.axes.col(0) = n;
+            one.axes.col(1) = n.cross(Vec3::Unit(least)).normalized();
+            one.axes.col(2) = n.cross(one.axes.col(1));
+            variation.patches.clear();
+            variation.form = contact::VariationForm::products;
+            evaluation.vary(j, variation);
+            one.A = n * variation.dg;
+            if (one.friction > 0) {
+                evaluation.drift_variation(j, variation, dd);
+                one.A += T * dd;
+            }
+            one.A = kept * one.A;
+            one.F = evaluation.master_force_by_lambda(j);
+            evaluation.fold(j, one.A, one.F);
+            one.A = (one.axes.transpose() * one.A).eval();
+            one.F = (one.F * kept * one.axes).eval();
+            one.w = one.axes.transpose() * (kept * (state.gap * n + T * state.drift));
+            one.w(0) = state.gap;
+            const contact::Coulomb law = evaluation.law(j);
+            one.compliance = law.compliance();
+            one.anchor = one.axes.transpose() * law.anchor();
+        }
+    }
+    return list;
+}
+
 linear::SoftContact ContactTerm::soften(std::size_t p, Index j) const {
     const model::ContactEvaluation& evaluation = evaluations_[p];
     linear::SoftContact soft;

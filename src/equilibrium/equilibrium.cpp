@@ -64,6 +64,11 @@ void Equilibrium::release() {
     tangent_.stiffness_replaced();
 }
 
+bool Equilibrium::advance_friction(Vector& z) {
+    if (!friction_) friction_ = std::make_unique<FrictionStep>(constraints_, unknowns_, bodies_, contact_);
+    return friction_->advance(at_, unbalanced_, z);
+}
+
 void Equilibrium::place() {
     for (std::size_t i = 0; i < at_.x.size(); ++i) at_.tail[i] = rounded_off(model_.X[i], at_.u[i], at_.x[i]);
 }

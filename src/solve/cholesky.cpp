@@ -78,6 +78,14 @@ public:
         std::memcpy(x, x_->x, factor_->n * sizeof(double));
     }
 
+    void solve(const Matrix& B, Matrix& X) override {
+        X.resize(B.rows(), B.cols());
+        if (empty_ || B.cols() == 0) return;
+        require(factor_ != nullptr, "solve before factorise");
+        solve_columns(B.data(), B.cols());
+        X = Eigen::Map<const Matrix>(static_cast<const double*>(x_->x), B.rows(), B.cols());
+    }
+
     SparseIndex failing_equation() const override { return failing_; }
 
     Matrix compliance() override {

@@ -14,7 +14,7 @@ void dgecon_(const char* norm, const int* n, const double* a, const int* lda, co
 
 namespace osculate::solve {
 
-bool DenseLu::factorise(Matrix A) {
+bool DenseLu::factorise(Matrix A, bool ill_conditioned) {
     use_one_blas_thread();
     LU_ = std::move(A);
     const auto n = static_cast<int>(LU_.rows());
@@ -25,6 +25,7 @@ bool DenseLu::factorise(Matrix A) {
     int info = 0;
     dgetrf_(&n, &n, LU_.data(), &n, pivot_.data(), &info);
     if (info != 0) return false;
+    if (ill_conditioned) return true;
     const char one = '1';
     double rcond = 0;
     std::vector<double> work(4 * static_cast<std::size_t>(n));

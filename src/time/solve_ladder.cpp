@@ -1,5 +1,8 @@
 #include "osculate/time/solve_ladder.hpp"
 
+#include "time/friction_rung.hpp"
+#include "time/solve_once.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,46 +17,6 @@ namespace {
 
 constexpr int most_settlings = 40; ///< KINSOL calls of rung 3
 constexpr int most_means = 3;      ///< ways out of a cycle of two iterates, one after another
-
-solve::KinsolOptions kinsol_options(equilibrium::Equilibrium& equilibrium, Index size, const LadderOptions& options) {
-    solve::KinsolOptions kinsol;
-    kinsol.tolerance = options.tolerance;
-    kinsol.max_iterations = options.max_iterations;
-    kinsol.residual_scale = 1 / options.reference_force;
-    kinsol.unknown_scale = Vector::Constant(size, 1 / options.reference_force);
-    kinsol.unknown_scale.head(equilibrium.constraints().equations()).setConstant(1 / options.characteristic_length);
-    equilibrium.set_reference_force(options.reference_force);
-    return kinsol;
-}
-
-/// One KINSOL call. One that comes to rest at the round-off of every row counts as converged: Equilibrium::rests(). One that
-/// comes to rest at round-off of the internal forces as a whole does too, with a larger reference force from then on.
-/// @param rule  of the statuses: they go on from where it came to rest
-solve::KinsolResult solve_once(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
-                               equilibrium::StatusRule rule, LadderOptions& options) {
-    const auto size = static_cast<Index>(z.size());
-    const auto call = [&] {
-        solve::KinsolResult solved = solver.solve(equilibrium, z, kinsol_options(equilibrium, size, options));
-        if (solved.outcome != KinsolOutcome::stopped || !equilibrium.rests()) return solved;
-        solved.outcome = KinsolOutcome::converged;
-        z = equilibrium.last_iterate(); // KINSOL's is the one before
-        solved.residual = equilibrium.records().back().residual;
-        return solved;
-    };
-    solve::KinsolResult solved = call();
-    if (solved.outcome != KinsolOutcome::stopped) return solved; // it may still gain
-    const double moved = largest_component(equilibrium.displacements(z));
-    if (!(moved <= options.farthest)) return solved; // it rests nowhere near a solution
-    const double floor = options.round_off * moved;
-    if (!(floor > options.reference_force && solved.residual * options.reference_force <= options.tolerance * floor))
-        return solved;
-    options.reference_force = floor;
-    equilibrium.set_statuses(equilibrium.statuses(), rule, false);
-    const int before = solved.iterations;
-    solved = call();
-    solved.iterations += before;
-    return solved;
-}
 
 /// Closes every second one of the nodes that `now` has open and `before` had closed; false when there are none.
 bool take_back_half(const equilibrium::Statuses& before, equilibrium::Statuses& now) {
@@ -151,7 +114,13 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
     while (result.stabilised_solves < most_solves && slow < most_slow && failures < most_failures &&
            result.iterations < most_iterations) {
         z = anchor_z;
-        const auto solved = newton(true);
+        auto solved = newton(true);
+        if (solved.outcome == KinsolOutcome::stopped) {
+            z = anchor_z;
+            const LadderResult rubbed = settle_friction(equilibrium, solver, z, statuses, options);
+            result.iterations += rubbed.iterations;
+            if (rubbed.converged()) solved.outcome = rubbed.outcome;
+        }
         ++result.stabilised_solves;
         if (solved.outcome != KinsolOutcome::converged) {
             ++failures;
@@ -250,6 +219,16 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         };
         if (newton("semismooth Newton", options.predicted, force_first)) return singular;
         singular = found_singular();
+        if (start.empty()) return singular;
+        z = unpredicted;
+        LadderResult rubbed = settle_friction(equilibrium, solver, z, start, now);
+        rubbed.iterations += result.iterations;
+        rubbed.reference_force = now.reference_force;
+        if (rubbed.converged()) {
+            result = rubbed;
+            return singular;
+        }
+        result.iterations = rubbed.iterations;
         z = unpredicted;
         if (predicted && newton("semismooth Newton without predictor", options.unpredicted, force_first))
             return singular;
@@ -258,7 +237,6 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
             z = equilibrium.midpoint();
             if (newton("semismooth Newton from the mean of two iterates", {}, false)) return singular;
         }
-        if (start.empty()) return singular;
         z = unpredicted;
         LadderResult settled = settle(equilibrium, solver, z, start, now);
         settled.iterations += result.iterations;

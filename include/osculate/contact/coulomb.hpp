@@ -52,6 +52,10 @@ public:
         return law;
     }
 
+    /// Compliance of stick, m/N, and the contact force at which it is not strained, N; zeros for the exact law.
+    [[nodiscard]] double compliance() const { return follow_ == 0 ? 1 / spring_ : 0; }
+    [[nodiscard]] const Vec3& anchor() const { return anchor_; }
+
     [[nodiscard]] Status status(const ContactState& state) const;
     /// Value and derivatives of the branch `status`, even if status() returns another one.
     [[nodiscard]] ContactResidual residual(const ContactState& state, Status status) const;

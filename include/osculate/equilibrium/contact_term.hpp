@@ -18,6 +18,21 @@ enum class StatusRule {
     frozen   ///< fixed as given; the problem is smooth
 };
 
+/// Contact of one slave node, linear in the motion of its nodes and in its force, in the local axes (n, t_1, t_2):
+///     u = w + A dy = (gap, tangential drift),   forces on the masters F r for the force r on the slave.
+/// If stick is elastic, its law holds for the tangential part of u + compliance (r - anchor).
+struct LinearisedContact {
+    Index coupling = -1, slave = -1;
+    std::span<const Index> masters; ///< (n) global
+    Mat3 axes = Mat3::Identity();   ///< columns n, t_1, t_2
+    Vec3 w = Vec3::Zero();          ///< m
+    double compliance = 0;          ///< m/N
+    Vec3 anchor = Vec3::Zero();     ///< N
+    Matrix A;                       ///< (3 x 3+3n)
+    contact::MatrixX3 F;            ///< (3m x 3), of the first m masters
+    double friction = 0;
+};
+
 ///     forces        lambda on the slave, on its masters as ContactPoint says
 ///     contact law   see contact::Coulomb
 class ContactTerm final : public Term {
@@ -46,6 +61,10 @@ public:
     /// the law by the contact force, (couplings).
     [[nodiscard]] const std::vector<linear::BearingContact>& bearing() const { return bearing_; }
     [[nodiscard]] const std::vector<Mat3>& open_laws() const { return open_laws_; }
+
+    /// Linearises contact at the last evaluate() for the slave nodes that are closed, carry a force, or are nearer to the
+    /// master than `reach` facet sizes.
+    [[nodiscard]] std::vector<LinearisedContact> linearise_near(double reach);
 
     [[nodiscard]] std::string_view name() const override { return "contact"; }
     bool begin(const model::State& state, const Iterate& at, const StepLoad& load, double dt) override;

@@ -5,6 +5,7 @@
 #include "osculate/equilibrium/contact_term.hpp"
 #include "osculate/equilibrium/cycle_watch.hpp"
 #include "osculate/equilibrium/equilibrium_tangent.hpp"
+#include "osculate/equilibrium/friction_step.hpp"
 #include "osculate/linear/constraints.hpp"
 #include "osculate/linear/unknowns.hpp"
 #include "osculate/model/model.hpp"
@@ -48,6 +49,8 @@ public:
     /// Adds springs from the next residual on, see BodyForces; release() removes them.
     void stabilise(Stabilisation springs);
     void release();
+    /// See FrictionStep::advance(), from the last residual.
+    [[nodiscard]] bool advance_friction(Vector& z);
     void set_reference_force(double force) { reference_force_ = force; }
 
     [[nodiscard]] Index size() const override { return unknowns_.size(); }
@@ -121,6 +124,7 @@ private:
     std::array<Term*, 3> terms_;
     Iterate at_; ///< of the last residual
     EquilibriumTangent tangent_;
+    std::unique_ptr<FrictionStep> friction_; ///< null: not needed yet
     bool factorisable_;
     Field prescribed_; ///< StepLoad::prescribed of the attempt
     double reference_force_ = 1;

@@ -10,8 +10,8 @@ namespace osculate::solve {
 /// LAPACK's LU factorisation with partial pivoting.
 class DenseLu {
 public:
-    /// False if A (n x n) is singular to working precision.
-    [[nodiscard]] bool factorise(Matrix A);
+    /// False if A (n x n) is singular, to working precision unless `ill_conditioned` is allowed.
+    [[nodiscard]] bool factorise(Matrix A, bool ill_conditioned = false);
     /// b (n) becomes A^-1 b. @pre factorise() returned true
     void solve(double* b) const;
     [[nodiscard]] Index size() const { return static_cast<Index>(LU_.rows()); }

@@ -26,6 +26,11 @@ public:
     [[nodiscard]] virtual FactorStatus factorise(const SparseMatrix& A) = 0;
     /// x = A^-1 b; b and x (rows) must not overlap.
     virtual void solve(const double* b, double* x) = 0;
+    /// The same for several right sides: X = A^-1 B, both (rows x columns), which must not overlap.
+    virtual void solve(const Matrix& B, Matrix& X) {
+        X.resize(B.rows(), B.cols());
+        for (Index c = 0; c < B.cols(); ++c) solve(B.col(c).data(), X.col(c).data());
+    }
     /// Equation of the smallest pivot, if the last factorisation failed; -1: unknown.
     [[nodiscard]] virtual SparseIndex failing_equation() const { return -1; }
 };

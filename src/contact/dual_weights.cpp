@@ -51,11 +51,21 @@ double reference_per_plane(const Shape& N, const std::vector<Vec3>& X, const std
     }
     return A.cross(B).norm() / plane.normal().dot(a.cross(b));
 }
+/// Largest cosine between the normals of facets that face each other: ten degrees from edge-on.
+constexpr double facing = -0.17;
+
+Vec3 normal_of(std::span<const Vec3> corner) {
+    const Vec3 a = corner[1] - corner[0], b = corner[2] - corner[0];
+    return (corner.size() == 4 ? b.cross(corner[3] - corner[1]) : a.cross(b)).normalized();
+}
+
 } // namespace
 
 DualWeights::DualWeights(const mesh::HalfEdgeSurface& surface, const std::vector<SlaveFacet>& facets,
                          const std::vector<Vec3>& S, double least_cover)
-    : surface_(surface), least_cover_(least_cover), incident_(S.size()) {
+    : surface_(surface), least_cover_(least_cover), has_features_(false), incident_(S.size()) {
+    for (Index h = 0; h < static_cast<Index>(surface.half_edges().size()) && !has_features_; ++h)
+        has_features_ = surface.is_feature_edge(h);
     for (const SlaveFacet& corners : facets) {
         Facet& facet = facets_.emplace_back();
         facet.corners = corners;
@@ -67,6 +77,23 @@ DualWeights::DualWeights(const mesh::HalfEdgeSurface& surface, const std::vector
         for (const RulePoint& q : facet_rule(corners.count, points))
             facet.area += q.weight * reference_area(facet.X, q.xi);
     }
+}
+
+void DualWeights::begin(const PairPositions& at) {
+    if (!has_features_) return;
+    master_normal_.clear();
+    for (Index g = 0; g < surface_.facet_count(); ++g) {
+        const auto vertices = surface_.facet_vertices(g);
+        std::array<Vec3, 4> corner;
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            corner[i] = at.vertices[static_cast<std::size_t>(vertices[i])];
+        master_normal_.push_back(normal_of({corner.data(), vertices.size()}));
+    }
+    for (Facet& facet : facets_) facet.normal = normal_of(corner_positions(facet.corners, at.slaves));
+}
+
+bool DualWeights::faces(const Facet& facet, Index master) const {
+    return master_normal_.empty() || master_normal_[static_cast<std::size_t>(master)].dot(facet.normal) < facing;
 }
 
 void DualWeights::update(Index f, const PairPositions& at, std::vector<Index> seeds) {
@@ -81,6 +108,7 @@ void DualWeights::update(Index f, const PairPositions& at, std::vector<Index> se
     while (!waiting.empty()) {
         const Index candidate = waiting.back();
         waiting.pop_back();
+        if (!faces(facet, candidate)) continue;
         const auto vertices = surface_.facet_vertices(candidate);
         std::array<Vec3, 4> master;
         for (std::size_t i = 0; i < vertices.size(); ++i) master[i] = x[static_cast<std::size_t>(vertices[i])];
@@ -134,7 +162,10 @@ void DualWeights::find_border(Facet& facet, const PairPositions& at, const Slave
     for (const Overlap& overlap : facet.overlaps) {
         const auto vertices = surface_.facet_vertices(overlap.facet);
         for (std::size_t c = 0; c < vertices.size(); ++c) {
-            if (!surface_.is_boundary_edge(surface_.first_half_edge(overlap.facet) + static_cast<Index>(c))) continue;
+            const Index h = surface_.first_half_edge(overlap.facet) + static_cast<Index>(c);
+            if (!surface_.is_boundary_edge(h) &&
+                faces(facet, surface_.half_edges()[surface_.half_edges()[h].twin].facet))
+                continue;
             const std::array<Index, 2> ends{vertices[c], vertices[(c + 1) % vertices.size()]};
             for (const EdgePoint& q : plane.edge_over(at.vertices[static_cast<std::size_t>(ends[0])],
                                                       at.vertices[static_cast<std::size_t>(ends[1])])) {

@@ -80,8 +80,10 @@ MasterFilter::MasterFilter(const mesh::HalfEdgeSurface& surface, std::vector<Vec
                 L[corners[c]] -= area[static_cast<std::size_t>(f)].norm() / (k * m_[static_cast<std::size_t>(v)]) / k;
                 const Vec3 edge = X_[static_cast<std::size_t>(corners[(c + 1) % corners.size()])] -
                                   X_[static_cast<std::size_t>(corners[c])];
-                // (size of the slave along the edge / length of the edge)^2 = 1 / edge . metric edge
-                ratio = std::min(ratio, 1 / std::sqrt(edge.dot(metric * edge)));
+                // (size of the slave along the edge / length of the edge)^2 = 1 / edge . metric edge; across a plane slave
+                // there is no size
+                if (const double inverse = edge.dot(metric * edge); inverse > 0)
+                    ratio = std::min(ratio, 1 / std::sqrt(inverse));
             }
         }
         const double theta = std::clamp(2 * (1 - ratio), 0.0, 1.0);

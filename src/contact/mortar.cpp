@@ -92,6 +92,7 @@ std::unique_ptr<Discretisation> Mortar::clone() const {
 }
 
 void Mortar::begin(const PairPositions& at, const FacetTracking& tracking, int threads) {
+    weights_.begin(at);
     parallel_for(threads, static_cast<Index>(facets_.size()), [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             Facet& facet = facets_[static_cast<std::size_t>(f)];

@@ -44,6 +44,7 @@ public:
     void begin(const PairPositions& at, const FacetTracking& tracking, int threads) override {
         nodes_->begin(at, tracking, threads);
         filter_.begin(at.vertices);
+        weights_.begin(at);
         parallel_for(threads, weights_.facet_count(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f)
                 below_[f] =

@@ -52,33 +52,35 @@ struct FacetSearch::Tree {
     bgi::rtree<Leaf, bgi::rstar<16>> boxes;
 };
 
-FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface, Rules rules) : surface_(&surface) {
+FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface) : surface_(&surface) {
+    Neighbours neighbours;
     for (Index f = 0; f < surface.facet_count(); ++f) {
         const std::vector<Index> around = surface.vertex_neighbours(f);
-        rules.neighbours.insert(rules.neighbours.end(), around.begin(), around.end());
-        rules.neighbour_start.push_back(static_cast<Index>(rules.neighbours.size()));
+        neighbours.facet.insert(neighbours.facet.end(), around.begin(), around.end());
+        neighbours.start.push_back(static_cast<Index>(neighbours.facet.size()));
+    }
+    neighbours_ = std::make_shared<const Neighbours>(std::move(neighbours));
+    rules_ = std::make_shared<const Rules>();
+}
+
+FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const Vec3& about)
+    : FacetSearch(FacetSearch(surface), X, about) {}
+
+FacetSearch::FacetSearch(const FacetSearch& other, const std::vector<Vec3>& X, const Vec3& about) : FacetSearch(other) {
+    Rules rules;
+    for (Index f = 0; f < surface_->facet_count(); ++f) {
+        const auto vertices = surface_->facet_vertices(f);
+        Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
+        for (std::size_t b = 0; b < vertices.size(); ++b) {
+            const Vec3 here = X[vertices[b]] - about, next = X[vertices[(b + 1) % vertices.size()]] - about;
+            centre += here / static_cast<double>(vertices.size());
+            area += here.cross(next);
+        }
+        rules.centre.push_back(centre);
+        rules.normal.push_back(area.normalized());
     }
     rules_ = std::make_shared<const Rules>(std::move(rules));
 }
-
-FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface) : FacetSearch(surface, Rules{}) {}
-
-FacetSearch::FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const Vec3& about)
-    : FacetSearch(surface, [&] {
-          Rules rules;
-          for (Index f = 0; f < surface.facet_count(); ++f) {
-              const auto vertices = surface.facet_vertices(f);
-              Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
-              for (std::size_t b = 0; b < vertices.size(); ++b) {
-                  const Vec3 here = X[vertices[b]] - about, next = X[vertices[(b + 1) % vertices.size()]] - about;
-                  centre += here / static_cast<double>(vertices.size());
-                  area += here.cross(next);
-              }
-              rules.centre.push_back(centre);
-              rules.normal.push_back(area.normalized());
-          }
-          return rules;
-      }()) {}
 
 FacetHit FacetSearch::best_of(std::vector<FacetHit>& hits) const {
     FacetHit best;
@@ -105,7 +107,8 @@ FacetHit FacetSearch::best_of(std::vector<FacetHit>& hits) const {
 }
 
 FacetSearch::~FacetSearch() = default;
-FacetSearch::FacetSearch(const FacetSearch& other) : surface_(other.surface_), rules_(other.rules_) {}
+FacetSearch::FacetSearch(const FacetSearch& other)
+    : surface_(other.surface_), neighbours_(other.neighbours_), rules_(other.rules_) {}
 FacetSearch::FacetSearch(FacetSearch&&) noexcept = default;
 FacetSearch& FacetSearch::operator=(FacetSearch&&) noexcept = default;
 
@@ -202,16 +205,17 @@ FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& 
         const Index centre = best.facet;
         hits.assign(1, best);
         double reach = best.distance + tie * surface_->facet_size(centre);
-        for (Index k = rules_->neighbour_start[centre]; k < rules_->neighbour_start[centre + 1]; ++k) {
+        for (Index k = neighbours_->start[centre]; k < neighbours_->start[centre + 1]; ++k) {
+            const Index facet = neighbours_->facet[k];
             // no point of the facet is closer than the box of its corners
-            Vec3 low = x[surface_->facet_vertices(rules_->neighbours[k])[0]], high = low;
-            for (const Index v : surface_->facet_vertices(rules_->neighbours[k])) {
+            Vec3 low = x[surface_->facet_vertices(facet)[0]], high = low;
+            for (const Index v : surface_->facet_vertices(facet)) {
                 low = low.cwiseMin(x[v]);
                 high = high.cwiseMax(x[v]);
             }
             if ((low - s).cwiseMax(s - high).cwiseMax(0).squaredNorm() > reach * reach) continue;
-            hits.push_back(closest_on(rules_->neighbours[k], s, x));
-            reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(rules_->neighbours[k]));
+            hits.push_back(closest_on(facet, s, x));
+            reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(facet));
         }
         best = best_of(hits);
         if (best.facet < 0) return old; // no distances are numbers

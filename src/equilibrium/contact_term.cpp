@@ -11,10 +11,10 @@ namespace osculate::equilibrium {
 using contact::Status;
 using linear::Constraints;
 
-ContactTerm::ContactTerm(const model::Model& model, const linear::Constraints& constraints,
+ContactTerm::ContactTerm(const model::ContactPairs& pairs, const linear::Constraints& constraints,
                          const linear::Unknowns& unknowns, Timings& timings, int threads)
-    : constraints_(constraints), unknowns_(unknowns), timings_(timings), threads_(threads),
-      evaluations_(model::contact_evaluations(model)), first_{0} {
+    : pairs_(pairs), constraints_(constraints), unknowns_(unknowns), timings_(timings), threads_(threads),
+      evaluations_(model::contact_evaluations(pairs)), first_{0} {
     for (model::ContactEvaluation& evaluation : evaluations_) {
         const std::vector<Index>& slaves = evaluation.pair().slaves().node;
         std::vector<char> held;
@@ -197,7 +197,7 @@ bool ContactTerm::reaches(std::size_t p, Index j) const {
 void ContactTerm::complete(const ConstVectorRef& z, model::State& state) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         const model::ContactEvaluation& evaluation = evaluations_[p];
-        model::ContactHistory history{std::vector<Vec3>(statuses_[p].size()), statuses_[p], evaluation.facets(),
+        model::ContactHistory history{pairs_[p], std::vector<Vec3>(statuses_[p].size()), statuses_[p], evaluation.facets(),
                                       evaluation.master()};
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
             history.lambda[j] = force(z, first_[p] + j);

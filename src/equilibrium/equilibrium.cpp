@@ -11,20 +11,21 @@ using contact::Status;
 using linear::Constraints;
 
 namespace {
-std::vector<Index> slaves_of(const model::Model& model) {
+std::vector<Index> slaves_of(const model::ContactPairs& pairs) {
     std::vector<Index> slaves;
-    for (const auto& pair : model.pairs)
+    for (const auto& pair : pairs)
         slaves.insert(slaves.end(), pair->slaves().node.begin(), pair->slaves().node.end());
     return slaves;
 }
 } // namespace
 
-Equilibrium::Equilibrium(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics,
-                         const TangentChoice& choice, Timings& timings, int threads, bool follower_pressure)
-    : model_(model), constraints_(constraints), unknowns_(constraints, slaves_of(model)), timings_(timings),
-      bodies_(model, dynamics, follower_pressure, timings, threads),
-      contact_(model, constraints, unknowns_, timings, threads), terms_{&bodies_, &loads_, &contact_},
-      tangent_(model, constraints, unknowns_, terms_, bodies_, contact_, at_, choice, timings, threads),
+Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, const linear::Constraints& constraints,
+                         const Dynamics* dynamics, const TangentChoice& choice, Timings& timings, int threads,
+                         bool follower_pressure)
+    : model_(model), pairs_(std::move(pairs)), constraints_(constraints), unknowns_(constraints, slaves_of(pairs_)),
+      timings_(timings), bodies_(model, dynamics, follower_pressure, timings, threads),
+      contact_(pairs_, constraints, unknowns_, timings, threads), terms_{&bodies_, &loads_, &contact_},
+      tangent_(model, pairs_, constraints, unknowns_, terms_, bodies_, contact_, at_, choice, timings, threads),
       factorisable_(choice.factorisable) {
     at_.u.reset(model.X.size());
     at_.x = at_.tail = unbalanced_ = at_.u;

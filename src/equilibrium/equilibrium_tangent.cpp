@@ -20,9 +20,9 @@ bool loose(const model::Body& body, const Field& X, const Constraints& constrain
 }
 
 /// Nodes of all pairs, global, ascending.
-std::vector<Index> contact_nodes(const model::Model& model) {
+std::vector<Index> contact_nodes(const model::ContactPairs& pairs) {
     std::vector<Index> nodes;
-    for (const auto& pair : model.pairs) {
+    for (const auto& pair : pairs) {
         nodes.insert(nodes.end(), pair->slaves().node.begin(), pair->slaves().node.end());
         nodes.insert(nodes.end(), pair->master_nodes().begin(), pair->master_nodes().end());
     }
@@ -32,7 +32,7 @@ std::vector<Index> contact_nodes(const model::Model& model) {
 }
 } // namespace
 
-EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::Constraints& constraints,
+EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs, const linear::Constraints& constraints,
                                        const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
                                        ContactTerm& contact, const Iterate& at, const TangentChoice& choice,
                                        Timings& timings, int threads)
@@ -53,7 +53,7 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
             {body.first_node, body.nodes(), !bodies_.bodies().dynamic() && loose(body, model.X, constraints_)});
     std::vector<Index> slaves;
     for (const linear::Coupling& c : couplings_) slaves.push_back(c.slave);
-    condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, contact_nodes(model),
+    condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, contact_nodes(pairs),
                                                             std::move(slaves), threads);
 }
 

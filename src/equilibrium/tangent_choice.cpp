@@ -10,12 +10,12 @@ bool CondensationCost::pays() const {
     return condensed <= as_fast * factorising && bytes <= most;
 }
 
-CondensationCost condensation_cost(const model::Model& model) {
+CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs) {
     constexpr double nested_dissection = 14; // operations of METIS and CHOLMOD over the square of a body's unknowns
     constexpr double laws = 2;               // T's of a solve
     std::vector<char> touched(model.X.size(), 0);
     double forces = 0;
-    for (const auto& pair : model.pairs) {
+    for (const auto& pair : pairs) {
         for (const Index node : pair->slaves().node) touched[node] = 1;
         for (const Index node : pair->master_nodes()) touched[node] = 1;
         forces += 3.0 * static_cast<double>(pair->size());
@@ -43,23 +43,24 @@ bool goes_by_multigrid(const model::Model& model, LinearSolver asked, bool conde
 }
 
 /// Not where LU wants a matrix, nor with so many slave nodes that their derivatives, held one by one, would take more memory.
-bool goes_by_products(const model::Model& model, LinearSolver asked) {
+bool goes_by_products(const model::ContactPairs& pairs, LinearSolver asked) {
     constexpr Index most = 40000; // some 50 kB each on a smooth master
     Index slaves = 0;
-    for (const auto& pair : model.pairs) slaves += pair->size();
+    for (const auto& pair : pairs) slaves += pair->size();
     return slaves > 0 && slaves <= most && asked != LinearSolver::direct;
 }
 } // namespace
 
-TangentChoice choose_tangent(const model::Model& model, LinearSolver asked, bool dynamic, bool follows) {
+TangentChoice choose_tangent(const model::Model& model, const model::ContactPairs& pairs, LinearSolver asked,
+                             bool dynamic, bool follows) {
     constexpr Index most = 100000; // nodes: LU takes some 7 GB
-    const bool pays = !model.nonlinear && condensation_cost(model).pays();
+    const bool pays = !model.nonlinear && condensation_cost(model, pairs).pays();
     const bool symmetric = !follows && (!dynamic || !model.nonlinear);
-    const bool contact = !model.pairs.empty();
+    const bool contact = !pairs.empty();
     TangentChoice choice;
     choice.multigrid = goes_by_multigrid(model, asked, pays);
     choice.factorisable = !choice.multigrid || model.nodes() <= most;
-    choice.products = choice.multigrid || goes_by_products(model, asked);
+    choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned = choice.multigrid || ((contact || !symmetric) && asked != LinearSolver::direct);
     choice.condensed = !model.nonlinear && !follows && !choice.multigrid && choice.products &&
                        (asked == LinearSolver::condensed || (asked == LinearSolver::automatic && pays));

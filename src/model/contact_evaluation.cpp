@@ -11,6 +11,8 @@ namespace osculate::model {
 namespace {
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
+/// Cosine between the normal and an edge of the slave that goes into the master at 45 degrees.
+constexpr double deepest_edge = -0.71;
 } // namespace
 
 ContactEvaluation::ContactEvaluation(const ContactPair& pair)
@@ -22,6 +24,7 @@ ContactEvaluation::ContactEvaluation(const ContactPair& pair)
     tracking_.facet.assign(inertia_.size(), -1);
     tracking_.changes.assign(inertia_.size(), 0);
     tracking_.hits.resize(inertia_.size());
+    points_at_.assign(inertia_.size(), 1);
 }
 
 ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
@@ -29,7 +32,7 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
       master_(other.master_), inertia_(other.inertia_), held_(other.held_), lambda_start_(other.lambda_start_),
       start_(other.start_), now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_),
       vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), tracking_(other.tracking_),
-      points_(other.points_), states_(other.states_), point_nodes_(other.point_nodes_),
+      points_(other.points_), points_at_(other.points_at_), states_(other.states_), point_nodes_(other.point_nodes_),
       facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
@@ -113,6 +116,7 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     }
     const ScopedTimer timer(timings, Part::contact);
     facet_changes_ += discretisation_->evaluate(positions(), tracking_, points_, threads);
+    if (!pair_->slaves().along.empty()) drop_what_is_not_pointed_at(x);
     for (Index j = 0; j < pair_->size(); ++j) {
         point_nodes_[j].clear();
         if (!points_[j].found) continue;
@@ -122,6 +126,26 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j) states_[j] = measure(j, at);
     });
+}
+
+void ContactEvaluation::drop_what_is_not_pointed_at(const std::vector<Vec3>& x) {
+    const SlaveNodes& slaves = pair_->slaves();
+    for (Index j = 0; j < pair_->size(); ++j) {
+        contact::ContactPoint& point = points_[j];
+        const Vec3& s = x[slaves.node[j]];
+        Vec3 n = point.normal;
+        if (!point.found) { // of the facet
+            n.setZero();
+            const auto around = hit(j).facet >= 0 ? pair_->surface().facet_vertices(hit(j).facet) : std::span<const Index>{};
+            for (std::size_t c = 2; c < around.size(); ++c)
+                n += (vertices_[around[c - 1]] - vertices_[around[0]]).cross(vertices_[around[c]] - vertices_[around[0]]);
+            n.normalize();
+        }
+        points_at_[j] = std::ranges::all_of(slaves.along[static_cast<std::size_t>(j)], [&](Index end) {
+            return (x[end] - s).normalized().dot(n) >= deepest_edge;
+        });
+        if (points_at_[j] == 0) point.found = point.behind = false;
+    }
 }
 
 double ContactEvaluation::least_gap() const {
@@ -136,7 +160,7 @@ double ContactEvaluation::unseen_gap(Index j) const {
     if (!discretisation_->overlooks() || points_[j].found || hit(j).facet < 0) return nowhere;
     contact::ContactPoint point;
     master_->evaluate(now_.slaves[j], hit(j), vertices_, point);
-    return point.found || point.behind ? point.gap : nowhere;
+    return (point.found || point.behind) && points_at_[j] != 0 ? point.gap : nowhere;
 }
 
 contact::Coulomb ContactEvaluation::law(Index j) const {
@@ -292,11 +316,17 @@ void ContactEvaluation::fold(Index j, Matrix& G) const {
     }
 }
 
-ContactEvaluations contact_evaluations(const Model& model) {
+ContactEvaluations contact_evaluations(const ContactPairs& pairs) {
     ContactEvaluations evaluations;
-    evaluations.reserve(model.pairs.size());
-    for (const auto& pair : model.pairs) evaluations.emplace_back(*pair);
+    evaluations.reserve(pairs.size());
+    for (const auto& pair : pairs) evaluations.emplace_back(*pair);
     return evaluations;
+}
+
+ContactPairs pairs_of(const std::vector<ContactHistory>& contact) {
+    ContactPairs pairs;
+    for (const ContactHistory& history : contact) pairs.push_back(history.pair);
+    return pairs;
 }
 
 } // namespace osculate::model

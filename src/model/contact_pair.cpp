@@ -3,7 +3,6 @@
 #include "osculate/contact/mortar.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -39,43 +38,30 @@ std::unique_ptr<const contact::Discretisation> make_discretisation(const Contact
 } // namespace
 
 ContactPair::ContactPair(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
+                         std::shared_ptr<const MasterSide> master_side, const ContactOptions& options,
+                         const contact::SmoothSlave* smooth)
+    : name_(std::move(name)), slaves_(std::move(slaves)), side_(std::move(master_side)),
+      search_(side_->search(), vertices(X), centre(X, slaves_.node)), options_(options),
+      discretisation_(make_discretisation(*this, X, smooth)) {}
+
+ContactPair::ContactPair(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
                          std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
                          std::shared_ptr<const contact::MasterSurface> master, const ContactOptions& options,
                          const contact::SmoothSlave* smooth)
-    : name_(std::move(name)), slaves_(std::move(slaves)), surface_(std::move(surface)),
-      master_nodes_(std::move(master_nodes)), master_(std::move(master)),
-      search_(*surface_, vertices(X), centre(X, slaves_.node)), options_(options),
-      discretisation_(make_discretisation(*this, X, smooth)) {
-    finest_ = std::numeric_limits<double>::infinity();
-    for (Index f = 0; f < surface_->facet_count(); ++f)
-        finest_ = std::min({finest_, surface_->facet_size(f), thickness(f)});
-    if (master_nodes_.image.empty()) return;
-    std::map<Index, Index> own; // node -> vertex
-    for (std::size_t v = 0; v < master_nodes_.node.size(); ++v)
-        if (master_nodes_.image[v] == 0) own[master_nodes_.node[v]] = static_cast<Index>(v);
-    for (const Index node : master_nodes_.node) own_vertex_.push_back(own.at(node));
-}
-
-double ContactPair::thickness(Index facet) const {
-    double least = std::numeric_limits<double>::infinity();
-    if (!master_nodes_.thickness.empty())
-        for (const Index v : surface_->facet_vertices(facet)) least = std::min(least, master_nodes_.thickness[v]);
-    return least;
-}
-
-std::vector<Vec3> ContactPair::vertices(const std::vector<Vec3>& x) const {
-    std::vector<Vec3> v(master_nodes_.node.size());
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        v[i] = x[master_nodes_.node[i]];
-        if (mirrored()) v[i] = image_of(static_cast<Index>(i))(v[i]);
-    }
-    return v;
-}
+    : ContactPair(std::move(name), X, std::move(slaves),
+                  std::make_shared<const MasterSide>(std::move(surface), std::move(master_nodes), std::move(master)),
+                  options, smooth) {}
 
 ContactHistory ContactPair::initial_history() const {
     const std::size_t n = slaves_.node.size();
-    return {std::vector<Vec3>(n, Vec3::Zero()), std::vector<contact::Status>(n, contact::Status::open),
-            std::vector<Index>(n, -1), master_};
+    return {nullptr, std::vector<Vec3>(n, Vec3::Zero()), std::vector<contact::Status>(n, contact::Status::open),
+            std::vector<Index>(n, -1), master()};
+}
+
+ContactHistory opened(std::shared_ptr<const ContactPair> pair) {
+    ContactHistory history = pair->initial_history();
+    history.pair = std::move(pair);
+    return history;
 }
 
 } // namespace osculate::model

@@ -235,6 +235,14 @@ void each_value(History& history,
     visit("facet", history.facet); // the master is made from the patches
 }
 
+template <class Pair, class Visit>
+void each_value(Pair& pair, const Visit& visit) requires std::is_same_v<std::remove_const_t<Pair>, time::FoundPair> {
+    visit("slave", pair.slave);
+    visit("master", pair.master);
+    visit("nodes", pair.nodes);
+    visit("facets", pair.facets);
+}
+
 template <class Run, class Visit>
 void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remove_const_t<Run>, time::Checkpoint> {
     visit("stage", run.stage);
@@ -259,6 +267,9 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
     visit("paths_followed", run.counts.paths_followed);
     visit("memory", run.memory);
     visit("patches", run.patches);
+    visit("found", run.found);
+    visit("scope_x", run.scope_x);
+    visit("scope_margin", run.scope_margin);
 }
 
 struct Writer {
@@ -276,6 +287,14 @@ struct Writer {
         for (const model::ContactHistory& history : pairs) {
             Json one;
             each_value(history, Writer{one});
+            json[name].push_back(std::move(one));
+        }
+    }
+    void operator()(const char* name, const std::vector<time::FoundPair>& pairs) const {
+        json[name] = Json::array();
+        for (const time::FoundPair& pair : pairs) {
+            Json one;
+            each_value(pair, Writer{one});
             json[name].push_back(std::move(one));
         }
     }
@@ -305,6 +324,9 @@ struct Reader {
     }
     void operator()(const char* name, std::vector<Index>& value) const { value = unpacked<Index>(json, name); }
     void operator()(const char* name, std::vector<model::ContactHistory>& pairs) const {
+        for (const Json& one : member(json, name)) each_value(pairs.emplace_back(), Reader{one});
+    }
+    void operator()(const char* name, std::vector<time::FoundPair>& pairs) const {
         for (const Json& one : member(json, name)) each_value(pairs.emplace_back(), Reader{one});
     }
     void operator()(const char* name, std::vector<std::vector<contact::RefittedPatch>>& pairs) const {

@@ -5,7 +5,7 @@
 namespace osculate::output {
 
 ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
-    const model::ContactPair& term = *snapshot.model().pairs[pair];
+    const model::ContactPair& term = *snapshot.state().contact[pair].pair;
     const std::vector<contact::Status>& status = snapshot.state().contact[pair].status;
     ContactResultants sum;
     if (snapshot.audit() != nullptr)
@@ -30,6 +30,45 @@ ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
     }
     sum.moment += snapshot.model().origin.cross(sum.force);
     return sum;
+}
+
+ContactResultants general_resultants(const Snapshot& snapshot) {
+    ContactResultants sum;
+    for (std::size_t p = snapshot.model().pairs.size(); p < snapshot.state().contact.size(); ++p) {
+        const ContactResultants one = contact_resultants(snapshot, static_cast<Index>(p));
+        sum.force += one.force;
+        sum.moment += one.moment;
+        sum.normal += one.normal;
+        sum.friction += one.friction;
+        sum.area += one.area;
+        sum.open += one.open;
+        sum.stick += one.stick;
+        sum.slip += one.slip;
+        sum.penetration = std::max(sum.penetration, one.penetration);
+    }
+    return sum;
+}
+
+std::vector<BodyResultants> body_resultants(const Snapshot& snapshot) {
+    const model::Model& model = snapshot.model();
+    const std::vector<model::OuterSurface>& surfaces = model.general->surfaces();
+    std::vector<BodyResultants> sums(surfaces.size());
+    for (std::size_t p = model.pairs.size(); p < snapshot.state().contact.size(); ++p) {
+        const model::ContactEvaluation& evaluation = snapshot.evaluation(static_cast<Index>(p));
+        const auto [slave, master] = model.general->sides_of(evaluation.pair());
+        const std::vector<Vec3>& lambda = snapshot.state().contact[p].lambda;
+        for (Index j = 0; j < evaluation.pair().size(); ++j) {
+            bool own = true; // the first node is the slave
+            evaluation.for_each_force(j, lambda[static_cast<std::size_t>(j)], [&](Index node, const Vec3& force) {
+                BodyResultants& sum = sums[static_cast<std::size_t>(own ? slave : master)];
+                own = false;
+                sum.force += force;
+                sum.moment += snapshot.x()[static_cast<std::size_t>(node)].cross(force);
+            });
+        }
+    }
+    for (BodyResultants& sum : sums) sum.moment += model.origin.cross(sum.force);
+    return sums;
 }
 
 } // namespace osculate::output

@@ -70,6 +70,32 @@ Values penetration(const Snapshot& snapshot, Index body) {
     return values;
 }
 
+/// Numbers at the nodes of one body.
+Values of_body(const Snapshot& snapshot, Index body, const std::vector<double>& nodal) {
+    const model::Body& part = snapshot.model().bodies[body];
+    return {nodal.begin() + part.first_node, nodal.begin() + part.first_node + part.nodes()};
+}
+
+Values all_contact_force(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.nodal_contact().force);
+}
+
+Values contact_pressure(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.nodal_contact().pressure);
+}
+
+Values contact_gap(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.nodal_contact().gap);
+}
+
+Values contact_status(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.nodal_contact().status);
+}
+
+Values contact_slip(const Snapshot& snapshot, Index body) {
+    return of_body(snapshot, body, snapshot.nodal_contact().slip);
+}
+
 Values stress(const Snapshot& snapshot, Index body) {
     const Snapshot::Stress& sigma = snapshot.stress(body);
     Values values;
@@ -271,6 +297,11 @@ constexpr OutputField table[] = {
     {"reaction", FieldPlace::body, 3, "N", false, reaction},
     {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance}, // of a failed iterate; 0 otherwise
     {"penetration", FieldPlace::body, 1, "m", false, penetration},       // in another body, by the audit; 0 outside
+    {"contact_force", FieldPlace::body, 3, "N", false, all_contact_force},    // as slave and as master
+    {"contact_pressure", FieldPlace::body, 1, "Pa", false, contact_pressure}, // > 0 in compression; 0 inside
+    {"contact_gap", FieldPlace::body, 1, "m", false, contact_gap},            // as slave; NaN without a partner
+    {"contact_status", FieldPlace::body, 1, "", true, contact_status},        // as slave: 0 open, 1 stick, 2 slip
+    {"contact_slip", FieldPlace::body, 3, "m", false, contact_slip},          // of the step, as slave
     {"gap", FieldPlace::slave, 1, "m", false, gap},                      // NaN without a partner
     {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
     {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress},             // > 0 in compression

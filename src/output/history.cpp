@@ -21,6 +21,8 @@ constexpr EnergyColumn energies[] = {
     {"contact", &time::Ledger::contact},   {"balance", &time::Ledger::balance},
 };
 
+constexpr const char* general_prefix = "pair.general.";
+
 void append(std::vector<Cell>& cells, const Vec3& v) {
     for (int k = 0; k < 3; ++k) cells.emplace_back(v(k));
 }
@@ -52,14 +54,21 @@ std::vector<std::string> History::columns(const model::Model& model, bool pairs,
     const auto vector = [&](const std::string& name) {
         for (const char* axis : axes) names.push_back(name + axis);
     };
+    const auto resultants = [&](const std::string& prefix) {
+        vector(prefix + "force");
+        for (const char* name : {"normal", "friction"}) names.push_back(prefix + name);
+        vector(prefix + "moment");
+        for (const char* name : {"area", "open", "stick", "slip", "penetration"}) names.push_back(prefix + name);
+    };
     if (pairs)
-        for (const auto& pair : model.pairs) {
-            const std::string prefix = "pair." + pair->name() + ".";
-            vector(prefix + "force");
-            for (const char* name : {"normal", "friction"}) names.push_back(prefix + name);
-            vector(prefix + "moment");
-            for (const char* name : {"area", "open", "stick", "slip", "penetration"}) names.push_back(prefix + name);
+        for (const auto& pair : model.pairs) resultants("pair." + pair->name() + ".");
+    if (pairs && model.general) {
+        resultants(general_prefix);
+        for (const model::OuterSurface& surface : model.general->surfaces()) {
+            vector("body." + surface.name + ".contact_force");
+            vector("body." + surface.name + ".contact_moment");
         }
+    }
     for (const Index set : sets) vector("set." + model.sets[set].name + ".reaction");
     if (ledger) {
         for (const EnergyColumn& energy : energies) names.push_back(std::string("energy.") + energy.name);
@@ -78,12 +87,21 @@ std::vector<Cell> History::cells(const Snapshot& snapshot, const linear::Constra
                                  int iterations, bool pairs, const std::vector<Index>& sets, bool ledger,
                                  const time::Ledger* energies_now) {
     std::vector<Cell> cells{snapshot.state().time, dt, long{iterations}};
-    for (std::size_t p = 0; pairs && p < snapshot.model().pairs.size(); ++p) {
-        const ContactResultants sum = contact_resultants(snapshot, static_cast<Index>(p));
+    const auto add = [&](const ContactResultants& sum) {
         append(cells, sum.force);
         cells.insert(cells.end(), {sum.normal, sum.friction});
         append(cells, sum.moment);
         cells.insert(cells.end(), {sum.area, sum.open, sum.stick, sum.slip, sum.penetration});
+    };
+    const model::Model& model = snapshot.model();
+    for (std::size_t p = 0; pairs && p < model.pairs.size(); ++p)
+        add(contact_resultants(snapshot, static_cast<Index>(p)));
+    if (pairs && model.general) {
+        add(general_resultants(snapshot));
+        for (const BodyResultants& body : body_resultants(snapshot)) {
+            append(cells, body.force);
+            append(cells, body.moment);
+        }
     }
     if (!sets.empty()) {
         const std::vector<Vec3> reactions = set_reactions(snapshot, constraints);

@@ -37,9 +37,6 @@ template <class Value, std::size_t n> Value one_of(const Value (&values)[n], con
 }
 
 constexpr time::Verdict verdicts[] = {time::Verdict::accept, time::Verdict::retry, time::Verdict::give_up};
-constexpr time::Reason reasons[] = {
-    time::Reason::none,   time::Reason::interpenetration, time::Reason::solver, time::Reason::error,
-    time::Reason::energy, time::Reason::collision,        time::Reason::audit,  time::Reason::forced};
 
 Json written(const time::Attempt& a) {
     return {{"attempt", a.attempt},
@@ -61,7 +58,7 @@ time::Attempt attempt(const Json& j) {
     a.time = real(j.at("time"));
     a.dt = real(j.at("dt"));
     a.verdict = one_of(verdicts, j.at("verdict"));
-    a.reason = one_of(reasons, j.at("reason"));
+    a.reason = one_of(time::reasons, j.at("reason"));
     a.body = j.at("body");
     a.node = j.at("node");
     a.value = real(j.at("value"));

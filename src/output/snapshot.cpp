@@ -21,6 +21,11 @@ const Snapshot::Stress& Snapshot::stress(Index body) const {
     return known->second;
 }
 
+const NodalContact& Snapshot::nodal_contact() const {
+    if (!nodal_contact_) nodal_contact_ = output::nodal_contact(model_, state_, contact_);
+    return *nodal_contact_;
+}
+
 contact::ContactState Snapshot::contact(Index pair, Index slave) const {
     const contact::ContactPoint& point = contact_[pair].point(slave);
     return {state_.contact[pair].lambda[slave], point.gap, point.normal, Vec3::Zero()};

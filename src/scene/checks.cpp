@@ -1,8 +1,10 @@
 #include "scene/checks.hpp"
 
+#include "osculate/scene/nearest.hpp"
 #include "osculate/scene/units.hpp"
 #include "scene/describe_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -95,6 +97,21 @@ public:
         if (!master) fault({"contact", name, "master", "set"}, "the name of a set, or between with two", "nothing");
         if (!pair.slave.empty() && pair.slave == pair.master.set)
             fault({"contact", name, "slave"}, "another set than the master's", "'" + pair.slave + "' for both");
+    }
+
+    void check_general(const GeneralContact& general, const Named<Body>& bodies) {
+        if (bodies.size() < 2) fault({"contact", "general"}, "two bodies or more", "one");
+        Words known;
+        for (const auto& [name, body] : bodies) {
+            known.push_back(name);
+            if (!body.finish.empty()) known.push_back(body.finish);
+        }
+        for (const auto& [name, rule] : general.pairs)
+            for (const std::string& side : rule.between)
+                if (!side.empty() && std::ranges::count(known, side) == 0) {
+                    fault({"contact", "general", "pairs", name, "between"}, "bodies or finishes", "'" + side + "'");
+                    faults_.back().nearest = nearest(side, known);
+                }
     }
 
     template <class Surface> void check_basis(const std::string& name, const char* tag, const Surface& surface) {
@@ -233,6 +250,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
         }
     rules.check_contact_mass(scene.stages);
     for (const auto& [name, pair] : scene.contact) rules.check_pair(name, pair);
+    if (scene.general) rules.check_general(*scene.general, scene.bodies);
     for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);
     if (scene.expect) rules.check_expectation(*scene.expect);
 }

@@ -116,6 +116,49 @@ void describe(Visitor& v, Pair& pair) {
              pair.stiffness_scale);
 }
 
+void describe(Visitor& v, GeneralContact& general) {
+    v.number({.name = "friction", .meaning = "Coulomb's coefficient mu between all bodies.", .range = range::not_negative},
+             general.friction);
+    static const Words surfaces{"automatic", "facets", "blend"};
+    word(v,
+         {.name = "surface",
+          .meaning = "Geometry of the masters: as for pairs. automatic: facets for bodies all of whose faces are plane if "
+                     "a stage is dynamic, else blend."},
+         surfaces, general.surface);
+    static const Words discretisations{"automatic", "node", "petrov_galerkin"};
+    std::size_t index = !general.discretisation ? 0 : *general.discretisation == Discretisation::node ? 1 : 2;
+    v.word({.name = "discretisation", .meaning = "As for pairs."}, discretisations, index);
+    if (index == 0)
+        general.discretisation = std::nullopt;
+    else
+        general.discretisation = index == 1 ? Discretisation::node : Discretisation::petrov_galerkin;
+    v.number({.name = "closing_tolerance", .meaning = "As for pairs.", .range = range::fraction},
+             general.closing_tolerance);
+    v.number({.name = "initial_overlap_limit", .meaning = "As for pairs.", .range = range::fraction},
+             general.initial_overlap_limit);
+    v.number({.name = "stiffness_scale", .meaning = "As for pairs.", .range = {.low = 1e-6, .high = 1e6}},
+             general.stiffness_scale);
+    named(v,
+          {.name = "pairs",
+           .meaning = "What differs between certain bodies; the last rule that names two bodies counts.",
+           .item = "rule"},
+          general.pairs, [&](const std::string& name, GeneralRule& rule) {
+              v.group({.name = name}, [&] {
+                  v.two_names({.name = "between",
+                               .meaning = "Two bodies, or two finishes, or one of each.",
+                               .required = true},
+                              rule.between);
+                  v.optional_number({.name = "friction",
+                                     .meaning = "Coulomb's coefficient mu between them.",
+                                     .range = range::not_negative,
+                                     .default_text = "that of contact.general"},
+                                    rule.friction);
+                  v.flag({.name = "contact", .meaning = "false: they do not meet, and pass through one another."},
+                         rule.contact);
+              });
+          });
+}
+
 namespace {
 
 void describe(Visitor& v, GeneralisedAlpha& s) {
@@ -354,7 +397,18 @@ void describe(Visitor& v, Scene& scene) {
         v,
         {.name = "supports", .meaning = "Constraints of sets, for the whole run.", .names = Names::set, .item = "set"},
         scene.supports, group);
-    named(v, {.name = "contact", .meaning = "Contact pairs.", .item = "pair"}, scene.contact, group);
+    Entries pairs = entries_of(scene.contact, group);
+    bool general = scene.general.has_value();
+    GeneralContact all = scene.general.value_or(GeneralContact{});
+    pairs.reserved = {"general"};
+    pairs.beside_present = [&] { return general; };
+    pairs.beside = [&] {
+        v.optional_group({.name = "general",
+                          .meaning = "All outer surfaces may meet; pairs beside it treat their own surfaces."},
+                         general, [&] { describe(v, all); });
+    };
+    v.named({.name = "contact", .meaning = "General contact, and contact pairs.", .item = "pair"}, pairs);
+    if (general) scene.general = std::move(all);
     v.vector({.name = "gravity",
               .meaning = "Acceleration of gravity, on every body with a density, in full from the start.",
               .unit = dimension::acceleration,

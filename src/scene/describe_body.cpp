@@ -328,6 +328,10 @@ void describe(Visitor& v, Body& body) {
     static const Words formulations{"full", "b_bar", "incompatible_modes"};
     word(v, {.name = "hex_formulation", .meaning = "Formulation of the body's hexahedra."}, formulations,
          body.hex_formulation);
+    v.text({.name = "finish",
+            .meaning = "Name of its surface, for the friction between finishes in contact.general.pairs.",
+            .names = Names::identifier},
+           body.finish);
     v.vector({.name = "initial_velocity",
               .meaning = "Velocity of every point at the start.",
               .unit = dimension::velocity,

@@ -19,8 +19,8 @@ template <class E> void word(Visitor& v, const Key& key, const Words& vocabulary
 }
 
 /// Named values; `item(name, value)` describes one under its name.
-template <class T, class Item> void named(Visitor& v, const Key& key, Named<T>& values, const Item& item) {
-    v.named(key, {.size = [&] { return values.size(); },
+template <class T, class Item> Entries entries_of(Named<T>& values, const Item& item) {
+    return {.size = [&] { return values.size(); },
                   .name = [&](std::size_t i) { return values[i].first; },
                   .add =
                       [&](const std::string& name) {
@@ -30,7 +30,10 @@ template <class T, class Item> void named(Visitor& v, const Key& key, Named<T>& 
                           else
                               values.emplace_back(name, T{});
                       },
-                  .describe = [&](std::size_t i) { item(values[i].first, values[i].second); }});
+            .describe = [&, item](std::size_t i) { item(values[i].first, values[i].second); }};
+}
+template <class T, class Item> void named(Visitor& v, const Key& key, Named<T>& values, const Item& item) {
+    v.named(key, entries_of(values, item));
 }
 
 template <class Variant, std::size_t... I>
@@ -58,6 +61,7 @@ void describe(Visitor& v, Body& body);
 void describe(Visitor& v, SetSpec& set);
 void describe(Visitor& v, Support& support);
 void describe(Visitor& v, Pair& pair);
+void describe(Visitor& v, GeneralContact& general);
 void describe(Visitor& v, Stage& stage);
 void describe(Visitor& v, Solver& solver);
 void describe(Visitor& v, Expectation& expect);

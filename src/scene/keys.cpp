@@ -78,6 +78,7 @@ public:
     void named(const Key& key, const Entries& entries) override {
         list(key, std::string("map of <") + key.item + ">", "none");
         path_.push_back(key.name);
+        if (entries.beside) entries.beside();
         entries.add(std::string("<") + key.item + ">");
         entries.describe(0);
         path_.pop_back();

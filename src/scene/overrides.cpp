@@ -28,7 +28,8 @@ std::vector<std::string> split_path(const std::string& path) {
         else
             parts.back() += c;
     }
-    if (parts.size() >= 3 && parts[0] == "contact" && parts[2] == "surface") parts.insert(parts.begin() + 2, "master");
+    if (parts.size() >= 3 && parts[0] == "contact" && parts[1] != "general" && parts[2] == "surface")
+        parts.insert(parts.begin() + 2, "master");
     return parts;
 }
 
@@ -77,6 +78,7 @@ void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
     Tree* pairs = scene.find("contact");
     if (!pairs || pairs->kind != Tree::Kind::map) return;
     for (Tree& pair : pairs->children) {
+        if (pair.key == "general") continue; // its surface is its own
         const Tree* surface = pair.find("surface");
         if (!surface) continue;
         const Tree moved = *surface;

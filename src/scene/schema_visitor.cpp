@@ -202,13 +202,16 @@ void SchemaVisitor::one_of(const Choice& choice) {
 
 void SchemaVisitor::named(const Key& key, const Entries& entries) {
     const std::string name = std::string("<") + key.item + ">";
-    const Level level = level_of([&] {
+    Level level = level_of([&] {
+        if (entries.beside) entries.beside();
         entries.add(name);
         entries.describe(0);
     });
     Json schema;
     schema["type"] = key.required ? Json("object") : Json{"object", "null"};
     schema["additionalProperties"] = level.properties.at(name);
+    for (const std::string& reserved : entries.reserved)
+        schema["properties"][reserved] = level.properties.at(reserved);
     if (key.required) schema["minProperties"] = 1;
     schema["propertyNames"] = {{"pattern", identifier}};
     const bool refers = key.names == Names::body || key.names == Names::set;

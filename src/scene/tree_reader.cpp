@@ -247,7 +247,8 @@ void TreeReader::text(const Key& key, std::string& value) {
 }
 
 void TreeReader::two_names(const Key& key, std::array<std::string, 2>& value) {
-    const std::string expected = "a list of the names of two sets";
+    const std::string expected =
+        std::string("a list of the names of two ") + (key.names == Names::set ? "sets" : "bodies or finishes");
     const Tree* tree = take(key, expected);
     if (!tree) return;
     if (tree->kind != Tree::Kind::list || tree->children.size() != 2) return fault(*tree, key, expected);
@@ -365,7 +366,9 @@ void TreeReader::named(const Key& key, const Entries& entries) {
     for (const Tree& child : tree->children)
         if (!child.implied) written.push_back(child.key);
     enter(*tree, path_of(key.name), [&] {
+        if (entries.beside) entries.beside();
         for (const Tree& child : tree->children) {
+            if (std::ranges::count(entries.reserved, child.key) > 0) continue;
             levels_.back().known.push_back(child.key);
             const Tree name{.kind = Tree::Kind::scalar, .scalar = child.key};
             const bool refers = key.names == Names::body || key.names == Names::set;

@@ -76,6 +76,9 @@ struct Entries {
     std::function<std::string(std::size_t)> name;
     std::function<void(const std::string&)> add;
     std::function<void(std::size_t)> describe; ///< the key name(i) with what it holds
+    Words reserved{};                          ///< keys of the map that are no such names, ...
+    std::function<void()> beside{};            ///< ... and their description; empty: none
+    std::function<bool()> beside_present{};    ///< whether there are any of them
 };
 
 class Visitor {
@@ -111,8 +114,9 @@ public:
     }
     void one_of(const Choice& choice) override { choice.describe(choice.active); }
     void named(const Key& key, const Entries& entries) override {
-        if (entries.size() == 0) return;
+        if (entries.size() == 0 && !(entries.beside && entries.beside_present())) return;
         group(key, [&] {
+            if (entries.beside) entries.beside();
             for (std::size_t i = 0; i < entries.size(); ++i) entries.describe(i);
         });
     }

@@ -27,6 +27,8 @@ std::pair<Index, Index> ordered(Index a, Index b) {
 Audit::Audit(const model::Model& model) : model_(model), surfaces_(outer_facets(model), model.X) {
     const contact::AuditResult first = surfaces_.examine(model.X);
     for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
+    if (model.general)
+        std::erase_if(drawn_, [&](const auto& one) { return model.general->meet(one.first.first, one.first.second); });
     for (const auto& pair : model.pairs) // contact lifts what overlaps
         drawn_.erase(ordered(model::body_index(model, pair->slaves().node.front()),
                              model::body_index(model, pair->master_nodes().front())));
@@ -41,6 +43,7 @@ const contact::AuditResult& Audit::examine(const Field& u) {
 std::optional<contact::Intrusion> Audit::deepest() const {
     std::optional<contact::Intrusion> worst;
     for (contact::Intrusion one : result_.intrusions) {
+        if (model_.general && model_.general->pass_through(one.body, one.other)) continue;
         const auto drawn = drawn_.find(ordered(one.body, one.other));
         if (drawn != drawn_.end()) one.excess = std::max(0.0, one.excess - drawn->second);
         if (!worst || one.relative() > worst->relative()) worst = one;

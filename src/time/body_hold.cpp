@@ -38,7 +38,7 @@ std::vector<BodyHold> holds_before(const FailedAttempt& failed) {
     const model::Model& model = failed.model;
     Timings unused;
     const Field x = sum(model.X, failed.last.u);
-    model::ContactEvaluations contact = model::contact_evaluations(model);
+    model::ContactEvaluations contact = model::contact_evaluations(model::pairs_of(failed.last.contact));
     for (std::size_t p = 0; p < contact.size(); ++p) {
         contact[p].begin_step(x, failed.last.contact[p], unused, 1);
         contact[p].evaluate(x, unused, 1);
@@ -48,7 +48,7 @@ std::vector<BodyHold> holds_before(const FailedAttempt& failed) {
         BodyHold& one = holds.emplace_back();
         one.body = body.name;
         double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        for (std::size_t p = 0; p < contact.size(); ++p) {
             const ContactPair& pair = contact[p].pair();
             if (!takes_part(model, pair, body)) continue;
             one.in_pair = true;
@@ -80,7 +80,7 @@ void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equil
             for (int k = 0; k < 3; ++k)
                 if (constraints.constraint(node, k) != nullptr) hold.hold(x[node], constraints.frame(node).col(k));
         one.free_by_supports = hold.free();
-        for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        for (std::size_t p = 0; p < state.contact.size(); ++p) {
             const model::ContactEvaluation& evaluation = equilibrium.contact()[p];
             const ContactPair& pair = evaluation.pair();
             if (!takes_part(model, pair, body)) continue;

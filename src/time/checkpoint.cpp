@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace osculate::time {
 
@@ -19,24 +20,37 @@ template <class List> bool finite(const List& values) {
     return std::ranges::all_of(values, [](const auto& value) { return value.allFinite(); });
 }
 
-std::string misfit(const model::ContactHistory& history, const model::ContactPair& pair) {
-    const auto slaves = static_cast<std::size_t>(pair.size());
-    const std::string whose = " of pair '" + pair.name() + "'";
+/// @param slaves, facets  of the pair
+std::string misfit(const model::ContactHistory& history, std::size_t slaves, Index facets, const std::string& name) {
+    const std::string whose = " of pair '" + name + "'";
     if (history.lambda.size() != slaves || history.status.size() != slaves || history.facet.size() != slaves)
         return "slave nodes" + whose;
     if (!finite(history.lambda)) return "contact forces" + whose;
     for (const contact::Status status : history.status)
         if (status > contact::Status::glide) return "contact statuses" + whose;
-    const Index facets = pair.surface().facet_count();
     for (const Index facet : history.facet)
         if (facet != -1 && !within(facet, facets)) return "contact facets" + whose;
     return {};
 }
 
-std::string misfit(const equilibrium::EquilibriumMemory& memory, const model::Model& model) {
+/// Whether what general contact has found fits its surfaces.
+std::string misfit(const FoundPair& pair, const model::GeneralContact& general, Index nodes) {
+    const auto surfaces = static_cast<Index>(general.surfaces().size());
+    if (!within(pair.slave, surfaces) || !within(pair.master, surfaces)) return "surfaces of general contact";
+    if (pair.nodes.empty() || !within(pair.nodes, nodes) || !std::ranges::is_sorted(pair.nodes))
+        return "slave nodes of general contact";
+    for (std::size_t k = 0; k < pair.facets.size(); ++k)
+        if (!(pair.facets[k] == -1 && k % 4 == 3) && !std::ranges::binary_search(pair.nodes, pair.facets[k]))
+            return "slave facets of general contact";
+    return pair.facets.size() % 4 == 0 ? "" : "slave facets of general contact";
+}
+
+std::string misfit(const equilibrium::EquilibriumMemory& memory, const model::Model& model,
+                   const std::vector<FoundPair>& found) {
     std::vector<Index> slaves;
     for (const auto& pair : model.pairs)
         slaves.insert(slaves.end(), pair->slaves().node.begin(), pair->slaves().node.end());
+    for (const FoundPair& pair : found) slaves.insert(slaves.end(), pair.nodes.begin(), pair.nodes.end());
     if (!memory.couplings.empty()) {
         if (!std::ranges::equal(memory.couplings, slaves, {}, &linear::Coupling::slave)) return "slave nodes";
         for (const linear::Coupling& coupling : memory.couplings)
@@ -74,14 +88,63 @@ std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std:
     if (state.material.size() != model::initial_history(model).size()) return "values that materials remember";
     if (!finite(state.u) || !finite(state.v) || !finite(state.a) || !finite(checkpoint.displacement_start))
         return "values that are not finite";
-    if (state.contact.size() != model.pairs.size() || checkpoint.patches.size() != model.pairs.size())
+    const std::vector<FoundPair>& found = checkpoint.found;
+    if (state.contact.size() != model.pairs.size() + found.size() || checkpoint.patches.size() != state.contact.size() ||
+        (!found.empty() && !model.general))
         return "number of contact pairs";
-    for (std::size_t p = 0; p < model.pairs.size(); ++p)
-        if (const std::string what = misfit(state.contact[p], *model.pairs[p]); !what.empty()) return what;
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+        const model::ContactPair& pair = *model.pairs[p];
+        if (const std::string what = misfit(state.contact[p], static_cast<std::size_t>(pair.size()),
+                                            pair.surface().facet_count(), pair.name());
+            !what.empty())
+            return what;
+    }
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        if (const std::string what = misfit(found[k], *model.general, model.nodes()); !what.empty()) return what;
+        const auto& master = *model.general->surfaces()[static_cast<std::size_t>(found[k].master)].side;
+        if (const std::string what = misfit(state.contact[model.pairs.size() + k], found[k].nodes.size(),
+                                            master.surface().facet_count(), "general");
+            !what.empty())
+            return what;
+    }
+    if (model.general && (checkpoint.scope_x.size() != nodes || !finite(checkpoint.scope_x) ||
+                          checkpoint.scope_margin.size() != model.general->surfaces().size()))
+        return "scope of general contact";
     for (const auto& patches : checkpoint.patches)
         for (const contact::RefittedPatch& patch : patches)
             if (!finite(patch.at)) return "patches";
-    return misfit(checkpoint.memory, model);
+    return misfit(checkpoint.memory, model, found);
+}
+
+std::vector<FoundPair> found_pairs(const model::State& state, const model::Model& model) {
+    std::vector<FoundPair> found;
+    for (std::size_t p = model.pairs.size(); p < state.contact.size(); ++p) {
+        const model::ContactPair& pair = *state.contact[p].pair;
+        FoundPair& one = found.emplace_back();
+        std::tie(one.slave, one.master) = model.general->sides_of(pair);
+        one.nodes = pair.slaves().node;
+        for (const mesh::Facet& facet : pair.slaves().facets)
+            one.facets.insert(one.facets.end(), facet.nodes.begin(), facet.nodes.end());
+    }
+    return found;
+}
+
+void restore_pairs(Checkpoint& checkpoint, const model::Model& model) {
+    model::State& state = checkpoint.state;
+    for (std::size_t p = 0; p < model.pairs.size(); ++p) state.contact[p].pair = model.pairs[p];
+    for (std::size_t k = 0; k < checkpoint.found.size(); ++k) {
+        const FoundPair& one = checkpoint.found[k];
+        std::vector<mesh::Facet> facets(one.facets.size() / 4);
+        for (std::size_t f = 0; f < facets.size(); ++f) {
+            std::copy_n(one.facets.begin() + static_cast<std::ptrdiff_t>(4 * f), 4, facets[f].nodes.begin());
+            facets[f].count = facets[f].nodes[3] < 0 ? 3 : 4;
+        }
+        state.contact[model.pairs.size() + k].pair =
+            model.general->make_pair(one.slave, one.master, one.nodes, std::move(facets));
+    }
+    if (model.general)
+        state.scope = std::make_shared<const model::ContactScope>(
+            model::ContactScope{checkpoint.scope_x, checkpoint.scope_margin});
 }
 
 } // namespace osculate::time

@@ -28,7 +28,7 @@ CollisionCheck::CollisionCheck(const model::Model& model, model::ContactEvaluati
 void CollisionCheck::begin_step(const model::State& state) {
     x_ = sum(model_.X, state.u);
     starts_.clear();
-    for (std::size_t p = 0; p < model_.pairs.size(); ++p) {
+    for (std::size_t p = 0; p < contact_.size(); ++p) {
         model::ContactEvaluation& evaluation = contact_[p];
         const model::ContactPair& pair = evaluation.pair();
         evaluation.begin_step(x_, state.contact[p], timings_, threads_);
@@ -51,7 +51,7 @@ void CollisionCheck::begin_step(const model::State& state) {
 }
 
 double CollisionCheck::length(std::size_t p, Index facet) const {
-    const model::ContactPair& pair = *model_.pairs[p];
+    const model::ContactPair& pair = contact_[p].pair();
     const double unit = limits_.in_metres ? 1 : pair.surface().facet_size(facet);
     return std::min(unit, deepest * pair.thickness(facet) / limits_.allowed_interpenetration);
 }
@@ -64,7 +64,7 @@ bool CollisionCheck::speaks_by_normal(std::size_t p, const Start& start) const {
     // facets of a smooth surface, which turn by 40 degrees at most, leave an arc by less than this part of their size
     constexpr double hollow = 0.1;
     return start.found && (!paths_ || start.closed || start.gap < allowed(p, start.facet) ||
-                           start.distance < hollow * model_.pairs[p]->surface().facet_size(start.facet));
+                           start.distance < hollow * contact_[p].pair().surface().facet_size(start.facet));
 }
 
 bool CollisionCheck::sheet_lost(std::size_t p, Index j) const {
@@ -75,7 +75,7 @@ bool CollisionCheck::sheet_lost(std::size_t p, Index j) const {
 void CollisionCheck::add_trial(const Field& u, StepEvidence& evidence) {
     add_normal_motions(u, evidence);
     for (std::size_t p = 0; p < starts_.size(); ++p)
-        for (Index j = 0; j < model_.pairs[p]->size(); ++j) {
+        for (Index j = 0; j < contact_[p].pair().size(); ++j) {
             const Start& start = starts_[p][j];
             const contact::ContactPoint& point = contact_[p].point(j);
             if (start.closed || !start.found || !(point.found || point.behind)) continue;
@@ -94,7 +94,7 @@ void CollisionCheck::add_solution(const Field& u, StepEvidence& evidence) {
 
 void CollisionCheck::add_normal_motions(const Field& u, StepEvidence& evidence) const {
     for (std::size_t p = 0; p < starts_.size(); ++p) {
-        const model::ContactPair& pair = *model_.pairs[p];
+        const model::ContactPair& pair = contact_[p].pair();
         for (Index j = 0; j < pair.size(); ++j) {
             const Start& start = starts_[p][j];
             if (!speaks_by_normal(p, start) || !sheet_lost(p, j)) continue;
@@ -111,7 +111,7 @@ void CollisionCheck::add_normal_motions(const Field& u, StepEvidence& evidence) 
 void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
     const Field x = sum(model_.X, u);
     for (std::size_t p = 0; p < starts_.size(); ++p) {
-        const model::ContactPair& pair = *model_.pairs[p];
+        const model::ContactPair& pair = contact_[p].pair();
         // motion relative to the mean of the master's
         const std::vector<Vec3> v0 = pair.vertices(x_), v1 = pair.vertices(x);
         Vec3 mean = Vec3::Zero();
@@ -134,7 +134,7 @@ void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
 
 void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, const Field& x, StepEvidence& evidence) {
     const ScopedTimer timer(timings_, Part::search);
-    const model::ContactPair& pair = *model_.pairs[p];
+    const model::ContactPair& pair = contact_[p].pair();
     const contact::MovingFacets facets(corners(pair.surface()), pair.vertices(x_), pair.vertices(x));
     const auto tolerated = [&](Index facet) { return allowed(p, facet); };
     for (const Index j : slaves) {

@@ -27,9 +27,9 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
                            const model::State& state) {
     ForceBalance balance;
     Field contact(state.u.size());
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+    for (std::size_t p = 0; p < state.contact.size(); ++p) {
         const Vec3 sum = add_contact(equilibrium.contact()[p], state.contact[p].lambda, contact);
-        if (!model.pairs[p]->mirrored()) balance.left_over = std::max(balance.left_over, sum.norm());
+        if (!state.contact[p].pair->mirrored()) balance.left_over = std::max(balance.left_over, sum.norm());
     }
     const Field outer = equilibrium.bodies().outer_forces(state);
     const Field &load = equilibrium.external_force(), &unbalanced = equilibrium.unbalanced();

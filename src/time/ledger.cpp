@@ -45,7 +45,7 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibri
     const equilibrium::BodyWork work = equilibrium.bodies().work(to);
     external += work.follower;
     double contact = 0, friction = 0;
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+    for (std::size_t p = 0; p < to.contact.size(); ++p) {
         const model::ContactEvaluation& evaluation = equilibrium.contact()[p];
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
             const Vec3& lambda = to.contact[p].lambda[j];

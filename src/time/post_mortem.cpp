@@ -20,9 +20,9 @@ using model::ContactPair;
 namespace {
 
 /// First pair of which a node is a slave, and as which; -1 none.
-std::pair<Index, Index> slave_of(const model::Model& model, Index node) {
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        const std::vector<Index>& slaves = model.pairs[p]->slaves().node;
+std::pair<Index, Index> slave_of(const std::vector<model::ContactHistory>& contact, Index node) {
+    for (std::size_t p = 0; p < contact.size(); ++p) {
+        const std::vector<Index>& slaves = contact[p].pair->slaves().node;
         if (const auto at = std::ranges::find(slaves, node); at != slaves.end())
             return {static_cast<Index>(p), static_cast<Index>(at - slaves.begin())};
     }
@@ -48,22 +48,25 @@ ContactPlace place(const model::Model& model, const model::ContactEvaluation& ev
 }
 
 /// Nodes whose statuses changed, those that did most often first.
-std::vector<StatusChanges> changes_of(const model::Model& model, const std::vector<equilibrium::Statuses>& recent) {
+std::vector<StatusChanges> changes_of(const model::Model& model, const std::vector<model::ContactHistory>& contact,
+                                      const std::vector<equilibrium::Statuses>& recent) {
     std::vector<StatusChanges> all;
-    for (std::size_t p = 0; p < model.pairs.size() && !recent.empty(); ++p)
-        for (Index j = 0; j < model.pairs[p]->size(); ++j) {
+    for (std::size_t p = 0; p < contact.size() && !recent.empty(); ++p) {
+        const ContactPair& pair = *contact[p].pair;
+        for (Index j = 0; j < pair.size(); ++j) {
             StatusChanges one;
             for (const equilibrium::Statuses& statuses : recent)
                 if (one.sequence.empty() || one.sequence.back() != statuses[p][j])
                     one.sequence.push_back(statuses[p][j]);
             if (one.sequence.size() < 2) continue;
-            const Index node = model.pairs[p]->slaves().node[j];
+            const Index node = pair.slaves().node[j];
             const Body& body = *body_of(model, node);
-            one.pair = model.pairs[p]->name();
+            one.pair = pair.name();
             one.body = body.name;
             one.node = node - body.first_node;
             all.push_back(std::move(one));
         }
+    }
     std::ranges::stable_sort(all, std::greater{}, [](const StatusChanges& one) { return one.sequence.size(); });
     return all;
 }
@@ -171,7 +174,7 @@ std::string explain(const model::Model& model, const LadderResult& result, const
                 "be factorised instead";
         break;
     case solve::KinsolOutcome::stopped:
-        text << (model.pairs.empty()
+        text << (equilibrium.contact().empty()
                      ? "; the residual does not fall any more: smaller steps, or a smaller load, may help"
                      : "; contact statuses repeat in a cycle: smaller steps, or a finer master, may break it");
         break;
@@ -204,7 +207,7 @@ PostMortem examine(const FailedAttempt& failed, equilibrium::Equilibrium& equili
     found.rung = failed.result.rung;
     found.reference_force = failed.ladder.reference_force;
     found.iterations = equilibrium.records();
-    std::vector<StatusChanges> changes = changes_of(model, equilibrium.recent_statuses());
+    std::vector<StatusChanges> changes = changes_of(model, failed.last.contact, equilibrium.recent_statuses());
     found.changing = static_cast<Index>(changes.size());
     changes.resize(std::min(changes.size(), most_changes));
     found.changes = std::move(changes);
@@ -229,13 +232,13 @@ PostMortem examine(const FailedAttempt& failed, equilibrium::Equilibrium& equili
         const Vec3& force = equilibrium.unbalanced()[node];
         found.out_of_balance = force - equilibrium.constraints().reaction(node, force);
     }
-    auto [p, j] = slave_of(model, node);
+    auto [p, j] = slave_of(state.contact, node);
     if (failed.decision.pair >= 0) {
         p = failed.decision.pair;
         j = failed.decision.slave;
     } else if (p < 0 && found.cause == Cause::status_cycle) {
         const StatusChanges& first = found.changes.front();
-        std::tie(p, j) = slave_of(model, global_node(model, first.body, first.node));
+        std::tie(p, j) = slave_of(state.contact, global_node(model, first.body, first.node));
     }
     if (p >= 0) found.contact = place(model, equilibrium.contact()[p], j, state.contact[p].status[j]);
     return found;

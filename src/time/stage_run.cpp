@@ -6,20 +6,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 
 namespace osculate::time {
+
+namespace {
+/// Histories of the pairs that general contact has found.
+std::vector<model::ContactHistory> of_general_contact(const model::State& state, const model::Model& model) {
+    return {state.contact.begin() + static_cast<std::ptrdiff_t>(model.pairs.size()), state.contact.end()};
+}
+} // namespace
+
+Machinery::Machinery(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
+                     const model::State& state)
+    : equilibrium(context.model, model::pairs_of(state.contact), constraints,
+                  stage.dynamics ? &*stage.dynamics : nullptr, stage.tangent, context.timings, context.options.threads,
+                  !stage.follower_pressures.empty()),
+      solver(equilibrium.size(), context.timings),
+      collisions(context.model, equilibrium.contact(), stage.limits, stage.follow_paths, context.timings,
+                 context.options.threads) {}
 
 StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, StepObserver& observer,
                    const Checkpoint* from)
     : context_(context), stage_(stage), progress_(progress), observer_(observer),
       constraints_(context.model.nodes(), stage.constraints), dynamics_(stage.dynamics ? &*stage.dynamics : nullptr),
-      equilibrium_(context.model, constraints_, dynamics_, stage.tangent, context.timings, context.options.threads,
-                   !stage.follower_pressures.empty()),
-      solver_(equilibrium_.size(), context.timings),
-      collisions_(context.model, equilibrium_.contact(), stage.limits, stage.follow_paths, context.timings,
-                  context.options.threads),
-      bounded_(std::isfinite(stage.limits.allowed_interpenetration) && !context.model.pairs.empty()) {
+      machinery_(std::make_unique<Machinery>(context, stage, constraints_, progress.state)) {
     const model::Model& model = context.model;
     if (from == nullptr) {
         progress_.displacement_start.reset(model.X.size());
@@ -34,21 +46,26 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
                      load_at(model, stage, constraints_, progress_.displacement_start, 0), progress_);
     if (dynamics_ != nullptr) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);
     targets_ = times_to_hit(stage, progress_.stage_start);
-    if (from != nullptr) equilibrium_.recall(from->memory);
+    if (context.model.general && !progress_.state.scope) {
+        const double speed = progress_.state.v.empty() ? 0 : largest_distance(progress_.state.v, Field(progress_.state.v.size())).value;
+        find_pairs(speed * progress_.dt);
+    }
+    if (from != nullptr) equilibrium().recall(from->memory);
 }
 
 void StageRun::run() {
     while (progress_.reached < targets_.size()) {
-        const long factorised = solver_.factorisations(), iterated = solver_.gmres_iterations();
+        const long factorised = machinery_->solver.factorisations(), iterated = machinery_->solver.gmres_iterations();
         StepAttempt attempt = prepare();
         if (wants_trial(attempt)) trial(attempt);
         if (attempt.decision.verdict == Verdict::accept) {
             solve(attempt);
             attempt.decision = judge(attempt.evidence, stage_.limits, attempt.dt, repeats_);
         }
-        progress_.counts.factorisations += solver_.factorisations() - factorised;
-        progress_.counts.gmres_iterations += solver_.gmres_iterations() - iterated;
-        progress_.counts.paths_followed += collisions_.take_paths_followed();
+        if (attempt.decision.verdict == Verdict::accept && attempt.uncovered > 0) look_farther(attempt);
+        progress_.counts.factorisations += machinery_->solver.factorisations() - factorised;
+        progress_.counts.gmres_iterations += machinery_->solver.gmres_iterations() - iterated;
+        progress_.counts.paths_followed += machinery_->collisions.take_paths_followed();
         attempts_.push_back(row_of(attempt));
         if (attempt.decision.verdict == Verdict::accept)
             commit(attempt);
@@ -90,12 +107,13 @@ StepAttempt StageRun::prepare() {
     Field u = state.u;
     equilibrium::StepLoad load = mean_load(attempt, u);
     if (dynamics_ != nullptr) attempt.force = load.force;
-    if (bounded_ && repeats_ == 0) collisions_.begin_step(state);
+    if (bounded() && !machinery_->located) machinery_->collisions.begin_step(state);
+    machinery_->located = true;
     const double reference = reference_force(context_, stage_, constraints_, state, load, attempt.dt);
-    equilibrium_.begin_attempt(state, load, attempt.dt);
-    attempt.z = equilibrium_.unknowns(u, state.contact);
-    attempt.unpredicted = equilibrium_.unknowns(state.u, state.contact);
-    const Field start = equilibrium_.displacements(attempt.z);
+    equilibrium().begin_attempt(state, load, attempt.dt);
+    attempt.z = equilibrium().unknowns(u, state.contact);
+    attempt.unpredicted = equilibrium().unknowns(state.u, state.contact);
+    const Field start = equilibrium().displacements(attempt.z);
 
     LadderOptions& ladder = attempt.ladder;
     ladder.tolerance = options.tolerance;
@@ -109,35 +127,39 @@ StepAttempt StageRun::prepare() {
         ladder.predicted = u;
         ladder.unpredicted = state.u;
     }
-    equilibrium_.set_reference_force(reference > 0 ? reference : 1);
+    equilibrium().set_reference_force(reference > 0 ? reference : 1);
     if (dynamics_ == nullptr) // inertia holds what nothing touches
-        attempt.forced = starting_statuses(context_, equilibrium_.bodies(), state, start, attempt.statuses);
+        attempt.forced = starting_statuses(context_, equilibrium().bodies(), state, start, attempt.statuses);
     else
         for (const model::ContactHistory& history : state.contact) attempt.statuses.push_back(history.status);
     if (dynamics_ == nullptr && options.stabilisation)
         ladder.stabilisation = stabilisation_options(context_, state, start);
     if (reference == 0) {
-        equilibrium::Equilibrium alone(context_.model, constraints_, dynamics_, {}, context_.timings, options.threads,
-                                       !stage_.follower_pressures.empty());
+        equilibrium::Equilibrium alone(context_.model, model::pairs_of(state.contact), constraints_, dynamics_, {},
+                                       context_.timings, options.threads, !stage_.follower_pressures.empty());
         alone.begin_attempt(state, std::move(load), attempt.dt);
         ladder.reference_force = imbalance(alone, attempt.z, attempt.statuses, attempt.forced);
     }
     return attempt;
 }
 
+bool StageRun::bounded() const {
+    return std::isfinite(stage_.limits.allowed_interpenetration) && !progress_.state.contact.empty();
+}
+
 bool StageRun::wants_trial(const StepAttempt& attempt) const {
     // the default of statics costs nothing where steps are easy
     const StepLimits& limits = stage_.limits;
     const bool easy = limits.usual_bound && repeats_ == 0 && attempt.proposed >= limits.dt_max * (1 - same_step);
-    return bounded_ && !attempt.forced && !easy;
+    return bounded() && !attempt.forced && !easy;
 }
 
 void StageRun::trial(StepAttempt& attempt) {
     Vector z = attempt.z;
-    attempt.result = solve_trial(equilibrium_, solver_, z, attempt.statuses, attempt.ladder);
+    attempt.result = solve_trial(equilibrium(), machinery_->solver, z, attempt.statuses, attempt.ladder);
     attempt.iterations = attempt.result.iterations;
     if (!attempt.result.converged()) return;
-    collisions_.add_trial(equilibrium_.displacements(z), attempt.evidence);
+    machinery_->collisions.add_trial(equilibrium().displacements(z), attempt.evidence);
     attempt.evidence.iterations = attempt.iterations;
     attempt.decision = judge(attempt.evidence, stage_.limits, attempt.dt, repeats_);
     attempt.z = std::move(z);
@@ -147,7 +169,7 @@ void StageRun::trial(StepAttempt& attempt) {
 
 void StageRun::solve(StepAttempt& attempt) {
     attempt.result =
-        climb(equilibrium_, solver_, attempt.z, attempt.unpredicted, attempt.statuses, attempt.forced, attempt.ladder);
+        climb(equilibrium(), machinery_->solver, attempt.z, attempt.unpredicted, attempt.statuses, attempt.forced, attempt.ladder);
     attempt.iterations += attempt.result.iterations;
     const int every = context_.options.reject_every;
     StepEvidence& evidence = attempt.evidence;
@@ -162,25 +184,28 @@ void StageRun::solve(StepAttempt& attempt) {
 
 void StageRun::gather_evidence(StepAttempt& attempt) {
     StepEvidence& evidence = attempt.evidence;
-    attempt.next = equilibrium_.state(attempt.z);
+    attempt.next = equilibrium().state(attempt.z);
     attempt.next.time = attempt.time;
     if (dynamics_ != nullptr)
-        attempt.ledger = advanced(progress_.ledger, context_.model, *dynamics_, equilibrium_, progress_.state,
+        attempt.ledger = advanced(progress_.ledger, context_.model, *dynamics_, equilibrium(), progress_.state,
                                   attempt.next, attempt.force);
     attempt.not_finite =
-        find_not_finite(equilibrium_.contact(), attempt.next, dynamics_ != nullptr ? &attempt.ledger : nullptr);
+        find_not_finite(equilibrium().contact(), attempt.next, dynamics_ != nullptr ? &attempt.ledger : nullptr);
     if (attempt.not_finite) {
         attempt.result.outcome = solve::KinsolOutcome::not_finite;
         evidence.solved = false;
     }
-    if (bounded_) collisions_.add_solution(attempt.next.u, evidence);
-    evidence.unseen = deepest_unseen(equilibrium_.contact());
+    if (bounded()) machinery_->collisions.add_solution(attempt.next.u, evidence);
+    evidence.unseen = deepest_unseen(equilibrium().contact());
     if (context_.audit && !attempt.not_finite) {
         const ScopedTimer timer(context_.timings, Part::audit);
         attempt.audit = &context_.audit->examine(attempt.next.u);
         evidence.intrusion = context_.audit->deepest();
     }
     if (dynamics_ != nullptr) gather_dynamic_evidence(attempt);
+    if (const auto& general = context_.model.general;
+        general && !general->covers(*progress_.state.scope, sum(context_.model.X, attempt.next.u)))
+        attempt.uncovered = largest_distance(attempt.next.u, progress_.state.u).value;
 }
 
 void StageRun::gather_dynamic_evidence(StepAttempt& attempt) {
@@ -216,8 +241,8 @@ Attempt StageRun::row_of(const StepAttempt& attempt) {
     row.value = decision.value;
     row.lambda = decision.lambda;
     row.cause = decision.cause;
-    if (decision.reason == Reason::solver) row.cause = explain(model, attempt.result, equilibrium_, row);
-    if (decision.pair >= 0) name_node(model, model.pairs[decision.pair]->slaves().node[decision.slave], row);
+    if (decision.reason == Reason::solver) row.cause = explain(model, attempt.result, equilibrium(), row);
+    if (decision.pair >= 0) name_node(model, progress_.state.contact[static_cast<std::size_t>(decision.pair)].pair->slaves().node[decision.slave], row);
     if (decision.intrusion) {
         name_node(model, decision.intrusion->node, row);
         row.cause = in_words(*decision.intrusion, model) + "; " + row.cause;
@@ -228,15 +253,22 @@ Attempt StageRun::row_of(const StepAttempt& attempt) {
 }
 
 void StageRun::commit(StepAttempt& attempt) {
-    equilibrium_.commit();
+    equilibrium().commit();
+    const double moved = context_.model.general ? largest_distance(attempt.next.u, progress_.state.u).value : 0;
+    attempt.next.scope = progress_.state.scope;
     progress_.state = attempt.next; // in place: its arrays stay where they are for whoever looks at them
     progress_.counts.stabilised_steps += attempt.result.stabilised_solves > 0 ? 1 : 0;
-    progress_.counts.steps_at_round_off += equilibrium_.rests() ? 1 : 0;
+    progress_.counts.steps_at_round_off += equilibrium().rests() ? 1 : 0;
     if (dynamics_ != nullptr) progress_.ledger = attempt.ledger;
-    observer_.attempted(attempts_.back(), equilibrium_.records());
-    observer_.accepted({progress_.state, equilibrium_, attempt.dt, attempt.iterations, stage_,
+    observer_.attempted(attempts_.back(), equilibrium().records());
+    observer_.accepted({progress_.state, equilibrium(), attempt.dt, attempt.iterations, stage_,
                         dynamics_ != nullptr ? &progress_.ledger : nullptr, attempt.audit});
     refit_patches();
+    machinery_->located = false;
+    if (const auto& general = context_.model.general) {
+        const Field x = sum(context_.model.X, progress_.state.u);
+        if (!general->covers(*progress_.state.scope, x, moved)) find_pairs(moved);
+    }
     attempts_.clear();
     repeats_ = 0;
     lost_per_second_ = 0;
@@ -247,17 +279,22 @@ void StageRun::commit(StepAttempt& attempt) {
 }
 
 void StageRun::reject(const StepAttempt& attempt) {
-    observer_.attempted(attempts_.back(), equilibrium_.records());
+    observer_.attempted(attempts_.back(), equilibrium().records());
     if (attempt.decision.verdict == Verdict::give_up) give_up(attempt);
-    equilibrium_.rollback();
+    equilibrium().rollback();
     const Reason reason = attempt.decision.reason;
+    const bool cut = reason != Reason::forced && reason != Reason::reach;
     if (reason == Reason::closing_energy) lost_per_second_ = attempt.evidence.closing_energy / attempt.dt;
-    if (reason != Reason::forced) ++repeats_;
-    progress_.dt = reason == Reason::forced ? attempt.proposed : attempt.decision.dt;
+    if (cut) ++repeats_;
+    progress_.dt = cut ? attempt.decision.dt : attempt.proposed;
 }
 
 Checkpoint StageRun::checkpoint() const {
-    Checkpoint now{progress_, equilibrium_.memory(), {}};
+    Checkpoint now{progress_, found_pairs(progress_.state, context_.model), {}, {}, equilibrium().memory(), {}};
+    if (progress_.state.scope) {
+        now.scope_x = progress_.state.scope->x;
+        now.scope_margin = progress_.state.scope->margin;
+    }
     for (const model::ContactHistory& history : progress_.state.contact)
         now.patches.push_back(history.master->refitted_patches());
     return now;
@@ -266,27 +303,65 @@ Checkpoint StageRun::checkpoint() const {
 void StageRun::refit_patches() {
     const model::Model& model = context_.model;
     Field x;
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        std::shared_ptr<const contact::MasterSurface>& master = progress_.state.contact[p].master;
+    for (model::ContactHistory& history : progress_.state.contact) {
+        std::shared_ptr<const contact::MasterSurface>& master = history.master;
         if (!master->refits()) continue;
         if (x.empty()) x = sum(model.X, progress_.state.u);
-        const auto refitted = master->refitted(model.pairs[p]->vertices(x));
+        const auto refitted = master->refitted(history.pair->vertices(x));
         if (!refitted) continue;
         progress_.counts.refreshed_patches += refitted->refits_done() - master->refits_done();
         master = refitted;
     }
 }
 
+void StageRun::install(std::vector<model::ContactHistory> contact, model::ContactScope scope) {
+    model::State& state = progress_.state;
+    state.contact.resize(context_.model.pairs.size());
+    state.contact.insert(state.contact.end(), std::make_move_iterator(contact.begin()),
+                         std::make_move_iterator(contact.end()));
+    state.scope = std::make_shared<const model::ContactScope>(std::move(scope));
+    machinery_ = nullptr; // its memory first
+    machinery_ = std::make_unique<Machinery>(context_, stage_, constraints_, state);
+}
+
+void StageRun::find_pairs(double expected) {
+    const ScopedTimer timer(context_.timings, Part::search);
+    const model::State& state = progress_.state;
+    const model::GeneralContact& general = *context_.model.general;
+    model::ContactScope scope = general.scope_at(sum(context_.model.X, state.u), expected);
+    std::vector<model::ContactHistory> found = general.near(scope, of_general_contact(state, context_.model));
+    install(std::move(found), std::move(scope));
+}
+
+void StageRun::look_farther(StepAttempt& attempt) {
+    const model::State& state = progress_.state;
+    const model::GeneralContact& general = *context_.model.general;
+    model::ContactScope scope = general.scope_at(sum(context_.model.X, state.u), attempt.uncovered);
+    const std::vector<model::ContactHistory> before = of_general_contact(state, context_.model);
+    std::vector<model::ContactHistory> found = general.near(scope, before);
+    const auto same = [](const model::ContactHistory& a, const model::ContactHistory& b) {
+        return a.pair->name() == b.pair->name() && a.pair->slaves().node == b.pair->slaves().node;
+    };
+    if (std::ranges::equal(found, before, same)) return;
+    install(std::move(found), std::move(scope));
+    attempt.decision = {};
+    attempt.decision.verdict = Verdict::retry;
+    attempt.decision.reason = Reason::reach;
+    attempt.decision.dt = attempt.dt;
+    attempt.decision.value = attempt.uncovered;
+    attempt.decision.cause = "bodies moved by " + number(attempt.uncovered) + " m, to others that were not near";
+}
+
 void StageRun::give_up(const StepAttempt& attempt) {
     const FailedAttempt failed{context_.model, stage_,         progress_.state,  attempt.z,
                                attempt.result, attempt.ladder, attempt.decision, attempts_};
     const Attempt& row = attempts_.back();
-    PostMortem found = examine(failed, equilibrium_);
+    PostMortem found = examine(failed, equilibrium());
     found.message = "stage '" + stage_.name + "', step of " + number(row.dt) + " s to time " + number(row.time) + " s" +
                     (attempt.result.adrift >= 0 ? "" : ", the smallest allowed,") + " failed. " + row.cause;
-    model::State state = equilibrium_.state(attempt.z);
+    model::State state = equilibrium().state(attempt.z);
     state.time = row.time;
-    const FailedIterate iterate{failed, state, equilibrium_};
+    const FailedIterate iterate{failed, state, equilibrium()};
     observer_.gave_up(found, &iterate);
     throw RunFailure(found.message);
 }

@@ -10,6 +10,7 @@
 #include "time/run_context.hpp"
 #include "time/step_evidence.hpp"
 
+#include <memory>
 #include <optional>
 
 namespace osculate::time {
@@ -34,6 +35,18 @@ struct StepAttempt {
     std::optional<NotFinite> not_finite;
     Index worst_in_time = -1;                    ///< node of StepEvidence::local_error
     const contact::AuditResult* audit = nullptr; ///< null: there was none
+    double uncovered = 0; ///< largest motion of a node, m, where bodies came near that no pair joins; 0: all is covered
+};
+
+/// What solves and judges steps, for one list of contact pairs.
+struct Machinery {
+    equilibrium::Equilibrium equilibrium;
+    solve::KinsolSolver solver;
+    CollisionCheck collisions;
+    bool located = false; ///< whether collisions has begun the step
+
+    Machinery(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
+              const model::State& state);
 };
 
 class StageRun {
@@ -60,6 +73,15 @@ private:
     [[nodiscard]] Checkpoint checkpoint() const;
     /// Fits strongly bent patches of the accepted state's masters anew.
     void refit_patches();
+    /// Looks for the pairs of general contact anew, from the accepted state on.
+    /// @param expected  largest motion of a node in the next step, m
+    void find_pairs(double expected);
+    /// The same where an attempt has moved nodes out of the scope of the pairs: it is repeated if there are others.
+    void look_farther(StepAttempt& attempt);
+    /// Makes a list of pairs that of the state.
+    void install(std::vector<model::ContactHistory> contact, model::ContactScope scope);
+    [[nodiscard]] equilibrium::Equilibrium& equilibrium() { return machinery_->equilibrium; }
+    [[nodiscard]] const equilibrium::Equilibrium& equilibrium() const { return machinery_->equilibrium; }
     /// Examines the attempt, tells the observer and throws RunFailure.
     [[noreturn]] void give_up(const StepAttempt& attempt);
 
@@ -69,12 +91,10 @@ private:
     StepObserver& observer_;
     linear::Constraints constraints_;
     const equilibrium::Dynamics* dynamics_; ///< null in statics
-    equilibrium::Equilibrium equilibrium_;
-    solve::KinsolSolver solver_;
-    CollisionCheck collisions_;
+    std::unique_ptr<Machinery> machinery_; ///< for the pairs of the state
     std::optional<CentreMasses> centres_; ///< of dynamic stages
     std::vector<double> targets_;         ///< times to hit
-    bool bounded_;                        ///< interpenetration is
+    [[nodiscard]] bool bounded() const;   ///< whether interpenetration is
     // of one step
     int repeats_ = 0;
     double lost_per_second_ = 0; ///< by closing gaps, in the last attempt that was cut for it

@@ -95,6 +95,7 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
              << limits.closing_energy;
         break;
     case Reason::none:
+    case Reason::reach:
     case Reason::forced: break;
     }
 }

@@ -21,10 +21,6 @@ CentreMasses::CentreMasses(const model::Model& model, const equilibrium::Dynamic
                 if (constraints.constraint(node, k) != nullptr)
                     free[b] = free[b] && constraints.frame(node).col(k).array().abs() < across;
         }
-    for (const auto& pair : model.pairs) {
-        slave.push_back(static_cast<std::size_t>(model::body_index(model, pair->slaves().node.front())));
-        master.push_back(static_cast<std::size_t>(model::body_index(model, pair->master_nodes().front())));
-    }
 }
 
 bool touches(const model::State& state) {
@@ -53,12 +49,13 @@ double velocity_error(const model::Model& model, const equilibrium::Dynamics& dy
                       const model::State& from, const model::State& to, double dt, double energy) {
     if (!(energy > 0)) return 0;
     std::vector<Vec3> change(model.bodies.size(), Vec3::Zero()); // of the force on each body, N
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
+    for (std::size_t p = 0; p < to.contact.size(); ++p) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t j = 0; j < to.contact[p].lambda.size(); ++j)
             sum += to.contact[p].lambda[j] - from.contact[p].lambda[j];
-        change[masses.slave[p]] += sum;
-        change[masses.master[p]] -= sum;
+        const model::ContactPair& pair = *to.contact[p].pair;
+        change[static_cast<std::size_t>(model::body_index(model, pair.slaves().node.front()))] += sum;
+        change[static_cast<std::size_t>(model::body_index(model, pair.master_nodes().front()))] -= sum;
     }
     double twice = 0;
     for (std::size_t b = 0; b < change.size(); ++b)

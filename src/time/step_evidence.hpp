@@ -10,8 +10,7 @@ namespace osculate::time {
 
 /// Masses that contact forces accelerate, and the directions in which nothing holds their bodies.
 struct CentreMasses {
-    std::vector<std::size_t> slave, master; ///< (pairs) bodies
-    std::vector<double> mass;               ///< (bodies) kg
+    std::vector<double> mass; ///< (bodies) kg
     std::vector<Eigen::Array<bool, 3, 1>> free;
 
     CentreMasses(const model::Model& model, const equilibrium::Dynamics& dynamics,

@@ -104,7 +104,7 @@ model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const mod
     const auto place = [&](const Field& at) {
         for (std::size_t i = 0; i < n; ++i) tails[i] = rounded_off(context.model.X[i], at[i], x[i]);
     };
-    model::ContactEvaluation evaluation(*context.model.pairs[p]);
+    model::ContactEvaluation evaluation(*state.contact[p].pair);
     place(state.u);
     evaluation.begin_step(x, state.contact[p], context.timings, context.options.threads, tails);
     place(u);
@@ -150,11 +150,11 @@ StabilisationOptions stabilisation_options(RunContext& context, const model::Sta
     how.farthest = context.characteristic_length;
     constexpr double part = 0.05; // of the model, where there is no facet to compare with
     how.finest = part * context.characteristic_length;
-    for (const auto& pair : context.model.pairs) how.finest = std::min(how.finest, pair->finest());
+    for (const model::ContactHistory& history : state.contact) how.finest = std::min(how.finest, history.pair->finest());
     how.gap = [&context, &state, u, how] {
-        if (context.model.pairs.empty()) return 2 * how.finest; // of no account
+        if (state.contact.empty()) return 2 * how.finest; // of no account
         double least = how.farthest;
-        for (std::size_t p = 0; p < context.model.pairs.size(); ++p)
+        for (std::size_t p = 0; p < state.contact.size(); ++p)
             least = std::min(least, evaluated(context, p, state, u).least_gap());
         return least;
     };
@@ -172,8 +172,8 @@ Field initial_acceleration(RunContext& context, const Stage& stage, const linear
     const Field x = sum(model.X, state.u);
     Field f = force;
     f.add(-1, own);
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        model::ContactEvaluation evaluation(*model.pairs[p]);
+    for (std::size_t p = 0; p < state.contact.size(); ++p) {
+        model::ContactEvaluation evaluation(*state.contact[p].pair);
         evaluation.begin_step(x, state.contact[p], context.timings, context.options.threads);
         evaluation.evaluate(x, context.timings, context.options.threads);
         for (Index j = 0; j < evaluation.pair().size(); ++j)
@@ -255,7 +255,7 @@ double reference_force(const RunContext& context, const Stage& stage, const line
             std::fill(internal.begin(), internal.end(), Vec3::Zero());
             M.multiply_add(displacements ? state.u : sum(state.u, model.X), internal, options.threads);
             largest = std::max(largest, largest_component(internal));
-            if (model.pairs.empty()) break;
+            if (state.contact.empty()) break;
         }
         const double digit = std::numeric_limits<double>::epsilon() / options.tolerance;
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;

@@ -10,7 +10,7 @@ namespace osculate::time {
 Stepper::Stepper(const model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
     : stages_(std::move(stages)), context_(new RunContext{model, options, timings}) {
     progress_.state.u.reset(model.X.size());
-    for (const auto& pair : model.pairs) progress_.state.contact.push_back(pair->initial_history());
+    for (const auto& pair : model.pairs) progress_.state.contact.push_back(model::opened(pair));
     progress_.state.material = model::initial_history(model);
     Vec3 low = model.X[0], high = low;
     for (const Vec3& X : model.X) {
@@ -53,9 +53,10 @@ void Stepper::resume(Checkpoint checkpoint) {
     const model::Model& model = context_->model;
     if (const std::string what = misfit(checkpoint, model, stages_.size()); !what.empty())
         throw RunFailure("the checkpoint does not fit the scene: " + what);
+    restore_pairs(checkpoint, model);
     Progress progress = checkpoint;
-    for (std::size_t p = 0; p < model.pairs.size(); ++p) {
-        const model::ContactPair& pair = *model.pairs[p];
+    for (std::size_t p = 0; p < progress.state.contact.size(); ++p) {
+        const model::ContactPair& pair = *progress.state.contact[p].pair;
         auto& master = progress.state.contact[p].master = pair.master();
         if (!checkpoint.patches[p].empty()) master = master->refitted(checkpoint.patches[p]);
         if (!master) throw RunFailure("the checkpoint does not fit the scene: patches of pair '" + pair.name() + "'");

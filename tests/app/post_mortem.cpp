@@ -31,12 +31,12 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const Stage& stage = plan.stages.front();
     const linear::Constraints constraints(plan.model.nodes(), stage.constraints);
-    equilibrium::Equilibrium equilibrium(plan.model, constraints, nullptr,
-                                         equilibrium::choose_tangent(plan.model, LinearSolver::automatic, false, false),
+    equilibrium::Equilibrium equilibrium(plan.model, plan.model.pairs, constraints, nullptr,
+                                         equilibrium::choose_tangent(plan.model, plan.model.pairs, LinearSolver::automatic, false, false),
                                          timings, 1);
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
-    for (const auto& pair : plan.model.pairs) state.contact.push_back(pair->initial_history());
+    for (const auto& pair : plan.model.pairs) state.contact.push_back(model::opened(pair));
     equilibrium.begin_attempt(state, {state.u, state.u}, 1);
     const Vector z = equilibrium.unknowns(state.u, state.contact);
     equilibrium.set_reference_force(ladder.reference_force);

@@ -70,12 +70,12 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const time::Stage& pull = plan.stages[1];
     const linear::Constraints constraints(plan.model.nodes(), pull.constraints);
-    Equilibrium equilibrium(plan.model, constraints, &*pull.dynamics, pull.tangent, timings, 1);
+    Equilibrium equilibrium(plan.model, plan.model.pairs, constraints, &*pull.dynamics, pull.tangent, timings, 1);
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
     state.v = state.a = state.u;
     const model::ContactPair& pair = *plan.model.pairs[0];
-    state.contact.push_back(pair.initial_history());
+    state.contact.push_back(model::opened(plan.model.pairs[0]));
     std::vector<double> by_step;
     for (const double dt : {1e-3, 5e-4}) {
         equilibrium.begin_attempt(state, {state.u, state.u, {}}, dt);

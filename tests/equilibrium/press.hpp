@@ -20,11 +20,11 @@ public:
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);
         const time::Stage& pull = plan.stages[1];
         constraints = std::make_unique<linear::Constraints>(plan.model.nodes(), pull.constraints);
-        equilibrium = std::make_unique<Equilibrium>(plan.model, *constraints, nullptr,
-                                                    choose_tangent(plan.model, solver, false, false), timings, 1);
+        equilibrium = std::make_unique<Equilibrium>(plan.model, plan.model.pairs, *constraints, nullptr,
+                                                    choose_tangent(plan.model, plan.model.pairs, solver, false, false), timings, 1);
         kinsol = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
         state.u.assign(plan.model.X.size(), Vec3::Zero());
-        state.contact.push_back(plan.model.pairs[0]->initial_history());
+        state.contact.push_back(model::opened(plan.model.pairs[0]));
         force = pull.force_end;
     }
     /// All slave nodes of one status, but for the first few, which are open.

@@ -33,7 +33,7 @@ public:
             state.contact[0].lambda[j] = force;
         }
         Timings unused;
-        contact = model::contact_evaluations(model);
+        contact = model::contact_evaluations(model.pairs);
         contact[0].begin_step(model.X, pair.initial_history(), unused, 1);
         contact[0].evaluate(sum(model.X, state.u), unused, 1);
     }

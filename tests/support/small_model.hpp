@@ -106,7 +106,7 @@ public:
     [[nodiscard]] model::State at_rest() const {
         model::State state;
         state.u.reset(model.X.size());
-        for (const auto& pair : model.pairs) state.contact.push_back(pair->initial_history());
+        for (const auto& pair : model.pairs) state.contact.push_back(model::opened(pair));
         state.material = model::initial_history(model);
         return state;
     }

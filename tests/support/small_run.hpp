@@ -20,7 +20,7 @@ namespace osculate::support {
     stage.force_start = stage.force_end = Field(small.model.X.size());
     stage.limits.dt_max = stage.duration / steps;
     stage.limits.dt_min = 1e-6 * stage.limits.dt_max;
-    stage.tangent = equilibrium::choose_tangent(small.model, solver, false, false);
+    stage.tangent = equilibrium::choose_tangent(small.model, small.model.pairs, solver, false, false);
     return stage;
 }
 
@@ -32,7 +32,7 @@ namespace osculate::support {
     stage.dynamics = equilibrium::Dynamics{equilibrium::generalised_alpha(rho_inf)};
     stage.limits.dt_max = duration / steps;
     stage.limits.dt_min = 1e-6 * stage.limits.dt_max;
-    stage.tangent = equilibrium::choose_tangent(small.model, LinearSolver::automatic, true, false);
+    stage.tangent = equilibrium::choose_tangent(small.model, small.model.pairs, LinearSolver::automatic, true, false);
     return stage;
 }
 

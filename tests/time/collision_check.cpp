@@ -24,7 +24,7 @@ protected:
         small.add_pair("joint", {1, "z_min"}, {0, "z_max"}, elastic.E, 0, thickness);
         limits.allowed_interpenetration = 0.01; // of a facet
         start = small.at_rest();
-        contact = model::contact_evaluations(model);
+        contact = model::contact_evaluations(model.pairs);
     }
     /// Moves the cube by d.
     void move_cube(Field& u, const Vec3& d) const {

@@ -31,7 +31,7 @@ TEST(Ledger, AddsUpUnderFriction) {
     FollowerPressure& pressure = slide.follower_pressures.emplace_back();
     for (const mesh::Facet& facet : small.facets(1, "z_max")) pressure.faces.push_back(mesh::plane_face(facet));
     pressure.end = 500;
-    slide.tangent = equilibrium::choose_tangent(small.model, LinearSolver::automatic, true, true);
+    slide.tangent = equilibrium::choose_tangent(small.model, small.model.pairs, LinearSolver::automatic, true, true);
     Timings timings;
     const double mass = 50, kinetic = 0.5 * mass; // kg, J
     Stepper stepper(small.model, {slide}, {}, timings);

@@ -61,7 +61,7 @@ protected:
                                                        std::move(nodes), std::move(facets), pair().options());
         constraints = std::make_unique<linear::Constraints>(model.nodes(), small.constraints);
         // an LU factorisation tells at once that nothing holds the cap
-        equilibrium = std::make_unique<equilibrium::Equilibrium>(model, *constraints, nullptr,
+        equilibrium = std::make_unique<equilibrium::Equilibrium>(model, model.pairs, *constraints, nullptr,
                                                                  equilibrium::TangentChoice{}, timings, 1);
         solver = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
         state = small.at_rest();

@@ -60,7 +60,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const linear::Constraints constraints(plan.model.nodes(), plan.stages[1].constraints);
     const auto& dynamics = plan.stages[1].dynamics;
-    equilibrium::Equilibrium equilibrium(plan.model, constraints, dynamics ? &*dynamics : nullptr,
+    equilibrium::Equilibrium equilibrium(plan.model, plan.model.pairs, constraints, dynamics ? &*dynamics : nullptr,
                                          plan.stages[1].tangent, timings, 1,
                                          !plan.stages[1].follower_pressures.empty());
 
@@ -71,7 +71,7 @@ TEST_P(Tangent, IsTheDerivativeOfTheResidual) {
     // a start state, and a trial state that has slid and been shaken out of every symmetry
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
-    for (const auto& pair : plan.model.pairs) state.contact.push_back(pair->initial_history());
+    for (const auto& pair : plan.model.pairs) state.contact.push_back(model::opened(pair));
     const model::Body& contactor = plan.model.bodies[1];
     std::vector<Vec3> u(plan.model.X.size());
     for (std::size_t i = 0; i < u.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "osculate/time/stepper.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,12 +45,18 @@ struct Plan {
     model::Model model;
     scene::Named<scene::Pair> contact; ///< the scene's pairs, in its order: with roles and discretisation
     std::vector<PairChoice> choices;   ///< of each of them
+    std::optional<scene::GeneralContact> general; ///< the scene's, with its discretisation
+    PairChoice general_choice;
+    std::vector<model::ContactHistory> near_at_start; ///< pairs that general contact finds there
     std::vector<time::Stage> stages;
     time::StepperOptions stepper;
     std::vector<Index> constrained_sets; ///< of model.sets, in the scene's order
     std::vector<PlannedProbe> probes;
     std::vector<PlanItem> items;
     std::vector<std::string> mesh_notes; ///< of build_meshes
+
+    /// The scene's pairs, then those that general contact finds at the start.
+    [[nodiscard]] model::ContactPairs pairs_at_start() const;
 };
 
 /// Meshes of the scene's bodies, in its order. Throws SceneError for a mesh that cannot be generated or read.

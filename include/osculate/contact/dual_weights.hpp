@@ -80,6 +80,9 @@ public:
     [[nodiscard]] const std::vector<Incidence>& around(Index j) const { return incident_[j]; }
     [[nodiscard]] bool usable(Index f) const { return facets_[f].dual.usable; }
 
+    /// Chooses for a while what each slave facet may load: a surface with feature edges has facets that a slave facet sees
+    /// edge-on or nearly so, next to those that it faces, and these do not share the load of the others.
+    void begin(const PairPositions& at);
     /// Finds what of the master slave facet f lies above, and its dual functions there.
     /// @param seeds  master facets to begin with, in any order; the search goes on to neighbours as long as they overlap
     void update(Index f, const PairPositions& at, std::vector<Index> seeds);
@@ -120,6 +123,7 @@ private:
         SlaveFacet corners;
         std::vector<Vec3> X; ///< (corners) reference
         double area = 0;     ///< reference
+        Vec3 normal = Vec3::Zero(); ///< at the last begin()
         std::vector<Overlap> overlaps;
         DualFunctions dual;
         std::vector<Index> vertices;                     ///< of the overlaps, ascending
@@ -129,6 +133,8 @@ private:
         Matrix dD;        ///< of D, (corners x 3y); empty without a border: D is constant
     };
 
+    /// Whether a slave facet faced a master facet at the last begin().
+    [[nodiscard]] bool faces(const Facet& facet, Index master) const;
     void find_border(Facet& facet, const PairPositions& at, const SlavePlane& plane,
                      const std::vector<Vec3>& corner) const;
     /// Adds what the motion of the border does. @param turn  (corners) vectors e of dA = e x ds
@@ -137,6 +143,8 @@ private:
 
     const mesh::HalfEdgeSurface& surface_;
     double least_cover_;
+    bool has_features_;
+    std::vector<Vec3> master_normal_; ///< (master facets) at the last begin(); empty without features
     std::vector<Facet> facets_;
     std::vector<std::vector<Incidence>> incident_; ///< (slaves)
 };

@@ -30,6 +30,8 @@ public:
     /// @param X      reference positions of the surface's vertices
     /// @param about  e.g. the centre of the slave nodes
     FacetSearch(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const Vec3& about);
+    /// That rule for another search on the same surface, whose list of neighbours is taken over.
+    FacetSearch(const FacetSearch& other, const std::vector<Vec3>& X, const Vec3& about);
     ~FacetSearch();
     /// Copies share rules and neighbours; they are not built.
     FacetSearch(const FacetSearch& other);
@@ -54,12 +56,15 @@ private:
     struct Tree;
     /// The hit to choose, independent of their order; no facet if there are none. @param hits  modified
     [[nodiscard]] FacetHit best_of(std::vector<FacetHit>& hits) const;
-    struct Rules {
-        std::vector<Index> neighbour_start{0}, neighbours; ///< facets that share a vertex with each facet
-        std::vector<Vec3> centre, normal;                  ///< of each facet, relative to `about`; empty: no rule
+    /// Facets that share a vertex with each facet.
+    struct Neighbours {
+        std::vector<Index> start{0}, facet;
     };
-    FacetSearch(const mesh::HalfEdgeSurface& surface, Rules rules);
+    struct Rules {
+        std::vector<Vec3> centre, normal; ///< of each facet, relative to `about`; empty: no rule
+    };
     const mesh::HalfEdgeSurface* surface_;
+    std::shared_ptr<const Neighbours> neighbours_;
     std::shared_ptr<const Rules> rules_;
     std::unique_ptr<Tree> tree_;
 };

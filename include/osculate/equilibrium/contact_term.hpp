@@ -38,8 +38,8 @@ struct LinearisedContact {
 class ContactTerm final : public Term {
 public:
     /// @param unknowns  must outlive this object, like the other references
-    ContactTerm(const model::Model& model, const linear::Constraints& constraints, const linear::Unknowns& unknowns,
-                Timings& timings, int threads);
+    ContactTerm(const model::ContactPairs& pairs, const linear::Constraints& constraints,
+                const linear::Unknowns& unknowns, Timings& timings, int threads);
 
     /// Sets the statuses for the next solve. With `natural` they are used only at the next iterate, and only if
     /// `force_first`.
@@ -93,6 +93,7 @@ private:
     /// Projector on the directions in which symmetry planes hold a node: no contact force acts along these directions.
     [[nodiscard]] Mat3 symmetry_directions(Index node) const;
 
+    const model::ContactPairs& pairs_;
     const linear::Constraints& constraints_;
     const linear::Unknowns& unknowns_;
     Timings& timings_;

@@ -28,9 +28,11 @@ struct IterationRecord {
 ///     equilibrium   f(u) - f_ext - f_contact = 0,   f of BodyForces, contact forces as at the end of the step
 class Equilibrium final : public solve::NonlinearProblem {
 public:
+    /// @param pairs     in force during its attempts
     /// @param dynamics  null in statics; must outlive this object
-    Equilibrium(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics,
-                const TangentChoice& choice, Timings& timings, int threads, bool follower_pressure = false);
+    Equilibrium(const model::Model& model, model::ContactPairs pairs, const linear::Constraints& constraints,
+                const Dynamics* dynamics, const TangentChoice& choice, Timings& timings, int threads,
+                bool follower_pressure = false);
 
     /// Opens an attempt over dt: slips and facets start from `state`; loads are those at the end of the step, in
     /// dynamics their weighted mean over the step.
@@ -115,6 +117,7 @@ private:
     [[nodiscard]] bool at_round_off(const ConstVectorRef& F) const;
 
     const model::Model& model_;
+    const model::ContactPairs pairs_;
     const linear::Constraints& constraints_;
     linear::Unknowns unknowns_;
     Timings& timings_;

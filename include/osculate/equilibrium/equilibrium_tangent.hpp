@@ -20,7 +20,8 @@ class EquilibriumTangent final : public solve::Preconditioner, public solve::Tan
 public:
     /// @param terms  of the residual, including `bodies` and `contact`; all arguments must outlive this object
     /// @param at     iterate at which the residual was last evaluated
-    EquilibriumTangent(const model::Model& model, const linear::Constraints& constraints,
+    EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
+                       const linear::Constraints& constraints,
                        const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
                        ContactTerm& contact, const Iterate& at, const TangentChoice& choice, Timings& timings,
                        int threads);

@@ -14,7 +14,7 @@ struct CondensationCost {
     /// Whether condensation pays off within a few iterations and its matrices fit into memory.
     [[nodiscard]] bool pays() const;
 };
-[[nodiscard]] CondensationCost condensation_cost(const model::Model& model);
+[[nodiscard]] CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs);
 
 /// How to solve linear systems with the tangent of a stage.
 struct TangentChoice {
@@ -27,8 +27,9 @@ struct TangentChoice {
     [[nodiscard]] bool operator==(const TangentChoice&) const = default;
 };
 
-/// Made once for a stage, from the model and the user's request.
+/// Made once for a stage, from the model, the pairs in force and the user's request.
 /// @param follows  whether a pressure follows its faces
-[[nodiscard]] TangentChoice choose_tangent(const model::Model& model, LinearSolver asked, bool dynamic, bool follows);
+[[nodiscard]] TangentChoice choose_tangent(const model::Model& model, const model::ContactPairs& pairs,
+                                           LinearSolver asked, bool dynamic, bool follows);
 
 } // namespace osculate::equilibrium

@@ -112,6 +112,8 @@ private:
     [[nodiscard]] const Vec3& at(const Places& places, Index vertex) const;
     [[nodiscard]] contact::PairPositions positions() const;
     void place(const std::vector<Vec3>& x, const std::vector<Vec3>& tails);
+    /// See SlaveNodes::along.
+    void drop_what_is_not_pointed_at(const std::vector<Vec3>& x);
     /// state() of slave j without the force.
     [[nodiscard]] contact::ContactState measure(Index j, const contact::PairPositions& at) const;
     [[nodiscard]] const Mat3& image(Index j, Index i) const { return pair_->image(points_[j].nodes[i]); }
@@ -131,14 +133,16 @@ private:
     std::vector<Vec3> vertices_, vertex_tails_; ///< current, of the master surface
     contact::FacetTracking tracking_;
     std::vector<contact::ContactPoint> points_;
+    std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along
     std::vector<contact::ContactState> states_; ///< without forces
     std::vector<std::vector<Index>> point_nodes_;
     int facet_changes_ = 0;
 };
 
-/// One for each pair of a model.
+/// One for each pair.
 using ContactEvaluations = std::vector<ContactEvaluation>;
-struct Model;
-[[nodiscard]] ContactEvaluations contact_evaluations(const Model& model);
+[[nodiscard]] ContactEvaluations contact_evaluations(const ContactPairs& pairs);
+/// The pairs of a state.
+[[nodiscard]] ContactPairs pairs_of(const std::vector<ContactHistory>& contact);
 
 } // namespace osculate::model

@@ -4,11 +4,8 @@
 
 #include "osculate/contact/coulomb.hpp"
 #include "osculate/contact/discretisation.hpp"
-#include "osculate/contact/master_surface.hpp"
-#include "osculate/contact/mirror.hpp"
-#include "osculate/contact/search.hpp"
 #include "osculate/core/choices.hpp"
-#include "osculate/mesh/half_edge_surface.hpp"
+#include "osculate/model/master_side.hpp"
 
 #include <memory>
 #include <string>
@@ -20,8 +17,11 @@ struct SmoothSlave;
 
 namespace osculate::model {
 
+class ContactPair;
+
 /// Data that a pair keeps from one accepted step to the next.
 struct ContactHistory {
+    std::shared_ptr<const ContactPair> pair; ///< never null in a state
     std::vector<Vec3> lambda;            ///< (slaves) contact force on each slave node, N, global components
     std::vector<contact::Status> status; ///< (slaves)
     std::vector<Index> facet;            ///< (slaves) temporary facet, -1: not searched yet
@@ -35,14 +35,9 @@ struct SlaveNodes {
     std::vector<double> stiffness;   ///< c of the complementarity function, N/m
     std::vector<mesh::Facet> facets; ///< slave surface, global nodes
     std::vector<Mat3> in_plane{};    ///< projectors on the symmetry planes of each node; empty: no such planes
-};
-
-/// Vertices of a master surface: nodes, or mirror images of nodes.
-struct MasterNodes {
-    std::vector<Index> node;    ///< (vertices) global
-    std::vector<Index> image{}; ///< (vertices) index into images; empty: every vertex is its node
-    std::vector<contact::Image> images{contact::Image{}};
-    std::vector<double> thickness{}; ///< (vertices) thickness of the body behind, m; empty: not needed
+    /// Nodes at the other ends of the edges that meet in each node, global: a node touches only what it points at, what no
+    /// such edge goes into at more than 45 degrees. Empty: it touches whatever it is above.
+    std::vector<std::vector<Index>> along{};
 };
 
 struct ContactOptions {
@@ -57,9 +52,13 @@ struct ContactOptions {
 class ContactPair {
 public:
     /// @param X             reference positions of all nodes
-    /// @param master_nodes  what the vertices of `surface` are
     /// @param smooth        for mortar: surface through the slave nodes, which are nodes of its vertices; null: their
     ///                      facets
+    ContactPair(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
+                std::shared_ptr<const MasterSide> master_side, const ContactOptions& options,
+                const contact::SmoothSlave* smooth = nullptr);
+    /// With a master of its own.
+    /// @param master_nodes  what the vertices of `surface` are
     ContactPair(std::string name, const std::vector<Vec3>& X, SlaveNodes slaves,
                 std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
                 std::shared_ptr<const contact::MasterSurface> master, const ContactOptions& options,
@@ -68,52 +67,50 @@ public:
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] Index size() const { return static_cast<Index>(slaves_.node.size()); }
     [[nodiscard]] const SlaveNodes& slaves() const { return slaves_; }
-    [[nodiscard]] const mesh::HalfEdgeSurface& surface() const { return *surface_; }
+    [[nodiscard]] const MasterSide& master_side() const { return *side_; }
+    [[nodiscard]] const mesh::HalfEdgeSurface& surface() const { return side_->surface(); }
     /// The initial master surface; that of a state is in ContactHistory::master.
-    [[nodiscard]] const std::shared_ptr<const contact::MasterSurface>& master() const { return master_; }
-    [[nodiscard]] const std::vector<Index>& master_nodes() const { return master_nodes_.node; }
+    [[nodiscard]] const std::shared_ptr<const contact::MasterSurface>& master() const { return side_->shape(); }
+    [[nodiscard]] const std::vector<Index>& master_nodes() const { return side_->nodes(); }
     [[nodiscard]] const ContactOptions& options() const { return options_; }
     /// The discretisation to clone; evaluate only the clone.
     [[nodiscard]] const contact::Discretisation& discretisation() const { return *discretisation_; }
     /// The search to copy; build only the copy.
     [[nodiscard]] const contact::FacetSearch& search() const { return search_; }
-    /// Least thickness of the body behind a facet's vertices, m; infinite if none was given.
-    [[nodiscard]] double thickness(Index facet) const;
-    /// The smallest of all facet sizes and thicknesses, m: for motions well below it, the side of a node is
-    /// unambiguous.
-    [[nodiscard]] double finest() const { return finest_; }
-    /// Positions of the master's vertices, including mirror images.
-    [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const;
-    /// The image of a vertex.
-    [[nodiscard]] const contact::Image& image_of(Index vertex) const {
-        return master_nodes_.images[master_nodes_.image.empty() ? 0 : master_nodes_.image[vertex]];
-    }
-    /// Whether the master has mirror images: forces on them fold back onto its nodes.
-    [[nodiscard]] bool mirrored() const { return !master_nodes_.image.empty(); }
-    /// The vertex that is the node itself, if `vertex` is an image of this node.
-    [[nodiscard]] Index own_vertex(Index vertex) const { return own_vertex_.empty() ? vertex : own_vertex_[vertex]; }
+    /// See MasterSide.
+    [[nodiscard]] double thickness(Index facet) const { return side_->thickness(facet); }
+    /// For motions well below it, the side of a node is unambiguous.
+    [[nodiscard]] double finest() const { return side_->finest(); }
+    [[nodiscard]] std::vector<Vec3> vertices(const std::vector<Vec3>& x) const { return side_->vertices(x); }
+    [[nodiscard]] const contact::Image& image_of(Index vertex) const { return side_->image_of(vertex); }
+    [[nodiscard]] bool mirrored() const { return side_->mirrored(); }
+    [[nodiscard]] Index own_vertex(Index vertex) const { return side_->own_vertex(vertex); }
     /// Linear part of the image; the unit matrix for numbers from surface().vertex_count() on, which are slave nodes.
     [[nodiscard]] const Mat3& image(Index vertex) const {
-        return vertex < surface_->vertex_count() ? image_of(vertex).M : master_nodes_.images.front().M;
+        static const contact::Image none{};
+        return vertex < surface().vertex_count() ? image_of(vertex).M : none.M;
     }
     /// Global node of a vertex, or of a slave node in the numbering of Mortar.
     [[nodiscard]] Index node(Index vertex) const {
-        return vertex < surface_->vertex_count() ? master_nodes_.node[vertex]
-                                                 : slaves_.node[vertex - surface_->vertex_count()];
+        return vertex < surface().vertex_count() ? master_nodes()[vertex]
+                                                 : slaves_.node[vertex - surface().vertex_count()];
     }
+    /// Nothing has touched yet; without the pair itself, see opened().
     [[nodiscard]] ContactHistory initial_history() const;
 
 private:
     std::string name_;
     SlaveNodes slaves_;
-    std::unique_ptr<mesh::HalfEdgeSurface> surface_;
-    MasterNodes master_nodes_;
-    std::vector<Index> own_vertex_; ///< (vertices) empty without images
-    std::shared_ptr<const contact::MasterSurface> master_;
+    std::shared_ptr<const MasterSide> side_;
     contact::FacetSearch search_;
     ContactOptions options_;
     std::unique_ptr<const contact::Discretisation> discretisation_;
-    double finest_ = 0;
 };
+
+/// Pairs that are in force at the same time.
+using ContactPairs = std::vector<std::shared_ptr<const ContactPair>>;
+
+/// History of a pair that has touched nothing yet.
+[[nodiscard]] ContactHistory opened(std::shared_ptr<const ContactPair> pair);
 
 } // namespace osculate::model

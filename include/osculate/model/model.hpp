@@ -5,6 +5,7 @@
 #include "osculate/linear/block_matrix.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/model/contact_pair.hpp"
+#include "osculate/model/general_contact.hpp"
 #include "osculate/model/nonlinear_elements.hpp"
 
 #include <memory>
@@ -36,7 +37,8 @@ struct Model {
     Vec3 origin = Vec3::Zero(); ///< position of X = 0 in the scene's coordinates, m; saves digits far from their zero
     Field X;                    ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m
     std::vector<Set> sets;
-    std::vector<std::unique_ptr<const ContactPair>> pairs;
+    ContactPairs pairs; ///< those that a scene names
+    std::unique_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
     linear::BlockMatrix K;                        ///< constant stiffness of the linear elements, in the pattern of all
     std::unique_ptr<NonlinearElements> nonlinear; ///< the other elements; null if there are none
     linear::BlockMatrix consistent_mass,
@@ -86,7 +88,8 @@ struct State {
     double time = 0;
     Field u;    ///< displacements, m
     Field v, a; ///< velocities, m/s, and accelerations, m/s^2; empty before the first dynamic stage
-    std::vector<ContactHistory> contact;
+    std::vector<ContactHistory> contact; ///< of the model's pairs, in their order, then of those of general contact
+    std::shared_ptr<const ContactScope> scope{}; ///< of the latter; null without general contact
     MaterialHistory material{};
 
     /// The step of zero length from this state to itself; its forces are those of the state.

@@ -4,8 +4,10 @@
 #include "osculate/contact/surface_audit.hpp"
 #include "osculate/model/contact_evaluation.hpp"
 #include "osculate/model/model.hpp"
+#include "osculate/output/nodal_contact.hpp"
 
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace osculate::output {
@@ -35,6 +37,8 @@ public:
     [[nodiscard]] const Field& x() const;
     /// Nodal stress of a body (nodes x 6), Pa; computed at the first call.
     [[nodiscard]] const Stress& stress(Index body) const;
+    /// Contact of all pairs, node by node; computed at the first call.
+    [[nodiscard]] const NodalContact& nodal_contact() const;
     /// Contact evaluation of a pair.
     [[nodiscard]] const model::ContactEvaluation& evaluation(Index pair) const { return contact_[pair]; }
     /// Contact state of a slave node at x: gap, normal, force; without drift.
@@ -53,6 +57,7 @@ private:
     const contact::AuditResult* audit_;
     mutable Field x_;
     mutable std::map<Index, Stress> stress_;
+    mutable std::optional<NodalContact> nodal_contact_;
 };
 
 } // namespace osculate::output

@@ -144,6 +144,7 @@ struct Body {
     MeshSpec mesh;
     Material material;
     HexFormulation hex_formulation = HexFormulation::full;
+    std::string finish; ///< name of its surface, for pairs of general contact; empty: none
     Vec3 initial_velocity = Vec3::Zero(), initial_spin = Vec3::Zero(); ///< m/s; rad/s about the centre of mass
     bool operator==(const Body&) const = default;
 };
@@ -235,6 +236,28 @@ struct Pair {
     double stiffness_scale =
         1; ///< factor on the estimated c of the complementarity function; results do not depend on it
     bool operator==(const Pair&) const = default;
+};
+
+/// What differs between two of the bodies in general contact, or between all bodies of two finishes.
+struct GeneralRule {
+    std::array<std::string, 2> between{}; ///< bodies or finishes
+    std::optional<double> friction;       ///< none: that of all
+    bool contact = true;                  ///< false: they do not meet
+    bool operator==(const GeneralRule&) const = default;
+};
+
+enum class GeneralSurface { automatic, facets, blend };
+
+/// Contact of all outer surfaces.
+struct GeneralContact {
+    double friction = 0;                                  ///< Coulomb's coefficient mu
+    GeneralSurface surface = GeneralSurface::automatic;   ///< of masters
+    std::optional<Discretisation> discretisation;         ///< none: automatic
+    double closing_tolerance = Pair{}.closing_tolerance;
+    double initial_overlap_limit = Pair{}.initial_overlap_limit;
+    double stiffness_scale = 1;
+    Named<GeneralRule> pairs; ///< the last rule that names two bodies counts
+    bool operator==(const GeneralContact&) const = default;
 };
 
 // ---- stages ------------------------------------------------------------------------------------------------------------
@@ -351,7 +374,8 @@ struct Scene {
     Named<Body> bodies;
     Named<SetSpec> sets;
     Named<Support> supports; ///< keyed by set
-    Named<Pair> contact;
+    std::optional<GeneralContact> general; ///< contact.general
+    Named<Pair> contact;                   ///< the other keys of contact
     Named<Stage> stages;
     Solver solver;
     Output output;

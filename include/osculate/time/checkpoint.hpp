@@ -11,10 +11,24 @@
 
 namespace osculate::time {
 
+/// What makes a pair that general contact has found.
+struct FoundPair {
+    Index slave = -1, master = -1; ///< surfaces of the general contact
+    std::vector<Index> nodes;      ///< slave nodes
+    std::vector<Index> facets;     ///< slave facets, four nodes each, the last of a triangle -1
+};
+
 struct Checkpoint : Progress {
+    std::vector<FoundPair> found; ///< the last pairs of the state, which come behind those of the model
+    Field scope_x;                ///< ContactScope of the state; empty: none
+    std::vector<double> scope_margin;
     equilibrium::EquilibriumMemory memory;
     std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs) of the state's masters
 };
+
+/// Pairs of a state's general contact, and the state's pairs from them. @pre they fit the model, see misfit()
+[[nodiscard]] std::vector<FoundPair> found_pairs(const model::State& state, const model::Model& model);
+void restore_pairs(Checkpoint& checkpoint, const model::Model& model);
 
 /// Reason why a checkpoint cannot belong to a model, in words: sizes, numbers of nodes and facets out of range, values
 /// that are not finite. Empty if it fits.

@@ -89,17 +89,19 @@ Check examine(const LoadedScene& loaded, int threads) {
     append(check.warnings, thin_layers(loaded.scene, plan));
     append(check.warnings, twice_paired(loaded.scene, plan));
     Timings unused;
-    model::ContactEvaluations contact = model::contact_evaluations(plan.model);
+    model::ContactEvaluations contact = model::contact_evaluations(plan.pairs_at_start());
     for (model::ContactEvaluation& evaluation : contact) {
         const model::ContactPair& pair = evaluation.pair();
         PairCheck& p = check.pairs.emplace_back(PairCheck{&pair});
         p.gaps = initial_gaps(evaluation, plan.model.X, unused, threads);
+        const scene::Pair* const spec = scene::find(loaded.scene.contact, pair.name());
+        if (spec == nullptr) continue; // the program's own choice
         const Pairing found = pairing(evaluation, plan.model.X);
         p.advice = advice(found);
         const double ratio = stiffness_ratio(loaded, pair);
         advise_on_stiffness(ratio, found, p);
         p.facing = facing(evaluation, plan.model.X);
-        append(check.warnings, pair_warnings(plan.model, {evaluation, *scene::find(loaded.scene.contact, pair.name()),
+        append(check.warnings, pair_warnings(plan.model, {evaluation, *spec,
                                                           p.facing, found, ratio, may_tumble(loaded, pair)}));
         if (p.gaps.above == 0)
             check.warnings.push_back({"contact." + pair.name(), "no slave node is above or below the master"});
@@ -116,7 +118,7 @@ Check examine(const LoadedScene& loaded, int threads) {
 
 Index slave_nodes(const Plan& plan) {
     Index sum = 0;
-    for (const auto& pair : plan.model.pairs) sum += pair->size();
+    for (const auto& pair : plan.pairs_at_start()) sum += pair->size();
     return sum;
 }
 

@@ -47,7 +47,7 @@ public:
                     held_[c.node - body_.first_node].push_back(c.direction);
                     add(c.direction);
                 }
-        for (const auto& pair : plan.model.pairs) {
+        for (const auto& pair : plan.pairs_at_start()) {
             contact_.insert(pair->slaves().node.begin(), pair->slaves().node.end());
             contact_.insert(pair->master_nodes().begin(), pair->master_nodes().end());
             for (const mesh::Facet& facet : pair->slaves().facets)

@@ -29,12 +29,19 @@ void check_supports(Draft& draft) {
 }
 
 void choose_tangents(Draft& draft) {
+    const model::ContactPairs pairs = draft.plan.pairs_at_start();
     for (time::Stage& stage : draft.plan.stages)
-        stage.tangent = equilibrium::choose_tangent(draft.plan.model, draft.scene.solver.linear_solver,
+        stage.tangent = equilibrium::choose_tangent(draft.plan.model, pairs, draft.scene.solver.linear_solver,
                                                     stage.dynamics.has_value(), !stage.follower_pressures.empty());
 }
 
 } // namespace
+
+model::ContactPairs Plan::pairs_at_start() const {
+    model::ContactPairs pairs = model.pairs;
+    for (const model::ContactHistory& history : near_at_start) pairs.push_back(history.pair);
+    return pairs;
+}
 
 Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings) {
     require(meshes.size() == scene.bodies.size(), "compile: one mesh per body");
@@ -46,6 +53,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     settle_pairs(draft);
     add_stages(draft);
     add_pairs(draft);
+    throw_faults(draft);
+    add_general_contact(draft);
     throw_faults(draft);
     check_supports(draft);
     check_gaps(draft);
@@ -71,6 +80,7 @@ Plan compile(scene::Scene& scene, int threads, Timings& timings) {
     Plan plan = compile(std::as_const(scene), std::move(meshes), threads, timings);
     plan.mesh_notes = std::move(notes);
     scene.contact = plan.contact;
+    scene.general = plan.general;
     return plan;
 }
 

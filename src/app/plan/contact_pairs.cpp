@@ -137,6 +137,30 @@ std::vector<double> thickness(const model::Model& model, const model::Set& maste
     return result;
 }
 
+/// The master side of a pair.
+/// @param exterior  of the body, its own node numbers, where thickness is needed; null: it is not
+/// @param options   gets what suits the surface
+std::shared_ptr<const model::MasterSide> make_side(const scene::Scene& scene, const scene::MasterSpec& spec,
+                                                   Discretisation discretisation, const model::Model& model,
+                                                   const model::Set& master, const std::vector<mesh::Facet>* exterior,
+                                                   model::ContactOptions& options) {
+    const contact::MirroredSurface mirrored = mirror_at_symmetry(scene, model, master);
+    auto surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
+    model::MasterNodes nodes;
+    const std::vector<double> behind =
+        exterior != nullptr ? thickness(model, master, *exterior) : std::vector<double>{};
+    std::vector<Vec3> vertices;
+    for (const Index node : surface->vertex_nodes()) {
+        nodes.node.push_back(mirrored.original[node]);
+        vertices.push_back(mirrored.positions[node]);
+        if (exterior != nullptr) nodes.thickness.push_back(behind[mirrored.original[node]]);
+        if (mirrored.images.size() > 1) nodes.image.push_back(mirrored.image[node]);
+    }
+    nodes.images = mirrored.images;
+    auto shape = make_master(spec, discretisation, *surface, vertices, options);
+    return std::make_shared<const model::MasterSide>(std::move(surface), std::move(nodes), std::move(shape));
+}
+
 } // namespace
 
 std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& scene, const std::string& name,
@@ -148,8 +172,8 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     options.discretisation = spec.discretisation.value();
     options.friction = spec.friction;
     options.closing_tolerance = spec.closing_tolerance;
-    const contact::MirroredSurface mirrored = mirror_at_symmetry(scene, model, master);
-    auto surface = std::make_unique<mesh::HalfEdgeSurface>(mirrored.facets, mirrored.positions);
+    std::shared_ptr<const model::MasterSide> side =
+        make_side(scene, spec.master, options.discretisation, model, master, exterior, options);
 
     model::SlaveNodes slaves;
     slaves.facets = slave.facets;
@@ -175,23 +199,115 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
 
     if (averages(options.discretisation)) slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
 
-    model::MasterNodes master_nodes;
-    const std::vector<double> behind =
-        exterior != nullptr ? thickness(model, master, *exterior) : std::vector<double>{};
-    std::vector<Vec3> vertices;
-    for (const Index node : surface->vertex_nodes()) {
-        master_nodes.node.push_back(mirrored.original[node]);
-        vertices.push_back(mirrored.positions[node]);
-        if (exterior != nullptr) master_nodes.thickness.push_back(behind[mirrored.original[node]]);
-        if (mirrored.images.size() > 1) master_nodes.image.push_back(mirrored.image[node]);
-    }
-    master_nodes.images = mirrored.images;
-    auto shape = make_master(spec.master, options.discretisation, *surface, vertices, options);
     std::optional<contact::SmoothSlave> smooth;
     if (options.discretisation == Discretisation::mortar)
         smooth = smooth_slave(scene, spec.master, model, slave, slaves.node);
-    return std::make_unique<model::ContactPair>(name, X, std::move(slaves), std::move(surface), std::move(master_nodes),
-                                                std::move(shape), options, smooth ? &*smooth : nullptr);
+    return std::make_unique<model::ContactPair>(name, X, std::move(slaves), std::move(side), options,
+                                                smooth ? &*smooth : nullptr);
+}
+
+namespace {
+
+/// Symmetry planes that hold a body: the sets' nodes.
+std::vector<char> cut_off(const scene::Scene& scene, const model::Model& model, Index body) {
+    std::vector<char> held(model.X.size(), 0);
+    char plane = 0; // facets in one plane, not between two
+    for (const auto& [name, support] : scene.supports) {
+        if (!support.symmetry) continue;
+        for (const model::Set& set : model.sets) {
+            if (set.name != name || set.body != body) continue;
+            plane = static_cast<char>(plane + 1);
+            for (const Index node : set.nodes) held[node] = static_cast<char>(held[node] | (1 << (plane % 7)));
+        }
+    }
+    return held;
+}
+
+/// Whether all smooth parts of a surface are plane.
+bool is_plane_everywhere(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X) {
+    constexpr double same = 1e-6; // of the angle between two normals
+    const auto normal = [&](Index f) { return mesh::facet_area_vector(surface.facets()[f], X).normalized(); };
+    for (const mesh::HalfEdge& edge : surface.half_edges()) {
+        if (edge.twin < 0 || surface.is_feature_edge(static_cast<Index>(&edge - surface.half_edges().data()))) continue;
+        if (normal(edge.facet).cross(normal(surface.half_edges()[edge.twin].facet)).norm() > same) return false;
+    }
+    return true;
+}
+
+model::GeneralContactOptions general_options(const scene::Scene& scene, const model::Model& model,
+                                             const std::vector<model::OuterSurface>& surfaces) {
+    const scene::GeneralContact& spec = *scene.general;
+    model::GeneralContactOptions options;
+    options.pair.discretisation = spec.discretisation.value();
+    options.pair.closing_tolerance = spec.closing_tolerance;
+    options.stiffness_scale = spec.stiffness_scale;
+    const auto n = static_cast<Index>(surfaces.size());
+    options.friction = Matrix::Constant(n, n, spec.friction);
+    const auto is = [&](Index s, const std::string& side) {
+        const auto& [name, body] = scene.bodies[static_cast<std::size_t>(surfaces[static_cast<std::size_t>(s)].body)];
+        return side == name || side == body.finish;
+    };
+    for (Index a = 0; a < n; ++a)
+        for (Index b = a; b < n; ++b) {
+            bool meet = true;
+            for (const auto& [name, rule] : spec.pairs) {
+                const auto& [one, other] = rule.between;
+                if (!(is(a, one) && is(b, other)) && !(is(a, other) && is(b, one))) continue;
+                if (rule.friction) options.friction(a, b) = options.friction(b, a) = *rule.friction;
+                meet = rule.contact;
+            }
+            if (!meet) options.left_out.emplace_back(a, b);
+        }
+    const auto nodes_of = [&](const std::string& name) {
+        const auto set = std::ranges::find(model.sets, name, &model::Set::name);
+        std::vector<Index> nodes = set->nodes;
+        std::ranges::sort(nodes);
+        return nodes;
+    };
+    for (const auto& [name, pair] : scene.contact)
+        options.treated_elsewhere.emplace_back(nodes_of(pair.slave), nodes_of(pair.master.set));
+    return options;
+}
+
+} // namespace
+
+std::unique_ptr<const model::GeneralContact>
+make_general_contact(const scene::Scene& scene, const model::Model& model,
+                     const std::vector<std::vector<mesh::Facet>>& exterior, bool paths, bool dynamic) {
+    const scene::GeneralContact& spec = *scene.general;
+    std::vector<model::OuterSurface> surfaces;
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const model::Body& body = model.bodies[b];
+        model::OuterSurface& one = surfaces.emplace_back();
+        one.body = static_cast<Index>(b);
+        one.name = body.name;
+        one.E = scene::elastic(scene.bodies[b].second.material).E;
+        model::Set all{body.name, one.body, {}, exterior[b]};
+        for (mesh::Facet& facet : all.facets)
+            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += body.first_node;
+        const std::vector<char> held = cut_off(scene, model, one.body);
+        std::erase_if(all.facets, [&](const mesh::Facet& facet) {
+            char common = ~0;
+            for (const Index node : facet) common = static_cast<char>(common & held[node]);
+            return common != 0;
+        });
+        for (const mesh::Facet& facet : all.facets) all.nodes.insert(all.nodes.end(), facet.begin(), facet.end());
+        std::ranges::sort(all.nodes);
+        all.nodes.erase(std::unique(all.nodes.begin(), all.nodes.end()), all.nodes.end());
+        scene::MasterSpec master;
+        const bool plane = dynamic && is_plane_everywhere(mesh::HalfEdgeSurface(all.facets, model.X), model.X);
+        if (spec.surface == scene::GeneralSurface::facets || (spec.surface == scene::GeneralSurface::automatic && plane))
+            master.surface = scene::FacetsSurface{};
+        one.smooth = std::holds_alternative<scene::BlendSurface>(master.surface);
+        model::ContactOptions options;
+        one.side = make_side(scene, master, spec.discretisation.value(), model, all, paths ? &exterior[b] : nullptr, options);
+        const std::vector<Mat3> planes = in_symmetry_planes(scene, model, all, all.nodes);
+        for (std::size_t i = 0; i < planes.size(); ++i)
+            if (planes[i] != Mat3::Identity()) one.in_plane.emplace(all.nodes[i], planes[i]);
+        one.facets = std::move(all.facets);
+    }
+    model::GeneralContactOptions options = general_options(scene, model, surfaces);
+    return std::make_unique<const model::GeneralContact>(std::move(surfaces), std::move(options), model.X);
 }
 
 } // namespace osculate::app

@@ -18,4 +18,12 @@ make_contact_pair(const scene::Scene& scene, const std::string& name, const scen
                   const model::Model& model, const model::Set& slave, const model::Set& master,
                   const std::vector<mesh::Facet>* exterior);
 
+/// The general contact of a scene, which has one: the outer surfaces of all bodies, except in symmetry planes.
+/// @param exterior  (bodies) own node numbers
+/// @param paths     whether paths are to be followed
+/// @param dynamic   whether a stage is dynamic
+[[nodiscard]] std::unique_ptr<const model::GeneralContact>
+make_general_contact(const scene::Scene& scene, const model::Model& model,
+                     const std::vector<std::vector<mesh::Facet>>& exterior, bool paths, bool dynamic);
+
 } // namespace osculate::app

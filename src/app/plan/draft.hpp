@@ -39,6 +39,8 @@ void add_sets(Draft& draft);
 void add_stages(Draft& draft);
 /// Contact pairs of the scene.
 void add_pairs(Draft& draft);
+/// General contact, and the pairs that it finds at the start.
+void add_general_contact(Draft& draft);
 void check_gaps(Draft& draft);
 /// Stiffness, mass and initial velocities as far as a stage needs them, and weight.
 void add_matrices(Draft& draft);

@@ -18,6 +18,9 @@ std::vector<char> massless_nodes(const Draft& draft) {
         massless.assign(draft.plan.model.X.size(), 0);
         for (const auto& pair : draft.plan.model.pairs)
             for (const Index node : pair->slaves().node) massless[static_cast<std::size_t>(node)] = 1;
+        if (draft.plan.model.general)
+            for (const Index node : draft.plan.model.general->possible_slaves())
+                massless[static_cast<std::size_t>(node)] = 1;
         break;
     }
     return massless;

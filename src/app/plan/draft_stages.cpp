@@ -119,7 +119,7 @@ void add_stages(Draft& draft) {
         }
         const bool dynamic = stage.dynamics.has_value();
         stage.limits = step_limits(draft, spec, dynamic);
-        stage.follow_paths = dynamic && !draft.scene.contact.empty();
+        stage.follow_paths = dynamic && (!draft.scene.contact.empty() || draft.scene.general);
         const Driving before = now;
         now.update(spec);
         CourseList courses(stage.courses);

@@ -19,7 +19,7 @@ struct Habits {
 };
 
 double iterations(const Plan& plan) {
-    const bool linear = plan.model.pairs.empty() && plan.model.nonlinear == nullptr;
+    const bool linear = plan.model.pairs.empty() && !plan.model.general && plan.model.nonlinear == nullptr;
     double sum = 0;
     for (const time::Stage& stage : plan.stages)
         sum += linear ? Habits::alone * stage.steps
@@ -53,6 +53,12 @@ Slaves slaves(const scene::Scene& scene, const Plan& plan) {
             sum.facets += n;
         sum.all += pair->size();
     }
+    for (const model::ContactHistory& history : plan.near_at_start) {
+        const double n = history.pair->size();
+        const auto master = static_cast<std::size_t>(plan.model.general->sides_of(*history.pair).second);
+        (plan.model.general->surfaces()[master].smooth ? sum.blend : sum.facets) += n;
+        sum.all += n;
+    }
     return sum;
 }
 
@@ -81,7 +87,7 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
     if (multigrid) return sum + by_multigrid * unknowns;
     if (!condensed) return sum + factor_bytes(unknowns);
     for (const model::Body& body : plan.model.bodies) sum += factor_bytes(3.0 * body.nodes());
-    return sum + equilibrium::condensation_cost(plan.model).bytes;
+    return sum + equilibrium::condensation_cost(plan.model, plan.pairs_at_start()).bytes;
 }
 
 } // namespace
@@ -89,8 +95,8 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
 std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
     const bool condensed = std::ranges::all_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
-    const bool changing = plan.model.nonlinear != nullptr || !plan.model.pairs.empty();
-    const auto cost = equilibrium::condensation_cost(plan.model);
+    const bool changing = plan.model.nonlinear != nullptr || !plan.model.pairs.empty() || plan.model.general;
+    const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start());
     const double all = steps(plan, false) + steps(plan, true), solves = iterations(plan);
     const double nodes = plan.model.nodes(), blocks = plan.model.K.row_end(plan.model.K.rows() - 1);
     const Slaves s = slaves(scene, plan);

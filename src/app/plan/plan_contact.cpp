@@ -19,7 +19,7 @@ constexpr const char* no_pair = "the scene has no pair";
 /// Slave nodes of the pairs that `chosen` is true of.
 template <class Chosen> double slave_nodes(const Plan& plan, Chosen&& chosen) {
     double sum = 0;
-    for (const auto& pair : plan.model.pairs)
+    for (const auto& pair : plan.pairs_at_start())
         if (chosen(*pair)) sum += pair->size();
     return sum;
 }
@@ -27,7 +27,7 @@ template <class Chosen> double slave_nodes(const Plan& plan, Chosen&& chosen) {
 /// Contact points with their forces, positions at the start of the step, master vertices.
 PlanCost contact_cost(const Plan& plan) {
     PlanCost cost{0, 0, "slave nodes an iteration"};
-    for (const auto& pair : plan.model.pairs) {
+    for (const auto& pair : plan.pairs_at_start()) {
         cost.count += pair->size();
         cost.bytes += pair->size() * (sizeof(contact::ContactPoint) + sizeof(contact::FacetHit) + 3 * sizeof(Vec3));
         cost.bytes += sizeof(Vec3) * static_cast<double>(plan.model.nodes() + pair->surface().vertex_count());
@@ -65,11 +65,20 @@ std::string discretisations(const Plan& plan) {
         text += (text.empty() ? "" : ", ") + plan.contact[p].first + ": " +
                 (why.empty() ? names[static_cast<std::size_t>(*plan.contact[p].second.discretisation)] : why);
     }
+    if (plan.general)
+        text += (text.empty() ? "" : ", ") + std::string("general: ") +
+                (plan.general_choice.discretisation.empty()
+                     ? names[static_cast<std::size_t>(*plan.general->discretisation)]
+                     : plan.general_choice.discretisation);
     return text;
 }
 
+bool has_contact(const Plan& plan) {
+    return !plan.model.pairs.empty() || plan.model.general;
+}
+
 void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& list) {
-    const bool contact = !plan.model.pairs.empty();
+    const bool contact = has_contact(plan);
     PlanCost patches{0, 0, "patches fitted once"};
     std::string smooth, flat;
     double images = 0, slave_facets = 0;
@@ -85,6 +94,19 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
             flat += fmt::format("; the master of {} stays flat: facets give the same forces on its slave nodes",
                                 pair->name());
     }
+    if (plan.model.general)
+        for (const model::OuterSurface& surface : plan.model.general->surfaces()) {
+            const model::MasterSide& side = *surface.side;
+            for (Index v = 0; v < side.surface().vertex_count() && side.mirrored(); ++v)
+                images += side.own_vertex(v) != v ? 1 : 0;
+            if (!surface.smooth) continue;
+            const scene::MasterSpec blend;
+            add_patches(blend, side.surface(), patches);
+            smooth += (smooth.empty() ? "" : ", ") + surface.name + ": " + in_words(blend);
+        }
+    for (const model::ContactHistory& history : plan.near_at_start)
+        if (averages(history.pair->options().discretisation))
+            slave_facets += static_cast<double>(history.pair->slaves().facets.size());
     list.say("smooth master surface", !smooth.empty(),
              !smooth.empty() ? smooth + flat
              : contact       ? "every pair asks for facets"
@@ -102,16 +124,22 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
 } // namespace
 
 void add_contact_items(const scene::Scene& scene, const Plan& plan, PlanList& list) {
-    const bool contact = !plan.model.pairs.empty();
-    list.say("contact", contact, contact ? fmt::format("{} pair(s)", scene.contact.size()) : no_pair,
+    const bool contact = has_contact(plan);
+    list.say("contact", contact, contact ? fmt::format("{} pair(s)", plan.pairs_at_start().size()) : no_pair,
              contact_cost(plan));
+    const auto surfaces = plan.model.general ? plan.model.general->surfaces().size() : 0;
+    list.say("general contact", surfaces > 0,
+             surfaces > 0 ? fmt::format("{} outer surfaces may meet; {} pair(s) of them are near at the start", surfaces,
+                                        plan.near_at_start.size())
+                          : "the scene has no contact.general",
+             {sizeof(Vec3) * static_cast<double>(plan.model.nodes()), 0, {}});
     std::string roles;
     for (std::size_t p = 0; p < plan.contact.size(); ++p)
         if (!plan.choices[p].roles.empty())
             roles += (roles.empty() ? "" : ", ") + plan.contact[p].first + ": " + plan.choices[p].roles;
     list.say("choice of slaves", !roles.empty(),
              !roles.empty() ? roles
-             : contact      ? "every pair names slave and master"
+             : contact      ? "every pair names slave and master, or geometry chooses in general contact"
                             : no_pair,
              {0, 0, {}});
     const double rubbing = slave_nodes(plan, [](const auto& pair) { return pair.options().friction > 0; });
@@ -134,7 +162,7 @@ void add_contact_items(const scene::Scene& scene, const Plan& plan, PlanList& li
             : "no static stage has control.allowed_interpenetration",
         {0, 1, "more solve(s) a step"});
     double finest = std::numeric_limits<double>::infinity();
-    for (const auto& pair : plan.model.pairs) finest = std::min(finest, pair->finest());
+    for (const auto& pair : plan.pairs_at_start()) finest = std::min(finest, pair->finest());
     const bool paths = std::ranges::any_of(plan.stages, &time::Stage::follow_paths);
     list.say("collision check", paths,
              paths ? fmt::format("paths of open nodes, in steps that move them by {:.3g} m or more against a master, "

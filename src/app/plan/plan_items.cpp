@@ -35,12 +35,12 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     add_body_items(scene, plan, list);
     add_contact_items(scene, plan, list);
 
-    const bool contact = !plan.model.pairs.empty(), nonlinear = plan.model.nonlinear != nullptr;
+    const bool contact = !plan.model.pairs.empty() || plan.model.general, nonlinear = plan.model.nonlinear != nullptr;
     const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
                                      [](const time::Stage& s) { return !s.follower_pressures.empty(); });
     const bool unsymmetric = contact || follows || (nonlinear && dynamic_stages(plan) > 0);
     const LinearSolver asked = scene.solver.linear_solver;
-    const auto cost = equilibrium::condensation_cost(plan.model);
+    const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start());
     const bool condensed = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
     const bool direct = unsymmetric && asked == LinearSolver::direct;

@@ -64,7 +64,7 @@ double add_fields(const scene::Output& out, const model::Model& model, PlanList&
 void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& list) {
     const scene::Output& out = scene.output;
     const model::Model& model = plan.model;
-    const bool frames = out.frame_every > 0, contact = !model.pairs.empty(), dynamic = dynamic_stages(plan) > 0;
+    const bool frames = out.frame_every > 0, contact = !model.pairs.empty() || model.general, dynamic = dynamic_stages(plan) > 0;
     const std::string not_asked = not_named(out);
     const double bytes = add_fields(out, model, list);
     list.say("frames", frames, frames ? fmt::format("every {} accepted step(s)", out.frame_every) : "frame_every is 0",
@@ -102,7 +102,7 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
              {0, static_cast<double>(model.nodes()), reactions || read ? "nodes a step" : "nodes a frame"});
     list.say("history.csv", true, "a row per accepted step", {0, 1, "row a step"});
     double slaves = 0;
-    for (const auto& pair : model.pairs) slaves += pair->size();
+    for (const auto& pair : plan.pairs_at_start()) slaves += pair->size();
     list.say("history of pairs", out.history_pairs && contact,
              !contact            ? "the scene has no pair"
              : out.history_pairs ? "asked for"

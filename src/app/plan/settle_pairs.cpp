@@ -64,6 +64,10 @@ std::string choose_slave(const Draft& draft, scene::Pair& pair) {
     return why;
 }
 
+std::string why_discretisation(bool dynamic) {
+    return dynamic ? "node, which conserves energy: a stage is dynamic" : "petrov_galerkin: every stage is static";
+}
+
 } // namespace
 
 void settle_pairs(Draft& draft) {
@@ -76,10 +80,14 @@ void settle_pairs(Draft& draft) {
         if (pair.discretisation) continue;
         // forces that are not the work conjugates of the gaps add energy, or take it, in every impact
         pair.discretisation = dynamic ? Discretisation::node : Discretisation::petrov_galerkin;
-        choice.discretisation =
-            dynamic ? "node, which conserves energy: a stage is dynamic" : "petrov_galerkin: every stage is static";
+        choice.discretisation = why_discretisation(dynamic);
     }
     draft.plan.contact = draft.scene.contact;
+    if (draft.scene.general && !draft.scene.general->discretisation) {
+        draft.scene.general->discretisation = dynamic ? Discretisation::node : Discretisation::petrov_galerkin;
+        draft.plan.general_choice.discretisation = why_discretisation(dynamic);
+    }
+    draft.plan.general = draft.scene.general;
 }
 
 } // namespace osculate::app

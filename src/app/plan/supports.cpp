@@ -12,7 +12,7 @@ std::vector<std::string> unsupported_bodies(const Plan& plan) {
         for (const linear::NodeConstraint& c : plan.stages.front().constraints)
             if (owns(c.node)) hold.hold(plan.model.X[c.node], c.direction);
         const bool held = hold.free() == 0;
-        bool touched = false;
+        bool touched = plan.model.general != nullptr;
         for (const auto& pair : plan.model.pairs)
             touched = touched || owns(pair->slaves().node.front()) || owns(pair->master_nodes().front());
         if (!held && !touched) names.push_back(body.name);

@@ -79,9 +79,20 @@ private:
     }
     [[nodiscard]] std::string in_stage(const std::string& key) const { return stage_ + "." + key; }
     [[nodiscard]] const model::ContactPair* pair(const std::string& name) const {
-        for (const auto& one : failed_.model.pairs)
-            if (one->name() == name) return one.get();
+        for (const model::ContactHistory& one : failed_.last.contact)
+            if (one.pair->name() == name) return one.pair.get();
         return nullptr;
+    }
+    /// Key of the scene that describes a pair.
+    [[nodiscard]] std::string key_of(const model::ContactPair& pair) const {
+        return is_own(pair.name()) ? "contact." + pair.name() : "contact.general";
+    }
+    [[nodiscard]] std::string surface_key(const model::ContactPair& pair) const {
+        return key_of(pair) + (is_own(pair.name()) ? ".master.surface" : ".surface");
+    }
+    /// Whether the scene has a pair of this name; general contact finds others.
+    [[nodiscard]] bool is_own(const std::string& name) const {
+        return std::ranges::any_of(failed_.model.pairs, [&](const auto& one) { return one->name() == name; });
     }
     [[nodiscard]] double whole_step() const { return failed_.stage.duration / failed_.stage.steps; }
 
@@ -144,15 +155,15 @@ private:
                 change("solver.stabilisation", "true",
                        "true, so that the load can move the body until it touches something");
             else if (loose.nearest_gap < loose.facet && !adrift) // else the load does not lead there
-                change("contact." + loose.nearest_pair + ".closing_tolerance",
+                change(key_of(*pair(loose.nearest_pair)) + ".closing_tolerance",
                        rounded(std::min(1.0, margin * loose.nearest_gap / loose.facet)),
                        "above " + number(loose.nearest_gap / loose.facet) +
                            ", so that nodes this close count as touching in the first solve");
         }
         if (loose.pressed > 0)
-            for (const auto& one : failed_.model.pairs)
-                if (one->name() == loose.nearest_pair && one->options().friction == 0)
-                    change("contact." + one->name() + ".friction", "0.3",
+            if (const model::ContactPair* const one = pair(loose.nearest_pair);
+                one != nullptr && one->options().friction == 0)
+                change(key_of(*one) + ".friction", "0.3",
                            "above 0, for example 0.3, if the real surfaces are rough: without friction, contact holds "
                            "the body only along its normals");
         dynamics("if body '" + loose.body + "' is really meant to move freely: its inertia then holds it");
@@ -172,7 +183,7 @@ private:
                         "neither force nor gap is determined");
         add(in_stage("displacement"),
             "drive a part of the body that is not itself in contact, so that the part in contact can deform");
-        if (found_.contact)
+        if (found_.contact && is_own(found_.contact->pair))
             add("contact." + found_.contact->pair + ".slave", "leave out nodes that are held or driven");
     }
 
@@ -209,10 +220,10 @@ private:
                            "fast for any step");
         }
         if (one->options().friction > 0.3)
-            add("contact." + one->name() + ".friction",
+            add(key_of(*one) + ".friction",
                 "below " + number(one->options().friction) +
                     ", if only for a test: high friction makes stick and slip alternate");
-        add("contact." + one->name() + ".master.surface",
+        add(surface_key(*one),
             "blend, if it is facets or rpim: normals that jump at edges move nodes back and forth");
         add("bodies." + found_.body + ".mesh", "finer near the listed nodes: too few nodes carry the contact");
     }
@@ -234,7 +245,7 @@ private:
             smaller_steps("the residual did not fall any more, so more iterations alone would not help");
         if (most < usual) return;
         if (found_.contact)
-            add("contact." + found_.contact->pair + ".master.surface",
+            add(surface_key(*pair(found_.contact->pair)),
                 "blend, if it is facets or rpim: Newton converges better if normals do not jump");
     }
 
@@ -242,7 +253,7 @@ private:
         smaller_steps("Newton starts nearer to the solution");
         larger_tolerance();
         if (found_.contact)
-            add("contact." + found_.contact->pair + ".friction",
+            add(key_of(*pair(found_.contact->pair)) + ".friction",
                 "lower, if only to test whether friction is the cause");
     }
 
@@ -304,10 +315,10 @@ private:
 
     void unseen() {
         if (failed_.decision.intrusion) return inside(*failed_.decision.intrusion);
-        by_nodes(*failed_.model.pairs[static_cast<std::size_t>(failed_.decision.pair)]);
+        by_nodes(*failed_.last.contact[static_cast<std::size_t>(failed_.decision.pair)].pair);
     }
     void by_nodes(const model::ContactPair& pair) {
-        change("contact." + pair.name() + ".discretisation", "node",
+        change(key_of(pair) + ".discretisation", "node",
                "node: averages over facets see neither edges against edges nor vertices");
     }
 
@@ -406,8 +417,9 @@ private:
         const linear::BlockMatrix& M = failed_.model.mass(failed_.stage.dynamics->lumped_mass);
         if (M.empty()) return false;
         const auto none = [&](Index node) { return M.block(M.slot(node, node))(0, 0) == 0; };
-        return std::ranges::any_of(failed_.model.pairs,
-                                   [&](const auto& pair) { return std::ranges::any_of(pair->slaves().node, none); });
+        return std::ranges::any_of(failed_.last.contact, [&](const model::ContactHistory& one) {
+            return std::ranges::any_of(one.pair->slaves().node, none);
+        });
     }
 
     PostMortem& found_;

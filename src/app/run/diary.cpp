@@ -20,6 +20,7 @@ namespace osculate::app {
 namespace fs = std::filesystem;
 using time::Attempt;
 using time::Reason;
+using time::reasons;
 using time::Verdict;
 
 namespace {
@@ -27,8 +28,6 @@ namespace {
 const std::string header = "attempt,time,dt,verdict,reason,body,node,value,lambda,iterations";
 constexpr std::size_t columns = 10;
 constexpr Verdict verdicts[] = {Verdict::accept, Verdict::retry, Verdict::give_up};
-constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration, Reason::solver, Reason::error,
-                              Reason::energy, Reason::collision,        Reason::audit,  Reason::forced};
 
 struct Cell {
     std::string text;

@@ -1,0 +1,23 @@
+#pragma once
+/// Facets of any surfaces that are near each other.
+
+#include "osculate/mesh/mesh.hpp"
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace osculate::contact {
+
+/// All pairs of facets, the lower number first, ascending, whose bounding boxes overlap after each is extended by its
+/// facet's margin: every two facets whose margins together bridge the distance between them, and a few more. One R-tree
+/// holds the boxes of all facets. O((n + pairs) log n)
+/// @param margin  (facets) m
+/// @param x       positions of the facets' nodes, m
+/// @param wanted  whether a pair counts; called with the lower number first
+[[nodiscard]] std::vector<std::pair<Index, Index>> near_facets(const std::vector<mesh::Facet>& facets,
+                                                               const std::vector<double>& margin,
+                                                               const std::vector<Vec3>& x,
+                                                               const std::function<bool(Index, Index)>& wanted);
+
+} // namespace osculate::contact

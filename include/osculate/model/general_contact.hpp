@@ -1,0 +1,100 @@
+#pragma once
+/// General contact: which parts of the bodies' outer surfaces may meet, and as what, from the geometry of the moment.
+
+#include "osculate/core/field.hpp"
+#include "osculate/model/contact_pair.hpp"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osculate::model {
+
+/// Where pairs of general contact were looked for, and how long they are all there are.
+struct ContactScope {
+    Field x;                    ///< (nodes) positions, m
+    std::vector<double> margin; ///< (surfaces) how far nodes of each may move before others could meet, m
+};
+
+/// The outer surface of a body, as far as it takes part.
+struct OuterSurface {
+    Index body = -1;
+    std::string name;                       ///< of the body
+    std::vector<mesh::Facet> facets;        ///< global nodes, outward
+    std::shared_ptr<const MasterSide> side; ///< through these facets and their mirror images
+    bool smooth = false;                    ///< the side is smooth, not its facets
+    double E = 0;                           ///< Young's modulus, Pa
+    std::map<Index, Mat3> in_plane{};       ///< projectors of its nodes on the symmetry planes they lie on
+};
+
+struct GeneralContactOptions {
+    ContactOptions pair;      ///< of every pair but for the friction
+    Matrix friction;          ///< (surfaces x surfaces) Coulomb's coefficients, symmetric
+    std::vector<std::pair<Index, Index>> left_out; ///< surfaces that do not meet, the lower first
+    double stiffness_scale = 1;
+    /// Nodes and the nodes that they do not meet, both ascending: surfaces that pairs of the scene's own treat.
+    std::vector<std::pair<std::vector<Index>, std::vector<Index>>> treated_elsewhere;
+};
+
+/// All outer surfaces may meet. For positions of the nodes, near() finds the facets that are near each other and face each
+/// other, chooses a slave for every two of them, and makes a pair of every two surfaces: slave nodes of one against the
+/// surface of the other. A surface has the role of the slave where its facets are softer or finer than the nearest of the
+/// other; of two that are alike, the one of the first body has it. So no two facets are treated twice.
+class GeneralContact {
+public:
+    GeneralContact(std::vector<OuterSurface> surfaces, GeneralContactOptions options, const std::vector<Vec3>& X);
+
+    /// Where to look for pairs: from positions x on, for motions that a few steps make.
+    /// @param expected  largest motion of a node that the next step may make, m
+    [[nodiscard]] ContactScope scope_at(const Field& x, double expected) const;
+    /// Whether pairs found for a scope are all that may touch at positions x, and after nodes have moved on by `ahead`, m.
+    [[nodiscard]] bool covers(const ContactScope& scope, const Field& x, double ahead = 0) const;
+    /// The pairs for a scope with their histories: those of `before` where a slave node is in the same pair as there, which
+    /// it is if it is closed. @param before  of pairs found earlier
+    [[nodiscard]] std::vector<ContactHistory> near(const ContactScope& scope,
+                                                   const std::vector<ContactHistory>& before) const;
+
+    [[nodiscard]] const std::vector<OuterSurface>& surfaces() const { return surfaces_; }
+    [[nodiscard]] const GeneralContactOptions& options() const { return options_; }
+    /// Whether two bodies may meet; and whether they are said not to.
+    [[nodiscard]] bool meet(Index body, Index other) const;
+    [[nodiscard]] bool pass_through(Index body, Index other) const;
+    /// Nodes that are slaves in some pair, as far as sizes and stiffness tell, ascending.
+    [[nodiscard]] std::vector<Index> possible_slaves() const;
+    /// A pair of two surfaces. @param nodes, facets  of the slave; the nodes of the facets and perhaps others, ascending
+    [[nodiscard]] std::shared_ptr<const ContactPair> make_pair(Index slave, Index master, const std::vector<Index>& nodes,
+                                                               std::vector<mesh::Facet> facets) const;
+    /// Surfaces of a pair that near() or make_pair() has made: slave and master.
+    [[nodiscard]] std::pair<Index, Index> sides_of(const ContactPair& pair) const;
+
+private:
+    struct Facet {
+        Index surface = -1;
+        double size = 0; ///< root of its area in the reference configuration, m
+    };
+    /// Facets and further nodes that are slaves in one pair.
+    struct Found {
+        std::vector<Index> facets; ///< numbers over all surfaces
+        std::vector<Index> nodes;
+    };
+    /// Number of the surface of a body, that of the surfaces if it has none.
+    [[nodiscard]] std::size_t surface_of_body(Index body) const;
+    [[nodiscard]] bool may_meet(Index f, Index g) const;
+    /// Whether facet f is the slave of two facets that meet.
+    [[nodiscard]] bool is_slave(Index f, Index g) const;
+
+    std::vector<OuterSurface> surfaces_;
+    GeneralContactOptions options_;
+    std::vector<Vec3> X_; ///< (nodes) reference positions, m
+    std::vector<mesh::Facet> facets_; ///< of all surfaces, one after another
+    std::vector<Facet> data_;         ///< of each
+    std::vector<Index> surface_of_;   ///< (nodes) -1: of none
+    std::vector<std::vector<Index>> node_facets_, along_; ///< (nodes) facets that meet there; nodes at other ends of edges
+    std::vector<char> left_out_;      ///< (surfaces x surfaces)
+    std::vector<std::vector<char>> treated_; ///< (pairs treated elsewhere) nodes: 1 of one side, 2 of the other, 3 of both
+};
+
+} // namespace osculate::model

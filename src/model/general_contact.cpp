@@ -1,0 +1,282 @@
+#include "osculate/model/general_contact.hpp"
+
+#include "osculate/contact/near_facets.hpp"
+#include "osculate/core/error.hpp"
+#include "osculate/fe/facet_quadrature.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace osculate::model {
+
+namespace {
+
+/// Factors by which two facets must differ before their order decides; of stiffness, before their sizes do.
+constexpr double clearly = 1.1, much_stiffer = 100;
+/// Cosine between normals of facets that face each other: they may still turn towards each other by ten degrees.
+constexpr double facing = -0.17;
+/// A facet meets another if it is not farther behind its plane than this, in sizes of the smaller one.
+constexpr double behind = 0.5;
+/// A node points at a surface if no edge that meets there goes deeper into it than this, over its length.
+constexpr double pointing = -0.5;
+/// How far a surface may move, in mean facet sizes and in diagonals of its box, before pairs are looked for anew.
+constexpr double sizes = 1, diagonals = 0.15;
+
+double area_of(const mesh::Facet& facet, const std::vector<Vec3>& X) {
+    const auto shares = fe::tributary_areas(facet, X);
+    return std::accumulate(shares.begin(), shares.end(), 0.0);
+}
+
+Vec3 centre_of(const mesh::Facet& facet, const std::vector<Vec3>& x) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index node : facet) sum += x[node];
+    return sum / facet.count;
+}
+
+} // namespace
+
+GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContactOptions options,
+                               const std::vector<Vec3>& X)
+    : surfaces_(std::move(surfaces)), options_(std::move(options)), X_(X), surface_of_(X.size(), -1),
+      node_facets_(X.size()), along_(X.size()), left_out_(surfaces_.size() * surfaces_.size(), 0) {
+    for (std::size_t s = 0; s < surfaces_.size(); ++s)
+        for (const mesh::Facet& facet : surfaces_[s].facets) {
+            const auto number = static_cast<Index>(facets_.size());
+            facets_.push_back(facet);
+            data_.push_back({static_cast<Index>(s), std::sqrt(area_of(facet, X))});
+            for (int c = 0; c < facet.count; ++c) {
+                const Index a = facet.nodes[static_cast<std::size_t>(c)],
+                            b = facet.nodes[static_cast<std::size_t>((c + 1) % facet.count)];
+                surface_of_[a] = static_cast<Index>(s);
+                node_facets_[a].push_back(number);
+                along_[a].push_back(b);
+                along_[b].push_back(a);
+            }
+        }
+    for (std::vector<Index>& ends : along_) {
+        std::ranges::sort(ends);
+        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    }
+    for (const auto& [a, b] : options_.left_out)
+        left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] =
+            left_out_[static_cast<std::size_t>(b) * surfaces_.size() + static_cast<std::size_t>(a)] = 1;
+    for (const auto& [one, other] : options_.treated_elsewhere) {
+        std::vector<char>& marks = treated_.emplace_back(X.size(), 0);
+        for (const Index node : one) marks[node] |= 1;
+        for (const Index node : other) marks[node] |= 2;
+    }
+}
+
+std::size_t GeneralContact::surface_of_body(Index body) const {
+    return static_cast<std::size_t>(std::ranges::find(surfaces_, body, &OuterSurface::body) - surfaces_.begin());
+}
+
+bool GeneralContact::meet(Index body, Index other) const {
+    const std::size_t a = surface_of_body(body), b = surface_of_body(other), n = surfaces_.size();
+    return a < n && b < n && a != b && left_out_[a * n + b] == 0;
+}
+
+bool GeneralContact::pass_through(Index body, Index other) const {
+    const std::size_t a = surface_of_body(body), b = surface_of_body(other), n = surfaces_.size();
+    return a < n && b < n && left_out_[a * n + b] != 0;
+}
+
+bool GeneralContact::may_meet(Index f, Index g) const {
+    const auto a = static_cast<std::size_t>(data_[f].surface), b = static_cast<std::size_t>(data_[g].surface);
+    if (a == b || left_out_[a * surfaces_.size() + b] != 0) return false;
+    const auto all = [&](const std::vector<char>& marks, Index facet, char side) {
+        return std::ranges::all_of(facets_[facet], [&](Index node) { return (marks[node] & side) != 0; });
+    };
+    return std::ranges::none_of(treated_, [&](const std::vector<char>& marks) {
+        return (all(marks, f, 1) && all(marks, g, 2)) || (all(marks, f, 2) && all(marks, g, 1));
+    });
+}
+
+bool GeneralContact::is_slave(Index f, Index g) const {
+    const OuterSurface &a = surfaces_[data_[f].surface], &b = surfaces_[data_[g].surface];
+    const double finer = data_[g].size / data_[f].size, softer = b.E / a.E;
+    if (std::max(softer, 1 / softer) > much_stiffer) return softer > 1;
+    if (std::max(finer, 1 / finer) > clearly) return finer > 1;
+    if (std::max(softer, 1 / softer) > clearly) return softer > 1;
+    return data_[f].surface < data_[g].surface;
+}
+
+ContactScope GeneralContact::scope_at(const Field& x, double expected) const {
+    ContactScope scope{x, {}};
+    for (const OuterSurface& surface : surfaces_) {
+        Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+        for (const mesh::Facet& facet : surface.facets)
+            for (const Index node : facet) {
+                low = low.cwiseMin(X_[node]);
+                high = high.cwiseMax(X_[node]);
+            }
+        const double size = surface.side->surface().mean_facet_size();
+        scope.margin.push_back(std::max({sizes * size, diagonals * (high - low).norm(), 2 * expected}));
+    }
+    return scope;
+}
+
+bool GeneralContact::covers(const ContactScope& scope, const Field& x, double ahead) const {
+    for (std::size_t node = 0; node < surface_of_.size(); ++node)
+        if (surface_of_[node] >= 0 &&
+            !((x[node] - scope.x[node]).norm() + ahead <= scope.margin[static_cast<std::size_t>(surface_of_[node])]))
+            return false;
+    return true;
+}
+
+std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
+                                                 const std::vector<ContactHistory>& before) const {
+    const std::vector<Vec3>& x = scope.x;
+    std::vector<double> margin;
+    for (const Facet& facet : data_) margin.push_back(scope.margin[static_cast<std::size_t>(facet.surface)]);
+    const auto near = contact::near_facets(facets_, margin, x, [this](Index f, Index g) { return may_meet(f, g); });
+
+    std::vector<Vec3> normal, centre;
+    for (const mesh::Facet& facet : facets_) {
+        normal.push_back(mesh::facet_area_vector(facet, x).normalized());
+        centre.push_back(centre_of(facet, x));
+    }
+    // the nearest facet of every other surface that a facet faces
+    std::map<std::pair<Index, Index>, std::pair<double, Index>> nearest; // (facet, other surface)
+    std::map<std::pair<Index, Index>, Found> found;                      // (slave, master) surfaces
+    const auto consider = [&](Index f, Index g) {
+        const double distance = (centre[f] - centre[g]).norm();
+        const auto [at, fresh] = nearest.try_emplace({f, data_[g].surface}, distance, g);
+        if (!fresh && distance < at->second.first) at->second = {distance, g};
+    };
+    // faces that look away from each other are back to back
+    const auto in_front = [&](Index f, Index g) {
+        const double depth = behind * std::min(data_[f].size, data_[g].size);
+        return std::ranges::any_of(facets_[f],
+                                   [&](Index node) { return normal[g].dot(x[node] - centre[g]) > -depth; });
+    };
+    const auto points_at = [&](Index node, const Vec3& n) {
+        double facets = 0;
+        for (const Index f : node_facets_[node]) facets += normal[f].dot(n);
+        return facets < 0 && std::ranges::all_of(along_[node], [&](Index end) {
+                   return (x[end] - x[node]).normalized().dot(n) >= pointing;
+               });
+    };
+    for (const auto& [f, g] : near) {
+        if (normal[f].dot(normal[g]) < facing) {
+            if (!in_front(f, g) || !in_front(g, f)) continue;
+            consider(f, g);
+            consider(g, f);
+        } else { // corners and edges whose facets look past the other
+            for (const auto& [one, other] : {std::pair{f, g}, std::pair{g, f}})
+                if (is_slave(one, other))
+                    for (const Index node : facets_[one])
+                        if (points_at(node, normal[other]))
+                            found[{data_[one].surface, data_[other].surface}].nodes.push_back(node);
+        }
+    }
+    for (const auto& [who, what] : nearest)
+        if (is_slave(who.first, what.second)) found[{data_[who.first].surface, who.second}].facets.push_back(who.first);
+    for (const ContactHistory& history : before)
+        for (std::size_t j = 0; j < history.status.size(); ++j)
+            if (contact::is_closed(history.status[j]))
+                found[sides_of(*history.pair)].nodes.push_back(history.pair->slaves().node[j]);
+
+    std::vector<ContactHistory> histories;
+    for (auto& [sides, part] : found) {
+        std::vector<mesh::Facet> facets;
+        for (const Index f : part.facets) {
+            facets.push_back(facets_[f]);
+            part.nodes.insert(part.nodes.end(), facets_[f].begin(), facets_[f].end());
+        }
+        std::ranges::sort(part.nodes);
+        part.nodes.erase(std::unique(part.nodes.begin(), part.nodes.end()), part.nodes.end());
+        const auto old = std::ranges::find_if(
+            before, [&](const ContactHistory& history) { return sides_of(*history.pair) == sides; });
+        ContactHistory& history = histories.emplace_back(
+            opened(make_pair(sides.first, sides.second, part.nodes, std::move(facets))));
+        if (old == before.end()) continue;
+        history.master = old->master;
+        const std::vector<Index>& known = old->pair->slaves().node;
+        for (std::size_t j = 0; j < part.nodes.size(); ++j) {
+            const auto at = std::ranges::lower_bound(known, part.nodes[j]);
+            if (at == known.end() || *at != part.nodes[j]) continue;
+            const auto k = static_cast<std::size_t>(at - known.begin());
+            history.lambda[j] = old->lambda[k];
+            history.status[j] = old->status[k];
+            history.facet[j] = old->facet[k];
+        }
+    }
+    return histories;
+}
+
+std::shared_ptr<const ContactPair> GeneralContact::make_pair(Index slave, Index master, const std::vector<Index>& nodes,
+                                                             std::vector<mesh::Facet> facets) const {
+    const OuterSurface &own = surfaces_[static_cast<std::size_t>(slave)],
+                       &other = surfaces_[static_cast<std::size_t>(master)];
+    SlaveNodes slaves;
+    slaves.node = nodes;
+    slaves.area.assign(nodes.size(), 0);
+    const auto number = [&](Index node) { return std::ranges::lower_bound(nodes, node) - nodes.begin(); };
+    for (const mesh::Facet& facet : facets) {
+        const auto shares = fe::tributary_areas(facet, X_);
+        for (int c = 0; c < facet.count; ++c)
+            slaves.area[static_cast<std::size_t>(number(facet.nodes[static_cast<std::size_t>(c)]))] +=
+                shares[static_cast<std::size_t>(c)];
+    }
+    const double E = std::min(own.E, other.E);
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+        double all = 0, largest = 0; // of all facets that meet at the node
+        for (const Index f : node_facets_[nodes[j]]) {
+            const auto shares = fe::tributary_areas(facets_[f], X_);
+            for (int c = 0; c < facets_[f].count; ++c)
+                if (facets_[f].nodes[static_cast<std::size_t>(c)] == nodes[j]) all += shares[static_cast<std::size_t>(c)];
+            largest = std::max(largest, data_[f].size);
+        }
+        if (slaves.area[j] == 0) slaves.area[j] = all;
+        slaves.stiffness.push_back(options_.stiffness_scale * E * slaves.area[j] / largest);
+        slaves.along.push_back(along_[nodes[j]]);
+    }
+    if (averages(options_.pair.discretisation) &&
+        std::ranges::any_of(nodes, [&](Index node) { return own.in_plane.contains(node); }))
+        for (const Index node : nodes) {
+            const auto plane = own.in_plane.find(node);
+            slaves.in_plane.push_back(plane != own.in_plane.end() ? plane->second : Mat3(Mat3::Identity()));
+        }
+    slaves.facets = std::move(facets);
+    ContactOptions options = options_.pair;
+    options.friction = options_.friction(slave, master);
+    return std::make_shared<const ContactPair>("general: " + own.name + " on " + other.name, X_, std::move(slaves),
+                                               other.side, options);
+}
+
+std::pair<Index, Index> GeneralContact::sides_of(const ContactPair& pair) const {
+    const auto master = std::ranges::find_if(
+        surfaces_, [&](const OuterSurface& surface) { return surface.side.get() == &pair.master_side(); });
+    require(master != surfaces_.end(), "no pair of general contact");
+    return {surface_of_[pair.slaves().node.front()], static_cast<Index>(master - surfaces_.begin())};
+}
+
+std::vector<Index> GeneralContact::possible_slaves() const {
+    // the first of two alike, and whatever is finer or softer than any other
+    std::vector<Index> nodes;
+    for (std::size_t a = 0; a < surfaces_.size(); ++a) {
+        bool some = false;
+        for (std::size_t b = 0; b < surfaces_.size() && !some; ++b) {
+            if (a == b || left_out_[a * surfaces_.size() + b] != 0) continue;
+            Index finest = -1, coarsest = -1;
+            for (Index f = 0; f < static_cast<Index>(data_.size()); ++f) {
+                if (data_[f].surface == static_cast<Index>(a) && (finest < 0 || data_[f].size < data_[finest].size))
+                    finest = f;
+                if (data_[f].surface == static_cast<Index>(b) && (coarsest < 0 || data_[f].size > data_[coarsest].size))
+                    coarsest = f;
+            }
+            some = finest >= 0 && coarsest >= 0 && is_slave(finest, coarsest);
+        }
+        if (!some) continue;
+        for (const mesh::Facet& facet : surfaces_[a].facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
+    }
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+}
+
+} // namespace osculate::model

@@ -1,0 +1,141 @@
+/// General contact: what one line finds is what pairs written by hand say.
+
+#include "support/diary.hpp"
+#include "support/scene_file.hpp"
+#include "support/scene_runner.hpp"
+
+#include <gmock/gmock.h>
+
+namespace osculate {
+namespace {
+
+using support::Diary;
+
+/// A cap on a slab, pulled to and fro below a lid that comes down on it. The faces that press are within those below.
+const std::string bodies = R"(
+bodies:
+  base:
+    mesh: {block: {size: [4 m, 2 m, 0.5 m], divisions: [16, 8, 2]}}
+    material: {linear_elastic: {E: 30 MPa, nu: 0.2}}
+  cap:
+    mesh: {block: {origin: [0.8 m, 0.45 m, 0.5 m], size: [1 m, 1 m, 0.5 m], divisions: [5, 5, 2]}}
+    material: {linear_elastic: {E: 10 MPa, nu: 0.3}}
+    finish: rubber
+  lid:
+    mesh: {block: {origin: [0.3 m, 0.1 m, 2.2 m], size: [3 m, 1.6 m, 0.5 m], divisions: [9, 5, 2]}}
+    material: {linear_elastic: {E: 30 MPa, nu: 0.2}}
+sets:
+  bed: {body: base, surface: z_min}
+  ground: {body: base, surface: z_max}
+  under: {body: cap, surface: z_min}
+  top: {body: cap, surface: z_max}
+  rear: {body: cap, surface: x_min}
+  press: {body: lid, surface: z_max}
+  below: {body: lid, surface: z_min}
+  base: {body: base, box: {min: [-1 m, -1 m, -1 m], max: [9 m, 9 m, 9 m]}}
+  lid: {body: lid, box: {min: [-1 m, -1 m, -1 m], max: [9 m, 9 m, 9 m]}}
+supports:
+  bed: {fix: [x, y, z]}
+  press: {fix: [x, y]}
+stages:
+  press: {pressure: {top: 20 kPa}, displacement: {rear: {x: 0 m}, press: {z: -0.8 m}}}
+  down: {steps: 3, displacement: {rear: {x: 0 m}, press: {z: -1.21 m}}}
+  pull: {steps: 3, displacement: {rear: {x: 0.2 m}, press: {z: -1.21 m}}}
+  push: {steps: 2, displacement: {rear: {x: 0.1 m}, press: {z: -1.21 m}}}
+)";
+const std::string general = "contact: {general: {friction: 0.3}}\n";
+const std::string by_hand = R"(
+contact:
+  sliding: {slave: under, master: {set: base}, friction: 0.3}
+  above: {slave: top, master: {set: lid}, friction: 0.3}
+)";
+
+Diary run(const std::string& text, const std::vector<scene::Override>& changes = {}, int reject_every = 0,
+          int threads = 1) {
+    const scene::Scene scene = scene::read_scene(support::scene_file("general.yaml", text), changes);
+    Timings timings;
+    app::Plan plan = app::compile(scene, app::build_meshes(scene), threads, timings);
+    plan.stepper.reject_every = reject_every;
+    Diary diary;
+    time::Stepper stepper(plan.model, plan.stages, plan.stepper, timings);
+    stepper.run(diary);
+    return diary;
+}
+
+/// Largest difference of displacements over the largest displacement.
+double difference(const model::State& a, const model::State& b) {
+    return largest_distance(a.u, b.u).value / largest_component(b.u);
+}
+
+TEST(GeneralContact, IsThatOfPairsWrittenByHand) {
+    constexpr double same = 1e-6; // of the displacements: to what steps are solved
+    const Diary found = run(bodies + general), written = run(bodies + by_hand);
+    ASSERT_EQ(found.states.size(), written.states.size());
+    for (std::size_t k = 0; k < found.states.size(); ++k)
+        EXPECT_LT(difference(found.states[k], written.states[k]), same) << k;
+}
+
+TEST(GeneralContact, FindsBodiesThatCameNear) {
+    const Diary found = run(bodies + general);
+    const auto names = [](const model::State& state) {
+        std::vector<std::string> all;
+        for (const model::ContactHistory& history : state.contact) all.push_back(history.pair->name());
+        return all;
+    };
+    EXPECT_THAT(names(found.states.back()), testing::UnorderedElementsAre("general: cap on base", "general: cap on lid"));
+}
+
+TEST(GeneralContact, RulesOfBodiesAndFinishes) {
+    // cap and base without friction, cap and lid not at all
+    const std::string rules = R"(
+contact:
+  general:
+    friction: 0.3
+    surface: facets
+    discretisation: node
+    stiffness_scale: 2
+    closing_tolerance: 0.05
+    initial_overlap_limit: 0.2
+    pairs:
+      oiled: {between: [rubber, base], friction: 0}
+      apart: {between: [cap, lid], contact: false}
+)";
+    const std::string pairs = R"(
+contact:
+  sliding:
+    slave: under
+    master: {set: base, surface: facets}
+    discretisation: node
+    stiffness_scale: 2
+    closing_tolerance: 0.05
+)";
+    // the audit would end a run whose bodies overlap without a word
+    const Diary found = run(bodies + rules), written = run(bodies + pairs, {{"solver.audit", "false"}});
+    ASSERT_EQ(found.states.size(), written.states.size());
+    constexpr double same = 1e-9;
+    EXPECT_LT(difference(found.states.back(), written.states.back()), same);
+}
+
+TEST(GeneralContact, PairsBesideItTreatTheirOwnSurfaces) {
+    const std::string beside = R"(
+contact:
+  general: {friction: 0.3}
+  sliding: {slave: under, master: {set: ground}, friction: 0.1}
+)";
+    const Diary found = run(bodies + beside);
+    std::vector<std::string> names;
+    for (const model::ContactHistory& history : found.states.back().contact) names.push_back(history.pair->name());
+    EXPECT_THAT(names, testing::UnorderedElementsAre("sliding", "general: cap on lid"));
+    const Diary written = run(bodies + by_hand, {{"contact.sliding.friction", "0.1"}});
+    constexpr double same = 1e-6;
+    EXPECT_LT(difference(found.states.back(), written.states.back()), same);
+}
+
+TEST(GeneralContact, RejectedAttemptsLeaveNoTraceAndThreadsNoDifference) {
+    const Diary straight = run(bodies + general);
+    for (const int every : {2, 3}) support::expect_same_bits(straight, run(bodies + general, {}, every));
+    support::expect_same_bits(straight, run(bodies + general, {}, 0, 3));
+}
+
+} // namespace
+} // namespace osculate

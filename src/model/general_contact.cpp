@@ -5,6 +5,7 @@
 #include "osculate/fe/facet_quadrature.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -87,11 +88,15 @@ bool GeneralContact::pass_through(Index body, Index other) const {
 bool GeneralContact::may_meet(Index f, Index g) const {
     const auto a = static_cast<std::size_t>(data_[f].surface), b = static_cast<std::size_t>(data_[g].surface);
     if (a == b || left_out_[a * surfaces_.size() + b] != 0) return false;
-    const auto all = [&](const std::vector<char>& marks, Index facet, char side) {
-        return std::ranges::all_of(facets_[facet], [&](Index node) { return (marks[node] & side) != 0; });
+    return !is_treated(facets_[f], facets_[g]);
+}
+
+template <class Some, class Others> bool GeneralContact::is_treated(const Some& some, const Others& others) const {
+    const auto all = [](const std::vector<char>& marks, const auto& nodes, char side) {
+        return std::ranges::all_of(nodes, [&](Index node) { return (marks[node] & side) != 0; });
     };
-    return std::ranges::none_of(treated_, [&](const std::vector<char>& marks) {
-        return (all(marks, f, 1) && all(marks, g, 2)) || (all(marks, f, 2) && all(marks, g, 1));
+    return std::ranges::any_of(treated_, [&](const std::vector<char>& marks) {
+        return (all(marks, some, 1) && all(marks, others, 2)) || (all(marks, some, 2) && all(marks, others, 1));
     });
 }
 
@@ -153,10 +158,11 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
         return std::ranges::any_of(facets_[f],
                                    [&](Index node) { return normal[g].dot(x[node] - centre[g]) > -depth; });
     };
-    const auto points_at = [&](Index node, const Vec3& n) {
+    const auto points_at = [&](Index node, Index g) {
+        const Vec3& n = normal[g];
         double facets = 0;
         for (const Index f : node_facets_[node]) facets += normal[f].dot(n);
-        return facets < 0 && std::ranges::all_of(along_[node], [&](Index end) {
+        return facets < 0 && !is_treated(std::array{node}, facets_[g]) && std::ranges::all_of(along_[node], [&](Index end) {
                    return (x[end] - x[node]).normalized().dot(n) >= pointing;
                });
     };
@@ -169,7 +175,7 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
             for (const auto& [one, other] : {std::pair{f, g}, std::pair{g, f}})
                 if (is_slave(one, other))
                     for (const Index node : facets_[one])
-                        if (points_at(node, normal[other]))
+                        if (points_at(node, other))
                             found[{data_[one].surface, data_[other].surface}].nodes.push_back(node);
         }
     }

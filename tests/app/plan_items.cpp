@@ -46,6 +46,7 @@ courses over time            x . x . . . . . . x x . . .
 predictor                    . . x . . . . . x x x x x x
 moved origin                 . . . . . . . . . . . . . .
 contact                      x x x x x x x x x x x x x x
+general contact              . . . . . . . . . . . . . .
 choice of slaves             . . . . . . . . . . . . . .
 friction                     x . x x . x x x x x x x x x
 smooth master surface        x . x x . x x x x x x x x x
@@ -74,6 +75,11 @@ field energy_density         . . . . . . . . . . . . . .
 field reaction               x . x . . x x x x x x x x x
 field out_of_balance         . . . . . . . . . . . . . .
 field penetration            . . . . . . . . . . . . . .
+field contact_force          . . . . . . . . . . . . . .
+field contact_pressure       . . . . . . . . . . . . . .
+field contact_gap            . . . . . . . . . . . . . .
+field contact_status         . . . . . . . . . . . . . .
+field contact_slip           . . . . . . . . . . . . . .
 slave field gap              x . x . . x x x x x x x x x
 slave field contact_force    x . x . . x x x x x x x x x
 slave field normal_stress    x . x . . x x x x x x x x x

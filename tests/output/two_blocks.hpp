@@ -25,7 +25,7 @@ public:
         state.u.reset(model.X.size());
         for (Index i = 0; i < model.bodies[1].nodes(); ++i) state.u[model.bodies[1].first_node + i] = shift;
         const model::ContactPair& pair = *model.pairs[0];
-        state.contact.push_back(pair.initial_history());
+        state.contact.push_back(model::opened(model.pairs[0]));
         for (Index j = 0; j < pair.size(); ++j) {
             const double x = slave_X(j).x();
             if (x > 2) continue;

@@ -169,7 +169,8 @@ private:
     }
 
     void give(Path path, const std::string& value, bool only_words = false) {
-        if (path.size() > 2 && path[0] == "contact" && path[2] == "surface") path.insert(path.begin() + 2, "master");
+        if (path.size() > 2 && path[0] == "contact" && path[1] != "general" && path[2] == "surface")
+            path.insert(path.begin() + 2, "master");
         if (value.starts_with('{') && !only_words) // the value of an override may be a map
             try {
                 return walk(YAML::Load(value), path);

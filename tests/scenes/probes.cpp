@@ -70,7 +70,10 @@ TEST_F(Probes, OfABodyThatFliesFreeKnowItsMotionAndNoStrain) {
     for (const char* name : {"point", "line", "nodes", "slave_line", "slaves"}) {
         const Csv table(files / (std::string(name) + ".csv"));
         ASSERT_FALSE(table.rows.empty()) << name;
-        for (const auto& row : table.rows) EXPECT_THAT(row, Each(Not(""))) << name << ": every field has a value";
+        for (const auto& row : table.rows)
+            for (std::size_t c = 0; c < row.size(); ++c)
+                if (!table.columns[c].contains("contact_gap")) // no slave
+                    EXPECT_NE(row[c], "") << name << ": " << table.columns[c];
     }
     const Csv point(files / "point.csv"), nodes(files / "nodes.csv"), slaves(files / "slaves.csv");
     for (std::size_t i = 0; i < 3; ++i) {

@@ -82,7 +82,22 @@ TEST(GeneralContact, FindsBodiesThatCameNear) {
         for (const model::ContactHistory& history : state.contact) all.push_back(history.pair->name());
         return all;
     };
-    EXPECT_THAT(names(found.states.back()), testing::UnorderedElementsAre("general: cap on base", "general: cap on lid"));
+    EXPECT_THAT(names(found.states.back()), testing::UnorderedElementsAre("general: cap on base", "general: cap on lid", "general: base on lid"));
+}
+
+TEST(GeneralContact, CarriesTheLoadOnEverySurfaceWithEveryDiscretisation) {
+    constexpr double pressed = 20e3; // N
+    const std::string stage = "stages: {press: {pressure: {top: 20 kPa}, displacement: {rear: {x: 0 m}, press: {z: 0 m}}}}\n";
+    const std::string scene = bodies.substr(0, bodies.find("stages:")) + stage + general;
+    for (const char* surface : {"facets", "blend"})
+        for (const char* discretisation : {"node", "petrov_galerkin"}) {
+            const Diary diary =
+                run(scene, {{"contact.general.surface", surface}, {"contact.general.discretisation", discretisation}});
+            ASSERT_EQ(diary.states.back().contact.size(), 1u);
+            double carried = 0;
+            for (const Vec3& lambda : diary.states.back().contact[0].lambda) carried += lambda.z();
+            EXPECT_NEAR(carried, pressed, 1e-7 * pressed) << surface << ' ' << discretisation;
+        }
 }
 
 TEST(GeneralContact, RulesOfBodiesAndFinishes) {
@@ -125,8 +140,9 @@ contact:
     const Diary found = run(bodies + beside);
     std::vector<std::string> names;
     for (const model::ContactHistory& history : found.states.back().contact) names.push_back(history.pair->name());
-    EXPECT_THAT(names, testing::UnorderedElementsAre("sliding", "general: cap on lid"));
-    const Diary written = run(bodies + by_hand, {{"contact.sliding.friction", "0.1"}});
+    EXPECT_THAT(names, testing::UnorderedElementsAre("sliding", "general: cap on lid", "general: base on lid"));
+    const Diary written =
+        run(bodies + by_hand, {{"contact.sliding.friction", "0.1"}, {"contact.sliding.master.set", "ground"}});
     constexpr double same = 1e-6;
     EXPECT_LT(difference(found.states.back(), written.states.back()), same);
 }

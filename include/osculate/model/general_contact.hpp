@@ -83,6 +83,8 @@ private:
     /// Number of the surface of a body, that of the surfaces if it has none.
     [[nodiscard]] std::size_t surface_of_body(Index body) const;
     [[nodiscard]] bool may_meet(Index f, Index g) const;
+    /// Whether a pair of the scene's own treats these nodes against those.
+    template <class Some, class Others> [[nodiscard]] bool is_treated(const Some& some, const Others& others) const;
     /// Whether facet f is the slave of two facets that meet.
     [[nodiscard]] bool is_slave(Index f, Index g) const;
 

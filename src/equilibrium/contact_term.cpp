@@ -197,8 +197,8 @@ bool ContactTerm::reaches(std::size_t p, Index j) const {
 void ContactTerm::complete(const ConstVectorRef& z, model::State& state) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         const model::ContactEvaluation& evaluation = evaluations_[p];
-        model::ContactHistory history{pairs_[p], std::vector<Vec3>(statuses_[p].size()), statuses_[p], evaluation.facets(),
-                                      evaluation.master()};
+        model::ContactHistory history{pairs_[p], std::vector<Vec3>(statuses_[p].size()), statuses_[p],
+                                      evaluation.facets(), evaluation.master()};
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
             history.lambda[j] = force(z, first_[p] + j);
             // open nodes carry nothing: what is left is the solver's round-off

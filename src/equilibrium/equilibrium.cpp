@@ -13,8 +13,7 @@ using linear::Constraints;
 namespace {
 std::vector<Index> slaves_of(const model::ContactPairs& pairs) {
     std::vector<Index> slaves;
-    for (const auto& pair : pairs)
-        slaves.insert(slaves.end(), pair->slaves().node.begin(), pair->slaves().node.end());
+    for (const auto& pair : pairs) slaves.insert(slaves.end(), pair->slaves().node.begin(), pair->slaves().node.end());
     return slaves;
 }
 } // namespace

@@ -32,10 +32,10 @@ std::vector<Index> contact_nodes(const model::ContactPairs& pairs) {
 }
 } // namespace
 
-EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs, const linear::Constraints& constraints,
-                                       const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
-                                       ContactTerm& contact, const Iterate& at, const TangentChoice& choice,
-                                       Timings& timings, int threads)
+EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
+                                       const linear::Constraints& constraints, const linear::Unknowns& unknowns,
+                                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact,
+                                       const Iterate& at, const TangentChoice& choice, Timings& timings, int threads)
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact), at_(at),
       timings_(timings), may_buckle_(model.nonlinear != nullptr), products_(choice.products) {
     const linear::BlockMatrix& K = bodies_.bodies().tangent();

@@ -136,9 +136,11 @@ void ContactEvaluation::drop_what_is_not_pointed_at(const std::vector<Vec3>& x) 
         Vec3 n = point.normal;
         if (!point.found) { // of the facet
             n.setZero();
-            const auto around = hit(j).facet >= 0 ? pair_->surface().facet_vertices(hit(j).facet) : std::span<const Index>{};
+            const auto around =
+                hit(j).facet >= 0 ? pair_->surface().facet_vertices(hit(j).facet) : std::span<const Index>{};
             for (std::size_t c = 2; c < around.size(); ++c)
-                n += (vertices_[around[c - 1]] - vertices_[around[0]]).cross(vertices_[around[c]] - vertices_[around[0]]);
+                n += (vertices_[around[c - 1]] - vertices_[around[0]])
+                         .cross(vertices_[around[c]] - vertices_[around[0]]);
             n.normalize();
         }
         points_at_[j] = std::ranges::all_of(slaves.along[static_cast<std::size_t>(j)], [&](Index end) {

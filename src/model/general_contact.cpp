@@ -155,14 +155,15 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
     // faces that look away from each other are back to back
     const auto in_front = [&](Index f, Index g) {
         const double depth = behind * std::min(data_[f].size, data_[g].size);
-        return std::ranges::any_of(facets_[f],
-                                   [&](Index node) { return normal[g].dot(x[node] - centre[g]) > -depth; });
+        return std::ranges::any_of(facets_[f], [&](Index node) { return normal[g].dot(x[node] - centre[g]) > -depth; });
     };
     const auto points_at = [&](Index node, Index g) {
         const Vec3& n = normal[g];
         double facets = 0;
         for (const Index f : node_facets_[node]) facets += normal[f].dot(n);
-        return facets < 0 && !is_treated(std::array{node}, facets_[g]) && std::ranges::all_of(along_[node], [&](Index end) {
+        return facets < 0 &&
+               n.dot(x[node] - centre[g]) > -behind * std::min(data_[node_facets_[node][0]].size, data_[g].size) &&
+               !is_treated(std::array{node}, facets_[g]) && std::ranges::all_of(along_[node], [&](Index end) {
                    return (x[end] - x[node]).normalized().dot(n) >= pointing;
                });
     };
@@ -197,8 +198,8 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
         part.nodes.erase(std::unique(part.nodes.begin(), part.nodes.end()), part.nodes.end());
         const auto old = std::ranges::find_if(
             before, [&](const ContactHistory& history) { return sides_of(*history.pair) == sides; });
-        ContactHistory& history = histories.emplace_back(
-            opened(make_pair(sides.first, sides.second, part.nodes, std::move(facets))));
+        ContactHistory& history =
+            histories.emplace_back(opened(make_pair(sides.first, sides.second, part.nodes, std::move(facets))));
         if (old == before.end()) continue;
         history.master = old->master;
         const std::vector<Index>& known = old->pair->slaves().node;
@@ -234,7 +235,8 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(Index slave, Index 
         for (const Index f : node_facets_[nodes[j]]) {
             const auto shares = fe::tributary_areas(facets_[f], X_);
             for (int c = 0; c < facets_[f].count; ++c)
-                if (facets_[f].nodes[static_cast<std::size_t>(c)] == nodes[j]) all += shares[static_cast<std::size_t>(c)];
+                if (facets_[f].nodes[static_cast<std::size_t>(c)] == nodes[j])
+                    all += shares[static_cast<std::size_t>(c)];
             largest = std::max(largest, data_[f].size);
         }
         if (slaves.area[j] == 0) slaves.area[j] = all;

@@ -295,14 +295,14 @@ constexpr OutputField table[] = {
     {"strain", FieldPlace::body, 6, "", false, strain}, // tensor components: shears are halves of the angles
     {"energy_density", FieldPlace::body, 1, "J/m^3", false, energy_density},
     {"reaction", FieldPlace::body, 3, "N", false, reaction},
-    {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance}, // of a failed iterate; 0 otherwise
-    {"penetration", FieldPlace::body, 1, "m", false, penetration},       // in another body, by the audit; 0 outside
-    {"contact_force", FieldPlace::body, 3, "N", false, all_contact_force},    // as slave and as master
+    {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance},   // of a failed iterate; 0 otherwise
+    {"penetration", FieldPlace::body, 1, "m", false, penetration},         // in another body, by the audit; 0 outside
+    {"contact_force", FieldPlace::body, 3, "N", false, all_contact_force}, // as slave and as master
     {"contact_pressure", FieldPlace::body, 1, "Pa", false, contact_pressure}, // > 0 in compression; 0 inside
     {"contact_gap", FieldPlace::body, 1, "m", false, contact_gap},            // as slave; NaN without a partner
     {"contact_status", FieldPlace::body, 1, "", true, contact_status},        // as slave: 0 open, 1 stick, 2 slip
     {"contact_slip", FieldPlace::body, 3, "m", false, contact_slip},          // of the step, as slave
-    {"gap", FieldPlace::slave, 1, "m", false, gap},                      // NaN without a partner
+    {"gap", FieldPlace::slave, 1, "m", false, gap},                           // NaN without a partner
     {"contact_force", FieldPlace::slave, 3, "N", false, contact_force},
     {"normal_stress", FieldPlace::slave, 1, "Pa", false, normal_stress},             // > 0 in compression
     {"tangential_traction", FieldPlace::slave, 3, "Pa", false, tangential_traction}, // on the slave

@@ -117,13 +117,15 @@ void describe(Visitor& v, Pair& pair) {
 }
 
 void describe(Visitor& v, GeneralContact& general) {
-    v.number({.name = "friction", .meaning = "Coulomb's coefficient mu between all bodies.", .range = range::not_negative},
-             general.friction);
+    v.number(
+        {.name = "friction", .meaning = "Coulomb's coefficient mu between all bodies.", .range = range::not_negative},
+        general.friction);
     static const Words surfaces{"automatic", "facets", "blend"};
     word(v,
          {.name = "surface",
-          .meaning = "Geometry of the masters: as for pairs. automatic: facets for bodies all of whose faces are plane if "
-                     "a stage is dynamic, else blend."},
+          .meaning =
+              "Geometry of the masters: as for pairs. automatic: facets for bodies all of whose faces are plane if "
+              "a stage is dynamic, else blend."},
          surfaces, general.surface);
     static const Words discretisations{"automatic", "node", "petrov_galerkin"};
     std::size_t index = !general.discretisation ? 0 : *general.discretisation == Discretisation::node ? 1 : 2;
@@ -144,10 +146,9 @@ void describe(Visitor& v, GeneralContact& general) {
            .item = "rule"},
           general.pairs, [&](const std::string& name, GeneralRule& rule) {
               v.group({.name = name}, [&] {
-                  v.two_names({.name = "between",
-                               .meaning = "Two bodies, or two finishes, or one of each.",
-                               .required = true},
-                              rule.between);
+                  v.two_names(
+                      {.name = "between", .meaning = "Two bodies, or two finishes, or one of each.", .required = true},
+                      rule.between);
                   v.optional_number({.name = "friction",
                                      .meaning = "Coulomb's coefficient mu between them.",
                                      .range = range::not_negative,
@@ -403,9 +404,9 @@ void describe(Visitor& v, Scene& scene) {
     pairs.reserved = {"general"};
     pairs.beside_present = [&] { return general; };
     pairs.beside = [&] {
-        v.optional_group({.name = "general",
-                          .meaning = "All outer surfaces may meet; pairs beside it treat their own surfaces."},
-                         general, [&] { describe(v, all); });
+        v.optional_group(
+            {.name = "general", .meaning = "All outer surfaces may meet; pairs beside it treat their own surfaces."},
+            general, [&] { describe(v, all); });
     };
     v.named({.name = "contact", .meaning = "General contact, and contact pairs.", .item = "pair"}, pairs);
     if (general) scene.general = std::move(all);

@@ -21,15 +21,15 @@ template <class E> void word(Visitor& v, const Key& key, const Words& vocabulary
 /// Named values; `item(name, value)` describes one under its name.
 template <class T, class Item> Entries entries_of(Named<T>& values, const Item& item) {
     return {.size = [&] { return values.size(); },
-                  .name = [&](std::size_t i) { return values[i].first; },
-                  .add =
-                      [&](const std::string& name) {
-                          std::erase_if(values, [&](const auto& known) { return known.first == name; }); // a template's
-                          if constexpr (std::is_same_v<T, Vec3>)
-                              values.emplace_back(name, Vec3::Zero());
-                          else
-                              values.emplace_back(name, T{});
-                      },
+            .name = [&](std::size_t i) { return values[i].first; },
+            .add =
+                [&](const std::string& name) {
+                    std::erase_if(values, [&](const auto& known) { return known.first == name; }); // a template's
+                    if constexpr (std::is_same_v<T, Vec3>)
+                        values.emplace_back(name, Vec3::Zero());
+                    else
+                        values.emplace_back(name, T{});
+                },
             .describe = [&, item](std::size_t i) { item(values[i].first, values[i].second); }};
 }
 template <class T, class Item> void named(Visitor& v, const Key& key, Named<T>& values, const Item& item) {

@@ -210,8 +210,7 @@ void SchemaVisitor::named(const Key& key, const Entries& entries) {
     Json schema;
     schema["type"] = key.required ? Json("object") : Json{"object", "null"};
     schema["additionalProperties"] = level.properties.at(name);
-    for (const std::string& reserved : entries.reserved)
-        schema["properties"][reserved] = level.properties.at(reserved);
+    for (const std::string& reserved : entries.reserved) schema["properties"][reserved] = level.properties.at(reserved);
     if (key.required) schema["minProperties"] = 1;
     schema["propertyNames"] = {{"pattern", identifier}};
     const bool refers = key.names == Names::body || key.names == Names::set;

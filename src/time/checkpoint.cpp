@@ -89,8 +89,8 @@ std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std:
     if (!finite(state.u) || !finite(state.v) || !finite(state.a) || !finite(checkpoint.displacement_start))
         return "values that are not finite";
     const std::vector<FoundPair>& found = checkpoint.found;
-    if (state.contact.size() != model.pairs.size() + found.size() || checkpoint.patches.size() != state.contact.size() ||
-        (!found.empty() && !model.general))
+    if (state.contact.size() != model.pairs.size() + found.size() ||
+        checkpoint.patches.size() != state.contact.size() || (!found.empty() && !model.general))
         return "number of contact pairs";
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         const model::ContactPair& pair = *model.pairs[p];

@@ -47,7 +47,8 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
     if (dynamics_ != nullptr) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);
     targets_ = times_to_hit(stage, progress_.stage_start);
     if (context.model.general && !progress_.state.scope) {
-        const double speed = progress_.state.v.empty() ? 0 : largest_distance(progress_.state.v, Field(progress_.state.v.size())).value;
+        const double speed =
+            progress_.state.v.empty() ? 0 : largest_distance(progress_.state.v, Field(progress_.state.v.size())).value;
         find_pairs(speed * progress_.dt);
     }
     if (from != nullptr) equilibrium().recall(from->memory);
@@ -168,8 +169,8 @@ void StageRun::trial(StepAttempt& attempt) {
 }
 
 void StageRun::solve(StepAttempt& attempt) {
-    attempt.result =
-        climb(equilibrium(), machinery_->solver, attempt.z, attempt.unpredicted, attempt.statuses, attempt.forced, attempt.ladder);
+    attempt.result = climb(equilibrium(), machinery_->solver, attempt.z, attempt.unpredicted, attempt.statuses,
+                           attempt.forced, attempt.ladder);
     attempt.iterations += attempt.result.iterations;
     const int every = context_.options.reject_every;
     StepEvidence& evidence = attempt.evidence;
@@ -242,7 +243,10 @@ Attempt StageRun::row_of(const StepAttempt& attempt) {
     row.lambda = decision.lambda;
     row.cause = decision.cause;
     if (decision.reason == Reason::solver) row.cause = explain(model, attempt.result, equilibrium(), row);
-    if (decision.pair >= 0) name_node(model, progress_.state.contact[static_cast<std::size_t>(decision.pair)].pair->slaves().node[decision.slave], row);
+    if (decision.pair >= 0)
+        name_node(model,
+                  progress_.state.contact[static_cast<std::size_t>(decision.pair)].pair->slaves().node[decision.slave],
+                  row);
     if (decision.intrusion) {
         name_node(model, decision.intrusion->node, row);
         row.cause = in_words(*decision.intrusion, model) + "; " + row.cause;

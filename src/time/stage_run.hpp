@@ -91,10 +91,10 @@ private:
     StepObserver& observer_;
     linear::Constraints constraints_;
     const equilibrium::Dynamics* dynamics_; ///< null in statics
-    std::unique_ptr<Machinery> machinery_; ///< for the pairs of the state
-    std::optional<CentreMasses> centres_; ///< of dynamic stages
-    std::vector<double> targets_;         ///< times to hit
-    [[nodiscard]] bool bounded() const;   ///< whether interpenetration is
+    std::unique_ptr<Machinery> machinery_;  ///< for the pairs of the state
+    std::optional<CentreMasses> centres_;   ///< of dynamic stages
+    std::vector<double> targets_;           ///< times to hit
+    [[nodiscard]] bool bounded() const;     ///< whether interpenetration is
     // of one step
     int repeats_ = 0;
     double lost_per_second_ = 0; ///< by closing gaps, in the last attempt that was cut for it

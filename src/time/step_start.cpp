@@ -150,7 +150,8 @@ StabilisationOptions stabilisation_options(RunContext& context, const model::Sta
     how.farthest = context.characteristic_length;
     constexpr double part = 0.05; // of the model, where there is no facet to compare with
     how.finest = part * context.characteristic_length;
-    for (const model::ContactHistory& history : state.contact) how.finest = std::min(how.finest, history.pair->finest());
+    for (const model::ContactHistory& history : state.contact)
+        how.finest = std::min(how.finest, history.pair->finest());
     how.gap = [&context, &state, u, how] {
         if (state.contact.empty()) return 2 * how.finest; // of no account
         double least = how.farthest;

@@ -31,9 +31,9 @@ PostMortem examined(const LadderResult& result, const LadderOptions& ladder, Att
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const Stage& stage = plan.stages.front();
     const linear::Constraints constraints(plan.model.nodes(), stage.constraints);
-    equilibrium::Equilibrium equilibrium(plan.model, plan.model.pairs, constraints, nullptr,
-                                         equilibrium::choose_tangent(plan.model, plan.model.pairs, LinearSolver::automatic, false, false),
-                                         timings, 1);
+    equilibrium::Equilibrium equilibrium(
+        plan.model, plan.model.pairs, constraints, nullptr,
+        equilibrium::choose_tangent(plan.model, plan.model.pairs, LinearSolver::automatic, false, false), timings, 1);
     model::State state;
     state.u.assign(plan.model.X.size(), Vec3::Zero());
     for (const auto& pair : plan.model.pairs) state.contact.push_back(model::opened(pair));

@@ -172,9 +172,10 @@ TEST(RunChecks, MeasurePenetrationInFacetSizes) {
 
         // the same equilibrium, but that contact is looked at where the cap has sunk
         Timings unused;
-        equilibrium::Equilibrium sunk(plan.model, plan.model.pairs, step.equilibrium.constraints(), nullptr,
-                                      equilibrium::choose_tangent(plan.model, plan.model.pairs, LinearSolver::automatic, false, false),
-                                      unused, 1);
+        equilibrium::Equilibrium sunk(
+            plan.model, plan.model.pairs, step.equilibrium.constraints(), nullptr,
+            equilibrium::choose_tangent(plan.model, plan.model.pairs, LinearSolver::automatic, false, false), unused,
+            1);
         sunk.begin_attempt(step.state, {step.equilibrium.external_force(), step.state.u}, step.dt);
         const Vector z = sunk.unknowns(step.state.u, step.state.contact);
         ASSERT_TRUE(sunk.holds(z, step.equilibrium.statuses(), balance));

@@ -47,8 +47,7 @@ TEST(NearFacets, AreThoseWhoseBoxesOverlap) {
     std::vector<std::pair<Index, Index>> expected;
     for (std::size_t f = 0; f < all.facets.size(); ++f)
         for (std::size_t g = f + 1; g < all.facets.size(); ++g)
-            if (wanted(static_cast<Index>(f), static_cast<Index>(g)) && overlap(f, g))
-                expected.emplace_back(f, g);
+            if (wanted(static_cast<Index>(f), static_cast<Index>(g)) && overlap(f, g)) expected.emplace_back(f, g);
     EXPECT_GT(expected.size(), 100U);
     EXPECT_EQ(near_facets(all.facets, all.margin, all.x, wanted), expected);
 }

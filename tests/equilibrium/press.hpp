@@ -21,7 +21,8 @@ public:
         const time::Stage& pull = plan.stages[1];
         constraints = std::make_unique<linear::Constraints>(plan.model.nodes(), pull.constraints);
         equilibrium = std::make_unique<Equilibrium>(plan.model, plan.model.pairs, *constraints, nullptr,
-                                                    choose_tangent(plan.model, plan.model.pairs, solver, false, false), timings, 1);
+                                                    choose_tangent(plan.model, plan.model.pairs, solver, false, false),
+                                                    timings, 1);
         kinsol = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
         state.u.assign(plan.model.X.size(), Vec3::Zero());
         state.contact.push_back(model::opened(plan.model.pairs[0]));

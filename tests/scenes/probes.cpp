@@ -71,9 +71,10 @@ TEST_F(Probes, OfABodyThatFliesFreeKnowItsMotionAndNoStrain) {
         const Csv table(files / (std::string(name) + ".csv"));
         ASSERT_FALSE(table.rows.empty()) << name;
         for (const auto& row : table.rows)
-            for (std::size_t c = 0; c < row.size(); ++c)
-                if (!table.columns[c].contains("contact_gap")) // no slave
-                    EXPECT_NE(row[c], "") << name << ": " << table.columns[c];
+            for (std::size_t c = 0; c < row.size(); ++c) {
+                if (table.columns[c].find("contact_gap") != std::string::npos) continue; // no slave
+                EXPECT_NE(row[c], "") << name << ": " << table.columns[c];
+            }
     }
     const Csv point(files / "point.csv"), nodes(files / "nodes.csv"), slaves(files / "slaves.csv");
     for (std::size_t i = 0; i < 3; ++i) {

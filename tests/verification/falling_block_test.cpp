@@ -80,8 +80,8 @@ Depths depths(Fall& fall) {
     const model::Model& model = fall.plan.model;
     const time::Stage& stage = fall.plan.stages[0];
     const linear::Constraints constraints(model.nodes(), stage.constraints);
-    equilibrium::Equilibrium equilibrium(fall.plan.model, fall.plan.model.pairs, constraints, &*stage.dynamics, stage.tangent, fall.timings,
-                                         1);
+    equilibrium::Equilibrium equilibrium(fall.plan.model, fall.plan.model.pairs, constraints, &*stage.dynamics,
+                                         stage.tangent, fall.timings, 1);
     solve::KinsolSolver solver(equilibrium.size(), fall.timings);
     const std::vector<Index>& slaves = model.pairs[0]->slaves().node;
     const auto depth = [&](const std::vector<Vec3>& u, Index node) {

@@ -82,12 +82,14 @@ TEST(GeneralContact, FindsBodiesThatCameNear) {
         for (const model::ContactHistory& history : state.contact) all.push_back(history.pair->name());
         return all;
     };
-    EXPECT_THAT(names(found.states.back()), testing::UnorderedElementsAre("general: cap on base", "general: cap on lid", "general: base on lid"));
+    EXPECT_THAT(names(found.states.back()),
+                testing::UnorderedElementsAre("general: cap on base", "general: cap on lid", "general: base on lid"));
 }
 
 TEST(GeneralContact, CarriesTheLoadOnEverySurfaceWithEveryDiscretisation) {
     constexpr double pressed = 20e3; // N
-    const std::string stage = "stages: {press: {pressure: {top: 20 kPa}, displacement: {rear: {x: 0 m}, press: {z: 0 m}}}}\n";
+    const std::string stage =
+        "stages: {press: {pressure: {top: 20 kPa}, displacement: {rear: {x: 0 m}, press: {z: 0 m}}}}\n";
     const std::string scene = bodies.substr(0, bodies.find("stages:")) + stage + general;
     for (const char* surface : {"facets", "blend"})
         for (const char* discretisation : {"node", "petrov_galerkin"}) {

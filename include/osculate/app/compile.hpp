@@ -43,8 +43,8 @@ struct PairChoice {
 
 struct Plan {
     model::Model model;
-    scene::Named<scene::Pair> contact; ///< the scene's pairs, in its order: with roles and discretisation
-    std::vector<PairChoice> choices;   ///< of each of them
+    scene::Named<scene::Pair> contact;            ///< the scene's pairs, in its order: with roles and discretisation
+    std::vector<PairChoice> choices;              ///< of each of them
     std::optional<scene::GeneralContact> general; ///< the scene's, with its discretisation
     PairChoice general_choice;
     std::vector<model::ContactHistory> near_at_start; ///< pairs that general contact finds there

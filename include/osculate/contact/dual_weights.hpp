@@ -121,8 +121,8 @@ private:
     };
     struct Facet {
         SlaveFacet corners;
-        std::vector<Vec3> X; ///< (corners) reference
-        double area = 0;     ///< reference
+        std::vector<Vec3> X;        ///< (corners) reference
+        double area = 0;            ///< reference
         Vec3 normal = Vec3::Zero(); ///< at the last begin()
         std::vector<Overlap> overlaps;
         DualFunctions dual;

@@ -21,10 +21,9 @@ public:
     /// @param terms  of the residual, including `bodies` and `contact`; all arguments must outlive this object
     /// @param at     iterate at which the residual was last evaluated
     EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
-                       const linear::Constraints& constraints,
-                       const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
-                       ContactTerm& contact, const Iterate& at, const TangentChoice& choice, Timings& timings,
-                       int threads);
+                       const linear::Constraints& constraints, const linear::Unknowns& unknowns,
+                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact, const Iterate& at,
+                       const TangentChoice& choice, Timings& timings, int threads);
 
     /// Opens an attempt over dt (0 in statics); changed: the bodies' stiffness has new values.
     void begin(double dt, bool changed);

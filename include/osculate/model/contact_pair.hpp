@@ -22,9 +22,9 @@ class ContactPair;
 /// Data that a pair keeps from one accepted step to the next.
 struct ContactHistory {
     std::shared_ptr<const ContactPair> pair; ///< never null in a state
-    std::vector<Vec3> lambda;            ///< (slaves) contact force on each slave node, N, global components
-    std::vector<contact::Status> status; ///< (slaves)
-    std::vector<Index> facet;            ///< (slaves) temporary facet, -1: not searched yet
+    std::vector<Vec3> lambda;                ///< (slaves) contact force on each slave node, N, global components
+    std::vector<contact::Status> status;     ///< (slaves)
+    std::vector<Index> facet;                ///< (slaves) temporary facet, -1: not searched yet
     std::shared_ptr<const contact::MasterSurface> master; ///< with all patches refitted so far; never null
 };
 

@@ -31,8 +31,8 @@ struct OuterSurface {
 };
 
 struct GeneralContactOptions {
-    ContactOptions pair;      ///< of every pair but for the friction
-    Matrix friction;          ///< (surfaces x surfaces) Coulomb's coefficients, symmetric
+    ContactOptions pair;                           ///< of every pair but for the friction
+    Matrix friction;                               ///< (surfaces x surfaces) Coulomb's coefficients, symmetric
     std::vector<std::pair<Index, Index>> left_out; ///< surfaces that do not meet, the lower first
     double stiffness_scale = 1;
     /// Nodes and the nodes that they do not meet, both ascending: surfaces that pairs of the scene's own treat.
@@ -65,8 +65,8 @@ public:
     /// Nodes that are slaves in some pair, as far as sizes and stiffness tell, ascending.
     [[nodiscard]] std::vector<Index> possible_slaves() const;
     /// A pair of two surfaces. @param nodes, facets  of the slave; the nodes of the facets and perhaps others, ascending
-    [[nodiscard]] std::shared_ptr<const ContactPair> make_pair(Index slave, Index master, const std::vector<Index>& nodes,
-                                                               std::vector<mesh::Facet> facets) const;
+    [[nodiscard]] std::shared_ptr<const ContactPair>
+    make_pair(Index slave, Index master, const std::vector<Index>& nodes, std::vector<mesh::Facet> facets) const;
     /// Surfaces of a pair that near() or make_pair() has made: slave and master.
     [[nodiscard]] std::pair<Index, Index> sides_of(const ContactPair& pair) const;
 
@@ -90,13 +90,15 @@ private:
 
     std::vector<OuterSurface> surfaces_;
     GeneralContactOptions options_;
-    std::vector<Vec3> X_; ///< (nodes) reference positions, m
+    std::vector<Vec3> X_;             ///< (nodes) reference positions, m
     std::vector<mesh::Facet> facets_; ///< of all surfaces, one after another
     std::vector<Facet> data_;         ///< of each
     std::vector<Index> surface_of_;   ///< (nodes) -1: of none
-    std::vector<std::vector<Index>> node_facets_, along_; ///< (nodes) facets that meet there; nodes at other ends of edges
-    std::vector<char> left_out_;      ///< (surfaces x surfaces)
-    std::vector<std::vector<char>> treated_; ///< (pairs treated elsewhere) nodes: 1 of one side, 2 of the other, 3 of both
+    std::vector<std::vector<Index>> node_facets_,
+        along_;                  ///< (nodes) facets that meet there; nodes at other ends of edges
+    std::vector<char> left_out_; ///< (surfaces x surfaces)
+    std::vector<std::vector<char>>
+        treated_; ///< (pairs treated elsewhere) nodes: 1 of one side, 2 of the other, 3 of both
 };
 
 } // namespace osculate::model

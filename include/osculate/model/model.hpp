@@ -37,10 +37,10 @@ struct Model {
     Vec3 origin = Vec3::Zero(); ///< position of X = 0 in the scene's coordinates, m; saves digits far from their zero
     Field X;                    ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m
     std::vector<Set> sets;
-    ContactPairs pairs; ///< those that a scene names
+    ContactPairs pairs;                            ///< those that a scene names
     std::unique_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
-    linear::BlockMatrix K;                        ///< constant stiffness of the linear elements, in the pattern of all
-    std::unique_ptr<NonlinearElements> nonlinear; ///< the other elements; null if there are none
+    linear::BlockMatrix K;                         ///< constant stiffness of the linear elements, in the pattern of all
+    std::unique_ptr<NonlinearElements> nonlinear;  ///< the other elements; null if there are none
     linear::BlockMatrix consistent_mass,
         lumped_mass;                      ///< of all bodies, kg, pattern of K; empty if no stage needs it
     std::vector<Index> kept_contact_mass; ///< bodies that keep their contact mass against the request, ascending

@@ -250,9 +250,9 @@ enum class GeneralSurface { automatic, facets, blend };
 
 /// Contact of all outer surfaces.
 struct GeneralContact {
-    double friction = 0;                                  ///< Coulomb's coefficient mu
-    GeneralSurface surface = GeneralSurface::automatic;   ///< of masters
-    std::optional<Discretisation> discretisation;         ///< none: automatic
+    double friction = 0;                                ///< Coulomb's coefficient mu
+    GeneralSurface surface = GeneralSurface::automatic; ///< of masters
+    std::optional<Discretisation> discretisation;       ///< none: automatic
     double closing_tolerance = Pair{}.closing_tolerance;
     double initial_overlap_limit = Pair{}.initial_overlap_limit;
     double stiffness_scale = 1;
@@ -373,7 +373,7 @@ struct Scene {
     Vec3 gravity = Vec3::Zero(); ///< m/s^2, on every body with a density, in every stage
     Named<Body> bodies;
     Named<SetSpec> sets;
-    Named<Support> supports; ///< keyed by set
+    Named<Support> supports;               ///< keyed by set
     std::optional<GeneralContact> general; ///< contact.general
     Named<Pair> contact;                   ///< the other keys of contact
     Named<Stage> stages;

@@ -101,8 +101,8 @@ Check examine(const LoadedScene& loaded, int threads) {
         const double ratio = stiffness_ratio(loaded, pair);
         advise_on_stiffness(ratio, found, p);
         p.facing = facing(evaluation, plan.model.X);
-        append(check.warnings, pair_warnings(plan.model, {evaluation, *spec,
-                                                          p.facing, found, ratio, may_tumble(loaded, pair)}));
+        append(check.warnings,
+               pair_warnings(plan.model, {evaluation, *spec, p.facing, found, ratio, may_tumble(loaded, pair)}));
         if (p.gaps.above == 0)
             check.warnings.push_back({"contact." + pair.name(), "no slave node is above or below the master"});
     }

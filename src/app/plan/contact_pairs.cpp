@@ -271,9 +271,9 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
 
 } // namespace
 
-std::unique_ptr<const model::GeneralContact>
-make_general_contact(const scene::Scene& scene, const model::Model& model,
-                     const std::vector<std::vector<mesh::Facet>>& exterior, bool paths, bool dynamic) {
+std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::Scene& scene, const model::Model& model,
+                                                                  const std::vector<std::vector<mesh::Facet>>& exterior,
+                                                                  bool paths, bool dynamic) {
     const scene::GeneralContact& spec = *scene.general;
     std::vector<model::OuterSurface> surfaces;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -296,11 +296,13 @@ make_general_contact(const scene::Scene& scene, const model::Model& model,
         all.nodes.erase(std::unique(all.nodes.begin(), all.nodes.end()), all.nodes.end());
         scene::MasterSpec master;
         const bool plane = dynamic && is_plane_everywhere(mesh::HalfEdgeSurface(all.facets, model.X), model.X);
-        if (spec.surface == scene::GeneralSurface::facets || (spec.surface == scene::GeneralSurface::automatic && plane))
+        if (spec.surface == scene::GeneralSurface::facets ||
+            (spec.surface == scene::GeneralSurface::automatic && plane))
             master.surface = scene::FacetsSurface{};
         one.smooth = std::holds_alternative<scene::BlendSurface>(master.surface);
         model::ContactOptions options;
-        one.side = make_side(scene, master, spec.discretisation.value(), model, all, paths ? &exterior[b] : nullptr, options);
+        one.side =
+            make_side(scene, master, spec.discretisation.value(), model, all, paths ? &exterior[b] : nullptr, options);
         const std::vector<Mat3> planes = in_symmetry_planes(scene, model, all, all.nodes);
         for (std::size_t i = 0; i < planes.size(); ++i)
             if (planes[i] != Mat3::Identity()) one.in_plane.emplace(all.nodes[i], planes[i]);

@@ -71,18 +71,20 @@ void add_pairs(Draft& draft) {
 void add_general_contact(Draft& draft) {
     if (!draft.plan.general) return;
     const bool paths = std::ranges::any_of(draft.plan.stages, &time::Stage::follow_paths);
-    const bool dynamic = std::ranges::any_of(draft.plan.stages, [](const time::Stage& s) { return s.dynamics.has_value(); });
+    const bool dynamic =
+        std::ranges::any_of(draft.plan.stages, [](const time::Stage& s) { return s.dynamics.has_value(); });
     const ScopedTimer timer(draft.timings, Part::patches);
     for (std::size_t b = 0; b < draft.exterior.size(); ++b)
-        if (const auto& body = draft.plan.model.bodies[b];
-            std::ranges::any_of(body.mesh.blocks, [](const auto& block) { return !mesh::cell_info(block.type).edges.empty(); }))
+        if (const auto& body = draft.plan.model.bodies[b]; std::ranges::any_of(
+                body.mesh.blocks, [](const auto& block) { return !mesh::cell_info(block.type).edges.empty(); }))
             draft.faults.push_back(fault("contact.general", "bodies of elements without midside nodes",
                                          "body '" + body.name + "' with quadratic elements, which carry no contact"));
     if (!draft.faults.empty()) return;
     try {
         draft.plan.model.general = make_general_contact(draft.scene, draft.plan.model, draft.exterior, paths, dynamic);
     } catch (const std::runtime_error& error) {
-        draft.faults.push_back(fault("contact.general", "bodies whose outer surfaces are oriented manifolds", error.what()));
+        draft.faults.push_back(
+            fault("contact.general", "bodies whose outer surfaces are oriented manifolds", error.what()));
         return;
     }
     const model::GeneralContact& general = *draft.plan.model.general;
@@ -95,8 +97,7 @@ void check_gaps(Draft& draft) {
         const PairGaps gaps = initial_gaps(evaluation, draft.plan.model.X, draft.timings, draft.threads);
         if (gaps.largest_overlap > limit)
             draft.faults.push_back(
-                fault(key,
-                      fmt::format("bodies that overlap by less than {:.3g} of the facet size at the start", limit),
+                fault(key, fmt::format("bodies that overlap by less than {:.3g} of the facet size at the start", limit),
                       fmt::format("an overlap of {:.4g} m at slave {}, {:.3g} of the facet size", -gaps.least,
                                   node_name(draft.plan.model, gaps.worst_node), gaps.largest_overlap)));
     };

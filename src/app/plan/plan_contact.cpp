@@ -66,10 +66,10 @@ std::string discretisations(const Plan& plan) {
                 (why.empty() ? names[static_cast<std::size_t>(*plan.contact[p].second.discretisation)] : why);
     }
     if (plan.general)
-        text += (text.empty() ? "" : ", ") + std::string("general: ") +
-                (plan.general_choice.discretisation.empty()
-                     ? names[static_cast<std::size_t>(*plan.general->discretisation)]
-                     : plan.general_choice.discretisation);
+        text +=
+            (text.empty() ? "" : ", ") + std::string("general: ") +
+            (plan.general_choice.discretisation.empty() ? names[static_cast<std::size_t>(*plan.general->discretisation)]
+                                                        : plan.general_choice.discretisation);
     return text;
 }
 
@@ -129,8 +129,8 @@ void add_contact_items(const scene::Scene& scene, const Plan& plan, PlanList& li
              contact_cost(plan));
     const auto surfaces = plan.model.general ? plan.model.general->surfaces().size() : 0;
     list.say("general contact", surfaces > 0,
-             surfaces > 0 ? fmt::format("{} outer surfaces may meet; {} pair(s) of them are near at the start", surfaces,
-                                        plan.near_at_start.size())
+             surfaces > 0 ? fmt::format("{} outer surfaces may meet; {} pair(s) of them are near at the start",
+                                        surfaces, plan.near_at_start.size())
                           : "the scene has no contact.general",
              {sizeof(Vec3) * static_cast<double>(plan.model.nodes()), 0, {}});
     std::string roles;

@@ -64,7 +64,8 @@ double add_fields(const scene::Output& out, const model::Model& model, PlanList&
 void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& list) {
     const scene::Output& out = scene.output;
     const model::Model& model = plan.model;
-    const bool frames = out.frame_every > 0, contact = !model.pairs.empty() || model.general, dynamic = dynamic_stages(plan) > 0;
+    const bool frames = out.frame_every > 0, contact = !model.pairs.empty() || model.general,
+               dynamic = dynamic_stages(plan) > 0;
     const std::string not_asked = not_named(out);
     const double bytes = add_fields(out, model, list);
     list.say("frames", frames, frames ? fmt::format("every {} accepted step(s)", out.frame_every) : "frame_every is 0",

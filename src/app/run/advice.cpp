@@ -164,8 +164,8 @@ private:
             if (const model::ContactPair* const one = pair(loose.nearest_pair);
                 one != nullptr && one->options().friction == 0)
                 change(key_of(*one) + ".friction", "0.3",
-                           "above 0, for example 0.3, if the real surfaces are rough: without friction, contact holds "
-                           "the body only along its normals");
+                       "above 0, for example 0.3, if the real surfaces are rough: without friction, contact holds "
+                       "the body only along its normals");
         dynamics("if body '" + loose.body + "' is really meant to move freely: its inertia then holds it");
     }
 
@@ -220,11 +220,9 @@ private:
                            "fast for any step");
         }
         if (one->options().friction > 0.3)
-            add(key_of(*one) + ".friction",
-                "below " + number(one->options().friction) +
-                    ", if only for a test: high friction makes stick and slip alternate");
-        add(surface_key(*one),
-            "blend, if it is facets or rpim: normals that jump at edges move nodes back and forth");
+            add(key_of(*one) + ".friction", "below " + number(one->options().friction) +
+                                                ", if only for a test: high friction makes stick and slip alternate");
+        add(surface_key(*one), "blend, if it is facets or rpim: normals that jump at edges move nodes back and forth");
         add("bodies." + found_.body + ".mesh", "finer near the listed nodes: too few nodes carry the contact");
     }
 

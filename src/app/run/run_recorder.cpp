@@ -168,7 +168,8 @@ void RunRecorder::write_initial_frame() {
     const scene::Output& out = scene_.output;
     model::ContactEvaluations contact;
     if (!out.slave_fields.empty() || !out.master_fields.empty())
-        for (model::ContactEvaluation& evaluation : contact = model::contact_evaluations(model::pairs_of(stepper_.state().contact)))
+        for (model::ContactEvaluation& evaluation :
+             contact = model::contact_evaluations(model::pairs_of(stepper_.state().contact)))
             (void)initial_gaps(evaluation, plan_.model.X, timings_, settings_.threads);
     on_disk(timings_, [&] {
         settings_.folder->claim(frames_->files(0));

@@ -63,9 +63,11 @@ Vec3 normal_of(std::span<const Vec3> corner) {
 
 DualWeights::DualWeights(const mesh::HalfEdgeSurface& surface, const std::vector<SlaveFacet>& facets,
                          const std::vector<Vec3>& S, double least_cover)
-    : surface_(surface), least_cover_(least_cover), has_features_(false), incident_(S.size()) {
-    for (Index h = 0; h < static_cast<Index>(surface.half_edges().size()) && !has_features_; ++h)
-        has_features_ = surface.is_feature_edge(h);
+    : surface_(surface), least_cover_(least_cover), turns_round_(false), incident_(S.size()) {
+    // a surface with features, or without an end, comes to lie under a facet twice
+    turns_round_ = surface.boundary_loop_count() == 0;
+    for (Index h = 0; h < static_cast<Index>(surface.half_edges().size()) && !turns_round_; ++h)
+        turns_round_ = surface.is_feature_edge(h);
     for (const SlaveFacet& corners : facets) {
         Facet& facet = facets_.emplace_back();
         facet.corners = corners;
@@ -80,7 +82,7 @@ DualWeights::DualWeights(const mesh::HalfEdgeSurface& surface, const std::vector
 }
 
 void DualWeights::begin(const PairPositions& at) {
-    if (!has_features_) return;
+    if (!turns_round_) return;
     master_normal_.clear();
     for (Index g = 0; g < surface_.facet_count(); ++g) {
         const auto vertices = surface_.facet_vertices(g);

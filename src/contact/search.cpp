@@ -20,6 +20,12 @@ bool inside(const Vec2& u, int corners) {
     return u.minCoeff() >= 0 && u.sum() <= 1;
 }
 
+FacetHit nothing() {
+    FacetHit none;
+    none.distance = std::numeric_limits<double>::max();
+    return none;
+}
+
 /// Natural coordinates of the point at fraction t of edge b of a facet.
 Vec2 on_edge(int corners, int b, double t) {
     static const Vec2 square[4] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -172,9 +178,11 @@ void FacetSearch::build(const std::vector<Vec3>& x) {
 }
 
 FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x) const {
-    FacetHit none;
-    none.distance = std::numeric_limits<double>::max();
-    if (!tree_) return none;
+    return global(s, x, std::numeric_limits<double>::max(), {});
+}
+
+FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x, double farthest, const Choice& counts) const {
+    if (!tree_) return nothing();
     // the k nearest boxes, k doubled until the farthest of them is farther than the best facet: an incremental query for
     // all boxes in order of distance would sort far more of them than it hands out
     const Point at = to_point(s);
@@ -185,19 +193,23 @@ FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x) const {
         nearest.clear();
         hits.clear();
         tree_->boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest));
-        double reached = 0, reach = std::numeric_limits<double>::max();
+        double reached = 0, reach = farthest;
         for (const auto& [box, facet] : nearest) {
             const double away = bg::distance(at, box);
             reached = std::max(reached, away);
-            if (away > reach) continue;
-            hits.push_back(closest_on(facet, s, x));
+            if (away > reach || (counts && !counts(facet))) continue;
+            const FacetHit hit = closest_on(facet, s, x);
+            if (hit.distance > reach) continue;
+            hits.push_back(hit);
             reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(facet));
         }
         if (k >= every || reached > reach) return best_of(hits);
     }
 }
 
-FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis) const {
+FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis,
+                            const Choice& counts) const {
+    if (from < 0) return nothing();
     const FacetHit old = closest_on(from, s, x);
     FacetHit best = old;
     std::vector<FacetHit> hits;
@@ -207,6 +219,7 @@ FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& 
         double reach = best.distance + tie * surface_->facet_size(centre);
         for (Index k = neighbours_->start[centre]; k < neighbours_->start[centre + 1]; ++k) {
             const Index facet = neighbours_->facet[k];
+            if (counts && !counts(facet)) continue;
             // no point of the facet is closer than the box of its corners
             Vec3 low = x[surface_->facet_vertices(facet)[0]], high = low;
             for (const Index v : surface_->facet_vertices(facet)) {

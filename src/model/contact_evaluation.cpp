@@ -3,6 +3,7 @@
 #include "osculate/core/parallel.hpp"
 #include "osculate/model/model.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
@@ -11,6 +12,11 @@ namespace osculate::model {
 namespace {
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
+/// Cosine between normals of facets of one surface that may touch each other: ten degrees from edge-on.
+constexpr double facing = -0.17;
+/// How deep a node may be behind such a facet, in sizes of it and in thicknesses of the body behind: another node that deep
+/// is on the body's other side.
+constexpr double behind = 0.3;
 /// Cosine between the normal and an edge of the slave that goes into the master at 45 degrees.
 constexpr double deepest_edge = -0.71;
 } // namespace
@@ -33,7 +39,7 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
       start_(other.start_), now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_),
       vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), tracking_(other.tracking_),
       points_(other.points_), points_at_(other.points_at_), states_(other.states_), point_nodes_(other.point_nodes_),
-      facet_changes_(other.facet_changes_) {
+      facets_(other.facets_), facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -81,12 +87,49 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
     std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
     const ScopedTimer timer(timings, Part::search);
     search_.build(vertices_);
+    const std::optional<OwnSurface>& own = pair_->slaves().own;
+    if (own) place_facets();
     parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j)
             if (tracking_.facet[j] < 0 || !contact::is_closed(history.status[j]))
-                tracking_.facet[j] = search_.global(now_.slaves[j], vertices_).facet;
+                tracking_.facet[j] = (own ? search_.global(now_.slaves[j], vertices_, own->reach, choice(j))
+                                          : search_.global(now_.slaves[j], vertices_))
+                                         .facet;
     });
     discretisation_->begin(positions(), tracking_, threads);
+}
+
+void ContactEvaluation::place_facets() {
+    const mesh::HalfEdgeSurface& surface = pair_->surface();
+    const auto count = static_cast<std::size_t>(surface.facet_count());
+    facets_.normal.resize(count);
+    facets_.centre.resize(count);
+    for (std::size_t f = 0; f < count; ++f) {
+        const auto v = surface.facet_vertices(static_cast<Index>(f));
+        Vec3 n = Vec3::Zero(), c = vertices_[v[0]] + vertices_[v[1]];
+        for (std::size_t i = 2; i < v.size(); ++i) {
+            n += (vertices_[v[i - 1]] - vertices_[v[0]]).cross(vertices_[v[i]] - vertices_[v[0]]);
+            c += vertices_[v[i]];
+        }
+        facets_.normal[f] = n.normalized();
+        facets_.centre[f] = c / static_cast<double>(v.size());
+    }
+}
+
+bool ContactEvaluation::may_touch(Index j, Index facet) const {
+    const OwnSurface& own = *pair_->slaves().own;
+    if (std::ranges::binary_search(own.around[static_cast<std::size_t>(j)], facet)) return false;
+    const Vec3 &n = facets_.normal[static_cast<std::size_t>(facet)], &c = facets_.centre[static_cast<std::size_t>(facet)];
+    const double depth = behind * std::min(pair_->surface().facet_size(facet), pair_->thickness(facet));
+    return (start_.slaves[j] - c).dot(n) > -depth &&
+           std::ranges::any_of(pair_->surface().vertex_facets(own.vertex[static_cast<std::size_t>(j)]), [&](Index f) {
+               return facets_.normal[static_cast<std::size_t>(f)].dot(n) < facing;
+           });
+}
+
+contact::FacetSearch::Choice ContactEvaluation::choice(Index j) const {
+    if (!pair_->slaves().own) return {};
+    return [this, j](Index facet) { return may_touch(j, facet); };
 }
 
 void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, int threads,
@@ -100,7 +143,8 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
         parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
                 const Vec3& s = now_.slaves[j];
-                hits[j] = tracking_.changes[j] < latch ? search_.track(s, facet[j], vertices_, tracking_.hysteresis)
+                hits[j] = tracking_.changes[j] < latch
+                              ? search_.track(s, facet[j], vertices_, tracking_.hysteresis, choice(j))
                                                        : search_.closest_on(facet[j], s, vertices_);
                 hits[j].latched = tracking_.changes[j] >= latch;
             }

@@ -23,8 +23,18 @@ constexpr double facing = -0.17;
 constexpr double behind = 0.5;
 /// A node points at a surface if no edge that meets there goes deeper into it than this, over its length.
 constexpr double pointing = -0.5;
+/// Facets of one surface do not meet if they are nearer along it than this, in sizes of the larger one: folds between them are
+/// sharper than what the mesh resolves.
+constexpr double neighbourhood = 2.5;
+/// Behind this part of the thickness of the body a facet's front ends.
+constexpr double into_thickness = 0.3;
+/// How far a surface may move against itself, in mean facet sizes, before pairs within it are looked for anew.
+constexpr double own_sizes = 1.5;
 /// How far a surface may move, in mean facet sizes and in diagonals of its box, before pairs are looked for anew.
 constexpr double sizes = 1, diagonals = 0.15;
+
+/// Roles of facets that face others of their own surface.
+enum Role : char { none, slave, master };
 
 double area_of(const mesh::Facet& facet, const std::vector<Vec3>& X) {
     const auto shares = fe::tributary_areas(facet, X);
@@ -43,7 +53,8 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
                                const std::vector<Vec3>& X)
     : surfaces_(std::move(surfaces)), options_(std::move(options)), X_(X), surface_of_(X.size(), -1),
       node_facets_(X.size()), along_(X.size()), left_out_(surfaces_.size() * surfaces_.size(), 0) {
-    for (std::size_t s = 0; s < surfaces_.size(); ++s)
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+        first_.push_back(static_cast<Index>(facets_.size()));
         for (const mesh::Facet& facet : surfaces_[s].facets) {
             const auto number = static_cast<Index>(facets_.size());
             facets_.push_back(facet);
@@ -57,6 +68,7 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
                 along_[b].push_back(a);
             }
         }
+    }
     for (std::vector<Index>& ends : along_) {
         std::ranges::sort(ends);
         ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
@@ -64,11 +76,68 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
     for (const auto& [a, b] : options_.left_out)
         left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] =
             left_out_[static_cast<std::size_t>(b) * surfaces_.size() + static_cast<std::size_t>(a)] = 1;
+    around_.resize(X.size());
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+        if (left_out_[s * surfaces_.size() + s] != 0) continue;
+        const MasterSide& side = *surfaces_[s].side;
+        std::vector<std::vector<Index>> near = neighbourhoods(surfaces_[s]);
+        for (Index v = 0; v < side.surface().vertex_count(); ++v)
+            if (side.own_vertex(v) == v) around_[side.nodes()[v]] = std::move(near[v]);
+    }
     for (const auto& [one, other] : options_.treated_elsewhere) {
         std::vector<char>& marks = treated_.emplace_back(X.size(), 0);
         for (const Index node : one) marks[node] |= 1;
         for (const Index node : other) marks[node] |= 2;
     }
+}
+
+std::vector<std::vector<Index>> GeneralContact::neighbourhoods(const OuterSurface& surface) const {
+    const mesh::HalfEdgeSurface& mesh = surface.side->surface();
+    const std::vector<Vec3> X = surface.side->vertices(X_);
+    std::vector<std::vector<std::pair<Index, double>>> edges(X.size());
+    for (const mesh::HalfEdge& edge : mesh.half_edges()) {
+        const Index a = edge.origin, b = mesh.half_edges()[edge.next].origin;
+        const double length = (X[b] - X[a]).norm();
+        edges[a].emplace_back(b, length);
+        edges[b].emplace_back(a, length);
+    }
+    std::vector<std::vector<Index>> all(X.size());
+    std::vector<double> distance(X.size(), std::numeric_limits<double>::infinity());
+    std::vector<Index> reached;
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+        double size = 0;
+        for (const Index f : mesh.vertex_facets(v)) size = std::max(size, mesh.facet_size(f));
+        std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> waiting;
+        waiting.emplace(0, v);
+        distance[v] = 0;
+        reached.assign(1, v);
+        while (!waiting.empty()) {
+            const auto [d, at] = waiting.top();
+            waiting.pop();
+            if (d > distance[at]) continue;
+            const auto facets = mesh.vertex_facets(at);
+            all[v].insert(all[v].end(), facets.begin(), facets.end());
+            for (const auto& [next, length] : edges[at]) {
+                if (d + length > neighbourhood * size || d + length >= distance[next]) continue;
+                distance[next] = d + length;
+                reached.push_back(next);
+                waiting.emplace(d + length, next);
+            }
+        }
+        for (const Index at : reached) distance[at] = std::numeric_limits<double>::infinity();
+        std::ranges::sort(all[v]);
+        all[v].erase(std::unique(all[v].begin(), all[v].end()), all[v].end());
+    }
+    return all;
+}
+
+bool GeneralContact::are_neighbours(Index f, Index g) const {
+    const auto near = [&](Index one, Index other) {
+        const Index number = other - first_[static_cast<std::size_t>(data_[other].surface)];
+        return std::ranges::any_of(facets_[one],
+                                   [&](Index node) { return std::ranges::binary_search(around_[node], number); });
+    };
+    return near(f, g) || near(g, f);
 }
 
 std::size_t GeneralContact::surface_of_body(Index body) const {
@@ -77,7 +146,7 @@ std::size_t GeneralContact::surface_of_body(Index body) const {
 
 bool GeneralContact::meet(Index body, Index other) const {
     const std::size_t a = surface_of_body(body), b = surface_of_body(other), n = surfaces_.size();
-    return a < n && b < n && a != b && left_out_[a * n + b] == 0;
+    return a < n && b < n && left_out_[a * n + b] == 0;
 }
 
 bool GeneralContact::pass_through(Index body, Index other) const {
@@ -87,7 +156,7 @@ bool GeneralContact::pass_through(Index body, Index other) const {
 
 bool GeneralContact::may_meet(Index f, Index g) const {
     const auto a = static_cast<std::size_t>(data_[f].surface), b = static_cast<std::size_t>(data_[g].surface);
-    if (a == b || left_out_[a * surfaces_.size() + b] != 0) return false;
+    if (left_out_[a * surfaces_.size() + b] != 0 || (a == b && are_neighbours(f, g))) return false;
     return !is_treated(facets_[f], facets_[g]);
 }
 
@@ -110,7 +179,7 @@ bool GeneralContact::is_slave(Index f, Index g) const {
 }
 
 ContactScope GeneralContact::scope_at(const Field& x, double expected) const {
-    ContactScope scope{x, {}};
+    ContactScope scope{x, {}, {}};
     for (const OuterSurface& surface : surfaces_) {
         Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
         for (const mesh::Facet& facet : surface.facets)
@@ -120,16 +189,65 @@ ContactScope GeneralContact::scope_at(const Field& x, double expected) const {
             }
         const double size = surface.side->surface().mean_facet_size();
         scope.margin.push_back(std::max({sizes * size, diagonals * (high - low).norm(), 2 * expected}));
+        scope.own.push_back(std::max(own_sizes * size, 2 * expected));
     }
     return scope;
 }
 
 bool GeneralContact::covers(const ContactScope& scope, const Field& x, double ahead) const {
+    std::vector<Vec3> mean(surfaces_.size(), Vec3::Zero());
+    std::vector<double> nodes(surfaces_.size(), 0);
     for (std::size_t node = 0; node < surface_of_.size(); ++node)
-        if (surface_of_[node] >= 0 &&
-            !((x[node] - scope.x[node]).norm() + ahead <= scope.margin[static_cast<std::size_t>(surface_of_[node])]))
+        if (surface_of_[node] >= 0) {
+            mean[static_cast<std::size_t>(surface_of_[node])] += x[node] - scope.x[node];
+            ++nodes[static_cast<std::size_t>(surface_of_[node])];
+        }
+    for (std::size_t node = 0; node < surface_of_.size(); ++node) {
+        if (surface_of_[node] < 0) continue;
+        const auto s = static_cast<std::size_t>(surface_of_[node]);
+        const Vec3 moved = x[node] - scope.x[node];
+        if (!(moved.norm() + ahead <= scope.margin[s])) return false;
+        if (left_out_[s * surfaces_.size() + s] == 0 && !((moved - mean[s] / nodes[s]).norm() + ahead <= scope.own[s]))
             return false;
+    }
     return true;
+}
+
+std::vector<char> GeneralContact::roles_within(const FacetPairs& facing,
+                                               const std::vector<ContactHistory>& before) const {
+    if (facing.empty()) return {};
+    std::map<Index, std::vector<Index>> faced;
+    for (const auto& [f, g] : facing) {
+        faced[f].push_back(g);
+        faced[g].push_back(f);
+    }
+    std::vector<char> roles(facets_.size(), none);
+    const auto spread = [&](Index seed) {
+        std::vector<Index> waiting{seed};
+        while (!waiting.empty()) {
+            const Index f = waiting.back();
+            waiting.pop_back();
+            if (roles[f] != none) continue;
+            roles[f] = slave;
+            for (const Index g : faced[f])
+                if (roles[g] == none) roles[g] = master;
+            const auto s = static_cast<std::size_t>(data_[f].surface);
+            for (const Index next : surfaces_[s].side->surface().edge_neighbours(f - first_[s])) {
+                const Index number = next + first_[s];
+                if (next >= 0 && next < static_cast<Index>(surfaces_[s].facets.size()) && faced.contains(number))
+                    waiting.push_back(number);
+            }
+        }
+    };
+    for (const ContactHistory& history : before) {
+        const auto [slaves, masters] = sides_of(*history.pair);
+        if (slaves != masters) continue;
+        for (const mesh::Facet& facet : history.pair->slaves().facets)
+            for (const Index f : node_facets_[facet.nodes[0]])
+                if (facets_[f].nodes == facet.nodes && faced.contains(f)) spread(f);
+    }
+    for (const auto& [f, others] : faced) spread(f);
+    return roles;
 }
 
 std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
@@ -137,13 +255,29 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
     const std::vector<Vec3>& x = scope.x;
     std::vector<double> margin;
     for (const Facet& facet : data_) margin.push_back(scope.margin[static_cast<std::size_t>(facet.surface)]);
-    const auto near = contact::near_facets(facets_, margin, x, [this](Index f, Index g) { return may_meet(f, g); });
-
     std::vector<Vec3> normal, centre;
+    std::vector<double> radius; // of a sphere about the centre
     for (const mesh::Facet& facet : facets_) {
         normal.push_back(mesh::facet_area_vector(facet, x).normalized());
         centre.push_back(centre_of(facet, x));
+        double farthest = 0;
+        for (const Index node : facet) farthest = std::max(farthest, (x[node] - centre.back()).norm());
+        radius.push_back(farthest);
     }
+    const auto in_front_of = [&](Index f, Index g, double depth) {
+        return std::ranges::any_of(facets_[f], [&](Index node) { return normal[g].dot(x[node] - centre[g]) > -depth; });
+    };
+    const auto within = [&](Index f, Index g) { // facets of one surface, which may have the body between them
+        const auto s = static_cast<std::size_t>(data_[f].surface);
+        if ((centre[f] - centre[g]).norm() > 2 * scope.own[s] + radius[f] + radius[g]) return false;
+        const auto depth = [&](Index facet) {
+            return into_thickness * std::min(data_[facet].size, surfaces_[s].side->thickness(facet - first_[s]));
+        };
+        return in_front_of(f, g, depth(g)) && in_front_of(g, f, depth(f));
+    };
+    const auto near = contact::near_facets(facets_, margin, x, [&](Index f, Index g) {
+        return (data_[f].surface != data_[g].surface || within(f, g)) && may_meet(f, g);
+    });
     // the nearest facet of every other surface that a facet faces
     std::map<std::pair<Index, Index>, std::pair<double, Index>> nearest; // (facet, other surface)
     std::map<std::pair<Index, Index>, Found> found;                      // (slave, master) surfaces
@@ -154,8 +288,18 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
     };
     // faces that look away from each other are back to back
     const auto in_front = [&](Index f, Index g) {
-        const double depth = behind * std::min(data_[f].size, data_[g].size);
-        return std::ranges::any_of(facets_[f], [&](Index node) { return normal[g].dot(x[node] - centre[g]) > -depth; });
+        return in_front_of(f, g, behind * std::min(data_[f].size, data_[g].size));
+    };
+    FacetPairs own;
+    for (const auto& [f, g] : near)
+        if (data_[f].surface == data_[g].surface && normal[f].dot(normal[g]) < facing) own.emplace_back(f, g);
+    const std::vector<char> roles = roles_within(own, before);
+    const auto leads = [&](Index f, Index g) { // whether f is the slave
+        if (data_[f].surface != data_[g].surface) return is_slave(f, g);
+        const auto rank = [&](Index facet) {
+            return roles.empty() ? 0 : roles[facet] == slave ? 0 : roles[facet] == master ? 2 : 1;
+        };
+        return rank(f) != rank(g) ? rank(f) < rank(g) : f < g;
     };
     const auto points_at = [&](Index node, Index g) {
         const Vec3& n = normal[g];
@@ -174,14 +318,14 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
             consider(g, f);
         } else { // corners and edges whose facets look past the other
             for (const auto& [one, other] : {std::pair{f, g}, std::pair{g, f}})
-                if (is_slave(one, other))
+                if (leads(one, other))
                     for (const Index node : facets_[one])
                         if (points_at(node, other))
                             found[{data_[one].surface, data_[other].surface}].nodes.push_back(node);
         }
     }
     for (const auto& [who, what] : nearest)
-        if (is_slave(who.first, what.second)) found[{data_[who.first].surface, who.second}].facets.push_back(who.first);
+        if (leads(who.first, what.second)) found[{data_[who.first].surface, who.second}].facets.push_back(who.first);
     for (const ContactHistory& history : before)
         for (std::size_t j = 0; j < history.status.size(); ++j)
             if (contact::is_closed(history.status[j]))
@@ -250,6 +394,17 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(Index slave, Index 
             slaves.in_plane.push_back(plane != own.in_plane.end() ? plane->second : Mat3(Mat3::Identity()));
         }
     slaves.facets = std::move(facets);
+    if (slave == master) {
+        OwnSurface& within = slaves.own.emplace();
+        for (const Index node : nodes) {
+            const mesh::HalfEdgeSurface& surface = own.side->surface();
+            Index vertex = 0;
+            while (own.side->nodes()[vertex] != node || own.side->own_vertex(vertex) != vertex) ++vertex;
+            within.vertex.push_back(vertex);
+            within.around.push_back(around_[node]);
+        }
+        within.reach = reach;
+    }
     ContactOptions options = options_.pair;
     options.friction = options_.friction(slave, master);
     return std::make_shared<const ContactPair>("general: " + own.name + " on " + other.name, X_, std::move(slaves),

@@ -1,4 +1,5 @@
 #include "osculate/output/history.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include "osculate/output/contact_resultants.hpp"
 

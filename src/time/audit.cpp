@@ -1,4 +1,5 @@
 #include "osculate/time/audit.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include "time/number.hpp"
 

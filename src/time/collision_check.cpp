@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osculate::time {
 
@@ -40,6 +41,8 @@ void CollisionCheck::begin_step(const model::State& state) {
             Start& start = list[j];
             start.closed = contact::is_closed(state.contact[p].status[j]);
             start.facet = hit.facet;
+            start.distance = hit.distance; // none: farther than anything may move
+            if (hit.facet < 0) continue;
             start.distance = hit.distance - pair.options().hysteresis * pair.surface().facet_size(hit.facet);
             start.found = point.found;
             if (!point.found) continue;
@@ -136,9 +139,13 @@ void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, con
     const ScopedTimer timer(timings_, Part::search);
     const model::ContactPair& pair = contact_[p].pair();
     const contact::MovingFacets facets(corners(pair.surface()), pair.vertices(x_), pair.vertices(x));
-    const auto tolerated = [&](Index facet) { return allowed(p, facet); };
+    const std::optional<model::OwnSurface>& own = pair.slaves().own;
     for (const Index j : slaves) {
         ++followed_;
+        const auto tolerated = [&](Index facet) { // a node of the surface does not leave its own neighbourhood
+            const bool near = own && std::ranges::binary_search(own->around[static_cast<std::size_t>(j)], facet);
+            return near ? std::numeric_limits<double>::infinity() : allowed(p, facet);
+        };
         const Index node = pair.slaves().node[j];
         const auto passage = facets.first_passage(x_[node], x[node], tolerated);
         if (!passage) continue;

@@ -1,4 +1,5 @@
 #include "time/stage_run.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"

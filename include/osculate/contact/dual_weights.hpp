@@ -143,7 +143,7 @@ private:
 
     const mesh::HalfEdgeSurface& surface_;
     double least_cover_;
-    bool has_features_;
+    bool turns_round_;
     std::vector<Vec3> master_normal_; ///< (master facets) at the last begin(); empty without features
     std::vector<Facet> facets_;
     std::vector<std::vector<Incidence>> incident_; ///< (slaves)

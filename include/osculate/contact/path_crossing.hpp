@@ -4,6 +4,7 @@
 #include "osculate/core/types.hpp"
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,7 +47,7 @@ public:
     /// entered. Shallower passages are ignored: a slave above a smooth surface dips into the facets that span its
     /// hollows.
     /// @param allowed  m, by facet; less than the thickness of the body there, or a path right through it is ignored,
-    ///                 too
+    ///                 too. Facets that allow everything do not count
     template <class Allowed>
     [[nodiscard]] std::optional<Passage> first_passage(const Vec3& s0, const Vec3& s1, const Allowed& allowed) const;
 
@@ -65,6 +66,7 @@ template <class Allowed>
 std::optional<Passage> MovingFacets::first_passage(const Vec3& s0, const Vec3& s1, const Allowed& allowed) const {
     std::optional<Crossing> entry;
     for (const Crossing& crossing : crossings(s0, s1)) {
+        if (!std::isfinite(allowed(crossing.facet))) continue;
         if (!entry) {
             if (crossing.inward) entry = crossing;
         } else if (!crossing.inward) {

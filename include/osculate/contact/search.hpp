@@ -4,6 +4,7 @@
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct FacetHit {
 /// Search over the facets of one surface; positions are those of the surface's vertices, in local numbering.
 class FacetSearch {
 public:
+    /// Which facets count; empty: all.
+    using Choice = std::function<bool(Index facet)>;
+
     explicit FacetSearch(const mesh::HalfEdgeSurface& surface);
     /// The same, with a rule for points equally close to several facets, as on mesh lines: it chooses the facet whose
     /// centre is nearest to `about`, then the first one in clockwise order about the surface normal. Unlike facet
@@ -46,11 +50,14 @@ public:
     /// Closest facet of all, the lowest number among equal ones unless there is a rule; call build() with these
     /// positions first. O(log n)
     [[nodiscard]] FacetHit global(const Vec3& s, const std::vector<Vec3>& x) const;
+    /// The closest of the facets that count, at most `reach` away, m; no facet if there is none.
+    [[nodiscard]] FacetHit global(const Vec3& s, const std::vector<Vec3>& x, double reach, const Choice& counts) const;
 
     /// Tracks the point from facet `from` over facets that share a vertex. It keeps the old facet until the point has
     /// left it by `hysteresis` times its size, or another facet is closer by that distance: otherwise points on an edge
-    /// would alternate.
-    [[nodiscard]] FacetHit track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis) const;
+    /// would alternate. From no facet (-1) it finds none.
+    [[nodiscard]] FacetHit track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis,
+                                 const Choice& counts = {}) const;
 
 private:
     struct Tree;

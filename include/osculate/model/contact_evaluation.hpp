@@ -114,6 +114,13 @@ private:
     void place(const std::vector<Vec3>& x, const std::vector<Vec3>& tails);
     /// See SlaveNodes::along.
     void drop_what_is_not_pointed_at(const std::vector<Vec3>& x);
+    /// Computes facets_ from the positions of the moment.
+    void place_facets();
+    /// Whether slave j, of the surface itself, may touch a facet in this attempt: no neighbour, and it was in front of it and
+    /// faced it at the start.
+    [[nodiscard]] bool may_touch(Index j, Index facet) const;
+    /// Facets to look for slave j on.
+    [[nodiscard]] contact::FacetSearch::Choice choice(Index j) const;
     /// state() of slave j without the force.
     [[nodiscard]] contact::ContactState measure(Index j, const contact::PairPositions& at) const;
     [[nodiscard]] const Mat3& image(Index j, Index i) const { return pair_->image(points_[j].nodes[i]); }
@@ -131,6 +138,9 @@ private:
     Places start_, now_;                        ///< positions, m
     Places tails_start_, tails_;                ///< their rounding errors, m; empty: none
     std::vector<Vec3> vertices_, vertex_tails_; ///< current, of the master surface
+    struct {
+        std::vector<Vec3> normal, centre;
+    } facets_; ///< of the master surface at the start of the attempt; empty: not needed, see SlaveNodes::own
     contact::FacetTracking tracking_;
     std::vector<contact::ContactPoint> points_;
     std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along

@@ -8,6 +8,7 @@
 #include "osculate/model/master_side.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,14 @@ struct ContactHistory {
     std::shared_ptr<const contact::MasterSurface> master; ///< with all patches refitted so far; never null
 };
 
+/// What a surface needs to touch itself: parts of it that face each other and are not neighbours.
+struct OwnSurface {
+    std::vector<Index> vertex; ///< (slaves) of the surface, that the node is
+    /// (slaves) facets of the surface that are near the node along the surface, ascending: it does not touch them.
+    std::vector<std::vector<Index>> around;
+    double reach = 0; ///< how far facets are looked for, m
+};
+
 /// Slave nodes of a pair and the data of each node.
 struct SlaveNodes {
     std::vector<Index> node;         ///< global
@@ -38,6 +47,7 @@ struct SlaveNodes {
     /// Nodes at the other ends of the edges that meet in each node, global: a node touches only what it points at, what no
     /// such edge goes into at more than 45 degrees. Empty: it touches whatever it is above.
     std::vector<std::vector<Index>> along{};
+    std::optional<OwnSurface> own{}; ///< where slave and master are one surface
 };
 
 struct ContactOptions {

@@ -17,6 +17,8 @@ namespace osculate::model {
 struct ContactScope {
     Field x;                    ///< (nodes) positions, m
     std::vector<double> margin; ///< (surfaces) how far nodes of each may move before others could meet, m
+    std::vector<double>
+        own; ///< (surfaces) how far they may move against their mean before the surface could meet itself
 };
 
 /// The outer surface of a body, as far as it takes part.
@@ -43,6 +45,9 @@ struct GeneralContactOptions {
 /// other, chooses a slave for every two of them, and makes a pair of every two surfaces: slave nodes of one against the
 /// surface of the other. A surface has the role of the slave where its facets are softer or finer than the nearest of the
 /// other; of two that are alike, the one of the first body has it. So no two facets are treated twice.
+///
+/// A surface may meet itself where two facets face each other that are not near along the surface. There the side that holds
+/// the lowest number is the slave, or what was the slave before.
 class GeneralContact {
 public:
     GeneralContact(std::vector<OuterSurface> surfaces, GeneralContactOptions options, const std::vector<Vec3>& X);
@@ -80,6 +85,15 @@ private:
         std::vector<Index> facets; ///< numbers over all surfaces
         std::vector<Index> nodes;
     };
+    using FacetPairs = std::vector<std::pair<Index, Index>>;
+    /// For every vertex of a surface its facets that are near along the surface, ascending.
+    [[nodiscard]] std::vector<std::vector<Index>> neighbourhoods(const OuterSurface& surface) const;
+    /// Whether facets of one surface are near each other along it.
+    [[nodiscard]] bool are_neighbours(Index f, Index g) const;
+    /// Marks facets that face others of their own surface as slaves (1) or masters (2): connected parts have one role.
+    /// @param facing  pairs of facets of one surface  @param before  as in near()
+    [[nodiscard]] std::vector<char> roles_within(const FacetPairs& facing,
+                                                 const std::vector<ContactHistory>& before) const;
     /// Number of the surface of a body, that of the surfaces if it has none.
     [[nodiscard]] std::size_t surface_of_body(Index body) const;
     [[nodiscard]] bool may_meet(Index f, Index g) const;
@@ -97,6 +111,9 @@ private:
     std::vector<std::vector<Index>> node_facets_,
         along_;                  ///< (nodes) facets that meet there; nodes at other ends of edges
     std::vector<char> left_out_; ///< (surfaces x surfaces)
+    std::vector<Index> first_;   ///< (surfaces) number of the first facet
+    /// (nodes) facets of the own surface that are near along it, numbers within the surface, ascending
+    std::vector<std::vector<Index>> around_;
     std::vector<std::vector<char>>
         treated_; ///< (pairs treated elsewhere) nodes: 1 of one side, 2 of the other, 3 of both
 };

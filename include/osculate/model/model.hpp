@@ -5,7 +5,6 @@
 #include "osculate/linear/block_matrix.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/model/contact_pair.hpp"
-#include "osculate/model/general_contact.hpp"
 #include "osculate/model/nonlinear_elements.hpp"
 
 #include <memory>
@@ -13,6 +12,9 @@
 #include <vector>
 
 namespace osculate::model {
+
+class GeneralContact;
+struct ContactScope;
 
 struct Body {
     std::string name;
@@ -38,7 +40,7 @@ struct Model {
     Field X;                    ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
-    std::unique_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
+    std::shared_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
     linear::BlockMatrix K;                         ///< constant stiffness of the linear elements, in the pattern of all
     std::unique_ptr<NonlinearElements> nonlinear;  ///< the other elements; null if there are none
     linear::BlockMatrix consistent_mass,

@@ -1,4 +1,5 @@
 #include "app/plan/contact_pairs.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include "app/overloaded.hpp"
 #include "osculate/contact/mirror.hpp"

@@ -1,6 +1,7 @@
 /// Matrices of a plan, and weight, which acts on masses.
 
 #include "app/plan/draft.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include <iterator>
 #include <limits>

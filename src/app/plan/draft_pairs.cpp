@@ -1,6 +1,7 @@
 /// Contact pairs of a plan.
 
 #include "app/fault.hpp"
+#include "osculate/model/general_contact.hpp"
 #include "app/plan/contact_pairs.hpp"
 #include "app/plan/draft.hpp"
 #include "app/plan/gaps.hpp"

@@ -1,6 +1,7 @@
 /// Parts of a plan: what bodies do by themselves.
 
 #include "app/plan/plan_items.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

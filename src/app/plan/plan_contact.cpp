@@ -1,6 +1,7 @@
 /// Parts of a plan: contact.
 
 #include "app/plan/flat_master.hpp"
+#include "osculate/model/general_contact.hpp"
 #include "app/plan/plan_items.hpp"
 #include "osculate/time/collision_check.hpp"
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <queue>
 
 namespace osculate::model {
 
@@ -32,9 +33,6 @@ constexpr double into_thickness = 0.3;
 constexpr double own_sizes = 1.5;
 /// How far a surface may move, in mean facet sizes and in diagonals of its box, before pairs are looked for anew.
 constexpr double sizes = 1, diagonals = 0.15;
-
-/// Roles of facets that face others of their own surface.
-enum Role : char { none, slave, master };
 
 double area_of(const mesh::Facet& facet, const std::vector<Vec3>& X) {
     const auto shares = fe::tributary_areas(facet, X);
@@ -77,12 +75,16 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
         left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] =
             left_out_[static_cast<std::size_t>(b) * surfaces_.size() + static_cast<std::size_t>(a)] = 1;
     around_.resize(X.size());
+    vertex_.assign(X.size(), -1);
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         if (left_out_[s * surfaces_.size() + s] != 0) continue;
         const MasterSide& side = *surfaces_[s].side;
         std::vector<std::vector<Index>> near = neighbourhoods(surfaces_[s]);
         for (Index v = 0; v < side.surface().vertex_count(); ++v)
-            if (side.own_vertex(v) == v) around_[side.nodes()[v]] = std::move(near[v]);
+            if (side.own_vertex(v) == v) {
+                around_[side.nodes()[v]] = std::move(near[v]);
+                vertex_[side.nodes()[v]] = v;
+            }
     }
     for (const auto& [one, other] : options_.treated_elsewhere) {
         std::vector<char>& marks = treated_.emplace_back(X.size(), 0);
@@ -213,24 +215,24 @@ bool GeneralContact::covers(const ContactScope& scope, const Field& x, double ah
     return true;
 }
 
-std::vector<char> GeneralContact::roles_within(const FacetPairs& facing,
-                                               const std::vector<ContactHistory>& before) const {
+std::vector<GeneralContact::Role> GeneralContact::roles_within(const FacetPairs& facing,
+                                                               const std::vector<ContactHistory>& before) const {
     if (facing.empty()) return {};
     std::map<Index, std::vector<Index>> faced;
     for (const auto& [f, g] : facing) {
         faced[f].push_back(g);
         faced[g].push_back(f);
     }
-    std::vector<char> roles(facets_.size(), none);
+    std::vector<Role> roles(facets_.size(), Role::none);
     const auto spread = [&](Index seed) {
         std::vector<Index> waiting{seed};
         while (!waiting.empty()) {
             const Index f = waiting.back();
             waiting.pop_back();
-            if (roles[f] != none) continue;
-            roles[f] = slave;
+            if (roles[f] != Role::none) continue;
+            roles[f] = Role::slave;
             for (const Index g : faced[f])
-                if (roles[g] == none) roles[g] = master;
+                if (roles[g] == Role::none) roles[g] = Role::master;
             const auto s = static_cast<std::size_t>(data_[f].surface);
             for (const Index next : surfaces_[s].side->surface().edge_neighbours(f - first_[s])) {
                 const Index number = next + first_[s];
@@ -293,13 +295,10 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
     FacetPairs own;
     for (const auto& [f, g] : near)
         if (data_[f].surface == data_[g].surface && normal[f].dot(normal[g]) < facing) own.emplace_back(f, g);
-    const std::vector<char> roles = roles_within(own, before);
+    const std::vector<Role> roles = roles_within(own, before);
     const auto leads = [&](Index f, Index g) { // whether f is the slave
         if (data_[f].surface != data_[g].surface) return is_slave(f, g);
-        const auto rank = [&](Index facet) {
-            return roles.empty() ? 0 : roles[facet] == slave ? 0 : roles[facet] == master ? 2 : 1;
-        };
-        return rank(f) != rank(g) ? rank(f) < rank(g) : f < g;
+        return roles.empty() || roles[f] == roles[g] ? f < g : roles[f] < roles[g];
     };
     const auto points_at = [&](Index node, Index g) {
         const Vec3& n = normal[g];
@@ -343,7 +342,7 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
         const auto old = std::ranges::find_if(
             before, [&](const ContactHistory& history) { return sides_of(*history.pair) == sides; });
         ContactHistory& history =
-            histories.emplace_back(opened(make_pair(sides.first, sides.second, part.nodes, std::move(facets))));
+            histories.emplace_back(opened(make_pair(scope, sides.first, sides.second, part.nodes, std::move(facets))));
         if (old == before.end()) continue;
         history.master = old->master;
         const std::vector<Index>& known = old->pair->slaves().node;
@@ -359,7 +358,8 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
     return histories;
 }
 
-std::shared_ptr<const ContactPair> GeneralContact::make_pair(Index slave, Index master, const std::vector<Index>& nodes,
+std::shared_ptr<const ContactPair> GeneralContact::make_pair(const ContactScope& scope, Index slave, Index master,
+                                                             const std::vector<Index>& nodes,
                                                              std::vector<mesh::Facet> facets) const {
     const OuterSurface &own = surfaces_[static_cast<std::size_t>(slave)],
                        &other = surfaces_[static_cast<std::size_t>(master)];
@@ -397,18 +397,16 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(Index slave, Index 
     if (slave == master) {
         OwnSurface& within = slaves.own.emplace();
         for (const Index node : nodes) {
-            const mesh::HalfEdgeSurface& surface = own.side->surface();
-            Index vertex = 0;
-            while (own.side->nodes()[vertex] != node || own.side->own_vertex(vertex) != vertex) ++vertex;
-            within.vertex.push_back(vertex);
+            within.vertex.push_back(vertex_[node]);
             within.around.push_back(around_[node]);
         }
-        within.reach = reach;
+        within.reach = 2 * scope.own[static_cast<std::size_t>(slave)];
     }
     ContactOptions options = options_.pair;
     options.friction = options_.friction(slave, master);
-    return std::make_shared<const ContactPair>("general: " + own.name + " on " + other.name, X_, std::move(slaves),
-                                               other.side, options);
+    return std::make_shared<const ContactPair>("general: " + own.name + " on " +
+                                                   (slave == master ? "itself" : other.name),
+                                               X_, std::move(slaves), other.side, options);
 }
 
 std::pair<Index, Index> GeneralContact::sides_of(const ContactPair& pair) const {

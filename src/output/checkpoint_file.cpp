@@ -270,6 +270,7 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
     visit("found", run.found);
     visit("scope_x", run.scope_x);
     visit("scope_margin", run.scope_margin);
+    visit("scope_own", run.scope_own);
 }
 
 struct Writer {

@@ -109,7 +109,8 @@ std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std:
             return what;
     }
     if (model.general && (checkpoint.scope_x.size() != nodes || !finite(checkpoint.scope_x) ||
-                          checkpoint.scope_margin.size() != model.general->surfaces().size()))
+                          checkpoint.scope_margin.size() != model.general->surfaces().size() ||
+                          checkpoint.scope_own.size() != model.general->surfaces().size()))
         return "scope of general contact";
     for (const auto& patches : checkpoint.patches)
         for (const contact::RefittedPatch& patch : patches)
@@ -132,6 +133,9 @@ std::vector<FoundPair> found_pairs(const model::State& state, const model::Model
 
 void restore_pairs(Checkpoint& checkpoint, const model::Model& model) {
     model::State& state = checkpoint.state;
+    if (model.general)
+        state.scope = std::make_shared<const model::ContactScope>(
+            model::ContactScope{checkpoint.scope_x, checkpoint.scope_margin, checkpoint.scope_own});
     for (std::size_t p = 0; p < model.pairs.size(); ++p) state.contact[p].pair = model.pairs[p];
     for (std::size_t k = 0; k < checkpoint.found.size(); ++k) {
         const FoundPair& one = checkpoint.found[k];
@@ -141,11 +145,8 @@ void restore_pairs(Checkpoint& checkpoint, const model::Model& model) {
             facets[f].count = facets[f].nodes[3] < 0 ? 3 : 4;
         }
         state.contact[model.pairs.size() + k].pair =
-            model.general->make_pair(one.slave, one.master, one.nodes, std::move(facets));
+            model.general->make_pair(*state.scope, one.slave, one.master, one.nodes, std::move(facets));
     }
-    if (model.general)
-        state.scope = std::make_shared<const model::ContactScope>(
-            model::ContactScope{checkpoint.scope_x, checkpoint.scope_margin});
 }
 
 } // namespace osculate::time

@@ -299,6 +299,7 @@ Checkpoint StageRun::checkpoint() const {
     if (progress_.state.scope) {
         now.scope_x = progress_.state.scope->x;
         now.scope_margin = progress_.state.scope->margin;
+        now.scope_own = progress_.state.scope->own;
     }
     for (const model::ContactHistory& history : progress_.state.contact)
         now.patches.push_back(history.master->refitted_patches());

@@ -17,8 +17,7 @@ namespace osculate::model {
 struct ContactScope {
     Field x;                    ///< (nodes) positions, m
     std::vector<double> margin; ///< (surfaces) how far nodes of each may move before others could meet, m
-    std::vector<double>
-        own; ///< (surfaces) how far they may move against their mean before the surface could meet itself
+    std::vector<double> own; ///< (surfaces) how far they may move against their mean before the surface meets itself, m
 };
 
 /// The outer surface of a body, as far as it takes part.
@@ -69,9 +68,11 @@ public:
     [[nodiscard]] bool pass_through(Index body, Index other) const;
     /// Nodes that are slaves in some pair, as far as sizes and stiffness tell, ascending.
     [[nodiscard]] std::vector<Index> possible_slaves() const;
-    /// A pair of two surfaces. @param nodes, facets  of the slave; the nodes of the facets and perhaps others, ascending
-    [[nodiscard]] std::shared_ptr<const ContactPair>
-    make_pair(Index slave, Index master, const std::vector<Index>& nodes, std::vector<mesh::Facet> facets) const;
+    /// A pair of two surfaces, or of one and itself.
+    /// @param nodes, facets  of the slave; the nodes of the facets and perhaps others, ascending
+    [[nodiscard]] std::shared_ptr<const ContactPair> make_pair(const ContactScope& scope, Index slave, Index master,
+                                                               const std::vector<Index>& nodes,
+                                                               std::vector<mesh::Facet> facets) const;
     /// Surfaces of a pair that near() or make_pair() has made: slave and master.
     [[nodiscard]] std::pair<Index, Index> sides_of(const ContactPair& pair) const;
 
@@ -90,9 +91,10 @@ private:
     [[nodiscard]] std::vector<std::vector<Index>> neighbourhoods(const OuterSurface& surface) const;
     /// Whether facets of one surface are near each other along it.
     [[nodiscard]] bool are_neighbours(Index f, Index g) const;
-    /// Marks facets that face others of their own surface as slaves (1) or masters (2): connected parts have one role.
+    /// Roles of all facets against others of their own surface; empty if none has one. Connected parts have one role.
     /// @param facing  pairs of facets of one surface  @param before  as in near()
-    [[nodiscard]] std::vector<char> roles_within(const FacetPairs& facing,
+    enum class Role : char { slave, none, master };
+    [[nodiscard]] std::vector<Role> roles_within(const FacetPairs& facing,
                                                  const std::vector<ContactHistory>& before) const;
     /// Number of the surface of a body, that of the surfaces if it has none.
     [[nodiscard]] std::size_t surface_of_body(Index body) const;
@@ -114,6 +116,7 @@ private:
     std::vector<Index> first_;   ///< (surfaces) number of the first facet
     /// (nodes) facets of the own surface that are near along it, numbers within the surface, ascending
     std::vector<std::vector<Index>> around_;
+    std::vector<Index> vertex_; ///< (nodes) vertex of their surface that they are
     std::vector<std::vector<char>>
         treated_; ///< (pairs treated elsewhere) nodes: 1 of one side, 2 of the other, 3 of both
 };

@@ -21,7 +21,7 @@ struct FoundPair {
 struct Checkpoint : Progress {
     std::vector<FoundPair> found; ///< the last pairs of the state, which come behind those of the model
     Field scope_x;                ///< ContactScope of the state; empty: none
-    std::vector<double> scope_margin;
+    std::vector<double> scope_margin, scope_own;
     equilibrium::EquilibriumMemory memory;
     std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs) of the state's masters
 };

@@ -1,11 +1,11 @@
 #include "app/plan/contact_pairs.hpp"
-#include "osculate/model/general_contact.hpp"
 
 #include "app/overloaded.hpp"
 #include "osculate/contact/mirror.hpp"
 #include "osculate/contact/mortar.hpp"
 #include "osculate/contact/path_crossing.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -274,7 +274,7 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
 
 std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::Scene& scene, const model::Model& model,
                                                                   const std::vector<std::vector<mesh::Facet>>& exterior,
-                                                                  bool paths, bool dynamic) {
+                                                                  bool dynamic) {
     const scene::GeneralContact& spec = *scene.general;
     std::vector<model::OuterSurface> surfaces;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -302,8 +302,7 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
             master.surface = scene::FacetsSurface{};
         one.smooth = std::holds_alternative<scene::BlendSurface>(master.surface);
         model::ContactOptions options;
-        one.side =
-            make_side(scene, master, spec.discretisation.value(), model, all, paths ? &exterior[b] : nullptr, options);
+        one.side = make_side(scene, master, spec.discretisation.value(), model, all, &exterior[b], options);
         const std::vector<Mat3> planes = in_symmetry_planes(scene, model, all, all.nodes);
         for (std::size_t i = 0; i < planes.size(); ++i)
             if (planes[i] != Mat3::Identity()) one.in_plane.emplace(all.nodes[i], planes[i]);

@@ -20,10 +20,9 @@ make_contact_pair(const scene::Scene& scene, const std::string& name, const scen
 
 /// The general contact of a scene, which has one: the outer surfaces of all bodies, except in symmetry planes.
 /// @param exterior  (bodies) own node numbers
-/// @param paths     whether paths are to be followed
 /// @param dynamic   whether a stage is dynamic
 [[nodiscard]] std::unique_ptr<const model::GeneralContact>
 make_general_contact(const scene::Scene& scene, const model::Model& model,
-                     const std::vector<std::vector<mesh::Facet>>& exterior, bool paths, bool dynamic);
+                     const std::vector<std::vector<mesh::Facet>>& exterior, bool dynamic);
 
 } // namespace osculate::app

@@ -1,10 +1,10 @@
 /// Contact pairs of a plan.
 
 #include "app/fault.hpp"
-#include "osculate/model/general_contact.hpp"
 #include "app/plan/contact_pairs.hpp"
 #include "app/plan/draft.hpp"
 #include "app/plan/gaps.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include <fmt/format.h>
 #include <stdexcept>
@@ -71,7 +71,6 @@ void add_pairs(Draft& draft) {
 
 void add_general_contact(Draft& draft) {
     if (!draft.plan.general) return;
-    const bool paths = std::ranges::any_of(draft.plan.stages, &time::Stage::follow_paths);
     const bool dynamic =
         std::ranges::any_of(draft.plan.stages, [](const time::Stage& s) { return s.dynamics.has_value(); });
     const ScopedTimer timer(draft.timings, Part::patches);
@@ -82,7 +81,7 @@ void add_general_contact(Draft& draft) {
                                          "body '" + body.name + "' with quadratic elements, which carry no contact"));
     if (!draft.faults.empty()) return;
     try {
-        draft.plan.model.general = make_general_contact(draft.scene, draft.plan.model, draft.exterior, paths, dynamic);
+        draft.plan.model.general = make_general_contact(draft.scene, draft.plan.model, draft.exterior, dynamic);
     } catch (const std::runtime_error& error) {
         draft.faults.push_back(
             fault("contact.general", "bodies whose outer surfaces are oriented manifolds", error.what()));

@@ -1,8 +1,8 @@
 #include "osculate/app/estimate.hpp"
-#include "osculate/model/general_contact.hpp"
 
 #include "app/plan/plan_items.hpp"
 #include "osculate/equilibrium/tangent_choice.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 /// Parts of a plan: contact.
 
 #include "app/plan/flat_master.hpp"
-#include "osculate/model/general_contact.hpp"
 #include "app/plan/plan_items.hpp"
+#include "osculate/model/general_contact.hpp"
 #include "osculate/time/collision_check.hpp"
 
 #include <algorithm>

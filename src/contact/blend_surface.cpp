@@ -189,7 +189,7 @@ private:
     /// Facets of the other sides when s lies beyond a crease, so that its closest point is on one.
     [[nodiscard]] std::vector<Index> across_crease(const FacetHit& hit) const {
         std::vector<Index> result;
-        if (hit.latched || hit.overhang == 0 || creases_[hit.facet].empty()) return result;
+        if (hit.latched || hit.limited || hit.overhang == 0 || creases_[hit.facet].empty()) return result;
         const int n = static_cast<int>(surface_.facet_vertices(hit.facet).size());
         const auto on_edge = [&](int c) {
             const Vec2& u = hit.u;

@@ -34,17 +34,25 @@ Vec2 on_edge(int corners, int b, double t) {
     return (1 - t) * corner[b] + t * corner[(b + 1) % corners];
 }
 
+/// Whether the facets that count end at an edge.
+bool ends_at(const mesh::HalfEdgeSurface& surface, Index half_edge, const FacetSearch::Choice& counts) {
+    if (surface.is_boundary_edge(half_edge)) return true;
+    return counts && !counts(surface.half_edges()[surface.half_edges()[half_edge].twin].facet);
+}
+
 /// How far s lies past the boundary edges that meet in a vertex, the farthest of them. A point over the fold between two
 /// facets that end there lies beyond the edges of both, but not past the end of the surface.
-double past_boundary(const mesh::HalfEdgeSurface& surface, Index vertex, const Vec3& s, const std::vector<Vec3>& x) {
+double past_boundary(const mesh::HalfEdgeSurface& surface, Index vertex, const Vec3& s, const std::vector<Vec3>& x,
+                     const FacetSearch::Choice& counts) {
     double farthest = -std::numeric_limits<double>::max();
     for (const Index facet : surface.vertex_facets(vertex)) {
+        if (counts && !counts(facet)) continue;
         const auto v = surface.facet_vertices(facet);
         const std::size_t n = v.size();
         for (std::size_t c = 0; c < n; ++c) {
             const Vec3 &a = x[v[c]], &b = x[v[(c + 1) % n]], &before = x[v[(c + n - 1) % n]];
             if ((v[c] != vertex && v[(c + 1) % n] != vertex) ||
-                !surface.is_boundary_edge(surface.first_half_edge(facet) + static_cast<Index>(c)))
+                !ends_at(surface, surface.first_half_edge(facet) + static_cast<Index>(c), counts))
                 continue;
             const Vec3 along = b - a, normal = along.cross(before - a);
             farthest = std::max(farthest, along.cross(normal).normalized().dot(s - x[vertex]));
@@ -118,7 +126,7 @@ FacetSearch::FacetSearch(const FacetSearch& other)
 FacetSearch::FacetSearch(FacetSearch&&) noexcept = default;
 FacetSearch& FacetSearch::operator=(FacetSearch&&) noexcept = default;
 
-FacetHit FacetSearch::closest_on(Index facet, const Vec3& s, const std::vector<Vec3>& x) const {
+FacetHit FacetSearch::closest_on(Index facet, const Vec3& s, const std::vector<Vec3>& x, const Choice& counts) const {
     const auto vertices = surface_->facet_vertices(facet);
     const int corners = static_cast<int>(vertices.size());
     Eigen::Matrix<double, 4, 3> storage;
@@ -151,14 +159,19 @@ FacetHit FacetSearch::closest_on(Index facet, const Vec3& s, const std::vector<V
     const PatchPoint p = patch.point(hit.u, corner);
     const Vec3 d = s - p.X, n = p.normal();
     hit.overhang = (d - n * n.dot(d)).norm();
-    const auto on_boundary = [&](int b) { return surface_->is_boundary_vertex(vertices[b % corners]); };
+    const auto on_boundary = [&](int b) {
+        const Index v = vertices[b % corners];
+        return surface_->is_boundary_vertex(v) || (counts && !std::ranges::all_of(surface_->vertex_facets(v), counts));
+    };
     hit.boundary = fraction == 0   ? on_boundary(edge)
                    : fraction == 1 ? on_boundary(edge + 1)
-                                   : surface_->is_boundary_edge(surface_->first_half_edge(facet) + edge);
+                                   : ends_at(*surface_, surface_->first_half_edge(facet) + edge, counts);
+    hit.limited = counts && hit.boundary;
     if (hit.boundary && fraction > 0 && fraction < 1)
         hit.beyond = hit.overhang;
     else if (hit.boundary)
-        hit.beyond = std::max(0.0, past_boundary(*surface_, vertices[(edge + (fraction == 1)) % corners], s, x));
+        hit.beyond =
+            std::max(0.0, past_boundary(*surface_, vertices[(edge + (fraction == 1)) % corners], s, x, counts));
     return hit;
 }
 
@@ -198,7 +211,7 @@ FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x, double f
             const double away = bg::distance(at, box);
             reached = std::max(reached, away);
             if (away > reach || (counts && !counts(facet))) continue;
-            const FacetHit hit = closest_on(facet, s, x);
+            const FacetHit hit = closest_on(facet, s, x, counts);
             if (hit.distance > reach) continue;
             hits.push_back(hit);
             reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(facet));
@@ -210,7 +223,7 @@ FacetHit FacetSearch::global(const Vec3& s, const std::vector<Vec3>& x, double f
 FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& x, double hysteresis,
                             const Choice& counts) const {
     if (from < 0) return nothing();
-    const FacetHit old = closest_on(from, s, x);
+    const FacetHit old = closest_on(from, s, x, counts);
     FacetHit best = old;
     std::vector<FacetHit> hits;
     for (Index moves = 0; moves < surface_->facet_count(); ++moves) {
@@ -227,7 +240,7 @@ FacetHit FacetSearch::track(const Vec3& s, Index from, const std::vector<Vec3>& 
                 high = high.cwiseMax(x[v]);
             }
             if ((low - s).cwiseMax(s - high).cwiseMax(0).squaredNorm() > reach * reach) continue;
-            hits.push_back(closest_on(facet, s, x));
+            hits.push_back(closest_on(facet, s, x, counts));
             reach = std::min(reach, hits.back().distance + tie * surface_->facet_size(facet));
         }
         best = best_of(hits);

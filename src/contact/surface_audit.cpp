@@ -242,9 +242,11 @@ private:
         return f.count < 4 ? 0 : 0.25 * (x_[f.nodes[0]] - x_[f.nodes[1]] + x_[f.nodes[2]] - x_[f.nodes[3]]).norm();
     }
 
-    /// Takes down what lies `depth` deep at a facet of `other`; `node` is the node or an end of the edge.
+    enum class Part { node, edge, facet };
+
+    /// Takes down what lies `depth` deep at a facet of `other`; `node` is the node, an end of the edge or a corner.
     /// @returns excess, m
-    double note(Index body, Index other, Index node, bool edge, const Vec3& place, Index facet, double depth) {
+    double note(Index body, Index other, Index node, Part part, const Vec3& place, Index facet, double depth) {
         const Shell &own = shells_[body], &host = shells_[other];
         double h = host.size[facet], bend = 0;
         for (const Index f : own.node_facets[audit_.shell_node_[node]]) {
@@ -255,7 +257,7 @@ private:
         const double sagitta = h * h / 8 * bend + warp(host.facets[facet]);
         const double excess = std::max(0.0, depth - sagitta);
         if (deepest_.body < 0 || excess / h > deepest_.relative())
-            deepest_ = {body, other, node, edge, place, depth, excess, h};
+            deepest_ = {body, other, node, part == Part::edge, part == Part::facet, place, depth, excess, h};
         return excess;
     }
 
@@ -268,9 +270,12 @@ private:
         return {leaves.begin(), leaves.end()};
     }
 
-    /// Where the edge goes through those facets of a body in a tree that share no node with it.
-    void cross(Index body, const Tree& facets, const Shell::Edge& edge, std::vector<Crossing>& crossings) {
+    /// Where the edge goes through those facets of a body in a tree that share no node with it, and its ends that lie on
+    /// such facets.
+    void cross(Index body, const Tree& facets, const Shell::Edge& edge, std::vector<Crossing>& crossings,
+               std::vector<Index>& on) {
         crossings.clear();
+        on.clear();
         const Shell& shell = shells_[body];
         const Vec3 &p = x_[edge.a], &q = x_[edge.b];
         Bounds box;
@@ -285,6 +290,9 @@ private:
             for_triangles(facet, [&](const Triangle& triangle) {
                 const Vec3 n = triangle.normal();
                 const double dp = n.dot(p - triangle.a), dq = n.dot(q - triangle.a);
+                const double close = touching * shell.size[f] * n.norm();
+                if (std::abs(dp) <= close && triangle.holds(p)) on.push_back(edge.a);
+                if (std::abs(dq) <= close && triangle.holds(q)) on.push_back(edge.b);
                 if ((dp > 0) == (dq > 0)) return;
                 const double least = std::min(std::abs(dp), std::abs(dq)) / n.norm();
                 if (!(least > touching * shell.size[f])) return;
@@ -301,10 +309,11 @@ private:
         const Shell& shell = shells_[body];
         if (shell.sound && shell.change_of_shape(x_) <= little * shell.finest) return;
         std::vector<Crossing> crossings;
+        std::vector<Index> on;
         for (const Shell::Edge& edge : shell.edges) {
-            cross(body, tree(body), edge, crossings);
+            cross(body, tree(body), edge, crossings, on);
             for (const Crossing& c : crossings)
-                note(body, body, edge.a, true, x_[edge.a] + c.at * (x_[edge.b] - x_[edge.a]), c.facet, c.least);
+                note(body, body, edge.a, Part::edge, x_[edge.a] + c.at * (x_[edge.b] - x_[edge.a]), c.facet, c.least);
         }
     }
 
@@ -313,6 +322,7 @@ private:
         const Shell& shell = shells_[body];
         std::vector<char> seen(shell.nodes.size(), 0);
         std::vector<Index> queue; // nodes inside
+        std::vector<Index> on, on_surface;
         const auto look = [&](Index node) {
             const Index own = audit_.shell_node_[node];
             if (seen[own]) return seen[own] == 2;
@@ -320,7 +330,7 @@ private:
             const bool in = where.distance < -touching * shells_[other].size[where.facet];
             seen[own] = in ? 2 : 1;
             if (!in) return false;
-            const double excess = note(body, other, node, false, x_[node], where.facet, -where.distance);
+            const double excess = note(body, other, node, Part::node, x_[node], where.facet, -where.distance);
             double& most = inside_[node];
             most = std::max(most, excess);
             queue.push_back(own);
@@ -337,7 +347,8 @@ private:
             box.extend(x_[edge.a]);
             box.extend(x_[edge.b]);
             if (!box.meets(common)) continue;
-            cross(other, facets, edge, crossings);
+            cross(other, facets, edge, crossings, on);
+            for (const Index node : on) on_surface.push_back(audit_.shell_node_[node]);
             if (crossings.empty()) continue;
             const bool a = look(edge.a), b = look(edge.b);
             if (a || b) continue;
@@ -346,7 +357,7 @@ private:
                 const Vec3 middle = x_[edge.a] + at * (x_[edge.b] - x_[edge.a]);
                 const Side where = side(other, middle);
                 if (where.distance < -touching * shells_[other].size[where.facet])
-                    note(body, other, edge.a, true, middle, where.facet, -where.distance);
+                    note(body, other, edge.a, Part::edge, middle, where.facet, -where.distance);
             }
         }
         for (const std::vector<Index>& part : shell.components) {
@@ -354,6 +365,28 @@ private:
             Bounds box;
             for (const Index own : part) box.extend(x_[shell.nodes[own]]);
             if (box.within(bounds_[other])) look(shell.nodes[part.front()]);
+        }
+        std::ranges::sort(on_surface);
+        on_surface.erase(std::unique(on_surface.begin(), on_surface.end()), on_surface.end());
+        const auto look_between = [&](Index node, Part part, const Vec3& middle) {
+            const Side where = side(other, middle);
+            if (where.distance < -touching * shells_[other].size[where.facet])
+                note(body, other, node, part, middle, where.facet, -where.distance);
+        };
+        std::vector<Index> around; // facets
+        for (const Index own : on_surface) {
+            const Index node = shell.nodes[own];
+            for (const Index next : shell.node_nodes[own])
+                if (!look(shell.nodes[next]) && (next > own || !std::ranges::binary_search(on_surface, next)))
+                    look_between(node, Part::edge, 0.5 * (x_[node] + x_[shell.nodes[next]]));
+            around.insert(around.end(), shell.node_facets[own].begin(), shell.node_facets[own].end());
+        }
+        std::ranges::sort(around);
+        around.erase(std::unique(around.begin(), around.end()), around.end());
+        for (const Index f : around) {
+            Vec3 middle = Vec3::Zero();
+            for (const Index node : shell.facets[f]) middle += x_[node] / shell.facets[f].count;
+            look_between(shell.facets[f].nodes[0], Part::facet, middle);
         }
         for (std::size_t k = 0; k < queue.size(); ++k)
             for (const Index next : shell.node_nodes[queue[k]]) look(shell.nodes[next]);

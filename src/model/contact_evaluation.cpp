@@ -12,11 +12,13 @@ namespace osculate::model {
 namespace {
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
-/// Cosine between normals of facets of one surface that may touch each other: ten degrees from edge-on.
-constexpr double facing = -0.17;
-/// How deep a node may be behind such a facet, in sizes of it and in thicknesses of the body behind: another node that deep
-/// is on the body's other side.
-constexpr double behind = 0.3;
+/// Cosine between normals of facets that may touch each other: ten degrees from edge-on.
+constexpr double faced = -0.17;
+/// How deep a node may be behind such a facet at the start of an attempt, in sizes of it and in thicknesses of the body behind:
+/// a node that is deeper is on the body's other side.
+constexpr double behind_at_start = 0.3;
+/// A node that lies beside a facet rather than above it, by this sine, is above nothing; unless it is this near, in facet sizes.
+constexpr double beside = 0.8, at_edge = 0.05;
 /// Cosine between the normal and an edge of the slave that goes into the master at 45 degrees.
 constexpr double deepest_edge = -0.71;
 } // namespace
@@ -37,9 +39,9 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
     : pair_(other.pair_), discretisation_(other.discretisation_->clone()), search_(other.search_),
       master_(other.master_), inertia_(other.inertia_), held_(other.held_), lambda_start_(other.lambda_start_),
       start_(other.start_), now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_),
-      vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), tracking_(other.tracking_),
-      points_(other.points_), points_at_(other.points_at_), states_(other.states_), point_nodes_(other.point_nodes_),
-      facets_(other.facets_), facet_changes_(other.facet_changes_) {
+      vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), facets_(other.facets_), faces_(other.faces_),
+      tracking_(other.tracking_), points_(other.points_), points_at_(other.points_at_), states_(other.states_),
+      point_nodes_(other.point_nodes_), facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -88,18 +90,23 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
     const ScopedTimer timer(timings, Part::search);
     search_.build(vertices_);
     const std::optional<OwnSurface>& own = pair_->slaves().own;
-    if (own) place_facets();
+    const double reach = own ? own->reach : std::numeric_limits<double>::max();
+    if (!pair_->slaves().around.empty()) place_facets(x);
     parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j)
             if (tracking_.facet[j] < 0 || !contact::is_closed(history.status[j]))
-                tracking_.facet[j] = (own ? search_.global(now_.slaves[j], vertices_, own->reach, choice(j))
-                                          : search_.global(now_.slaves[j], vertices_))
-                                         .facet;
+                tracking_.facet[j] = search_.global(now_.slaves[j], vertices_, reach, choice(j)).facet;
     });
     discretisation_->begin(positions(), tracking_, threads);
 }
 
-void ContactEvaluation::place_facets() {
+void ContactEvaluation::place_facets(const std::vector<Vec3>& x) {
+    faces_.resize(inertia_.size());
+    for (std::size_t j = 0; j < faces_.size(); ++j) {
+        faces_[j].clear();
+        for (const mesh::Facet& facet : pair_->slaves().around[j])
+            faces_[j].push_back(mesh::facet_area_vector(facet, x).normalized());
+    }
     const mesh::HalfEdgeSurface& surface = pair_->surface();
     const auto count = static_cast<std::size_t>(surface.facet_count());
     facets_.normal.resize(count);
@@ -116,19 +123,23 @@ void ContactEvaluation::place_facets() {
     }
 }
 
+bool ContactEvaluation::looks_past(const contact::FacetHit& hit) const {
+    return hit.facet >= 0 && hit.overhang > beside * hit.distance &&
+           hit.overhang > at_edge * pair_->surface().facet_size(hit.facet);
+}
+
 bool ContactEvaluation::may_touch(Index j, Index facet) const {
-    const OwnSurface& own = *pair_->slaves().own;
-    if (std::ranges::binary_search(own.around[static_cast<std::size_t>(j)], facet)) return false;
-    const Vec3 &n = facets_.normal[static_cast<std::size_t>(facet)], &c = facets_.centre[static_cast<std::size_t>(facet)];
-    const double depth = behind * std::min(pair_->surface().facet_size(facet), pair_->thickness(facet));
-    return (start_.slaves[j] - c).dot(n) > -depth &&
-           std::ranges::any_of(pair_->surface().vertex_facets(own.vertex[static_cast<std::size_t>(j)]), [&](Index f) {
-               return facets_.normal[static_cast<std::size_t>(f)].dot(n) < facing;
-           });
+    const Vec3& n = facets_.normal[static_cast<std::size_t>(facet)];
+    if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)], [&](const Vec3& m) { return m.dot(n) < faced; }))
+        return false;
+    const double depth = behind_at_start * std::min(pair_->surface().facet_size(facet), pair_->thickness(facet));
+    if (!((start_.slaves[j] - facets_.centre[static_cast<std::size_t>(facet)]).dot(n) > -depth)) return false;
+    const std::optional<OwnSurface>& own = pair_->slaves().own;
+    return !own || !std::ranges::binary_search(own->around[static_cast<std::size_t>(j)], facet);
 }
 
 contact::FacetSearch::Choice ContactEvaluation::choice(Index j) const {
-    if (!pair_->slaves().own) return {};
+    if (pair_->slaves().around.empty()) return {};
     return [this, j](Index facet) { return may_touch(j, facet); };
 }
 
@@ -143,10 +154,11 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
         parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
                 const Vec3& s = now_.slaves[j];
-                hits[j] = tracking_.changes[j] < latch
+                hits[j] = tracking_.changes[j] < latch || facet[j] < 0
                               ? search_.track(s, facet[j], vertices_, tracking_.hysteresis, choice(j))
-                                                       : search_.closest_on(facet[j], s, vertices_);
+                              : search_.closest_on(facet[j], s, vertices_, choice(j));
                 hits[j].latched = tracking_.changes[j] >= latch;
+                if (!pair_->slaves().around.empty() && looks_past(hits[j])) hits[j].beyond = hits[j].overhang;
             }
         });
         facet_changes_ = 0;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -28,7 +29,7 @@ constexpr double pointing = -0.5;
 /// sharper than what the mesh resolves.
 constexpr double neighbourhood = 2.5;
 /// Behind this part of the thickness of the body a facet's front ends.
-constexpr double into_thickness = 0.3;
+constexpr double into_thickness = 0.15;
 /// How far a surface may move against itself, in mean facet sizes, before pairs within it are looked for anew.
 constexpr double own_sizes = 1.5;
 /// How far a surface may move, in mean facet sizes and in diagonals of its box, before pairs are looked for anew.
@@ -75,16 +76,12 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
         left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] =
             left_out_[static_cast<std::size_t>(b) * surfaces_.size() + static_cast<std::size_t>(a)] = 1;
     around_.resize(X.size());
-    vertex_.assign(X.size(), -1);
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         if (left_out_[s * surfaces_.size() + s] != 0) continue;
         const MasterSide& side = *surfaces_[s].side;
         std::vector<std::vector<Index>> near = neighbourhoods(surfaces_[s]);
         for (Index v = 0; v < side.surface().vertex_count(); ++v)
-            if (side.own_vertex(v) == v) {
-                around_[side.nodes()[v]] = std::move(near[v]);
-                vertex_[side.nodes()[v]] = v;
-            }
+            if (side.own_vertex(v) == v) around_[side.nodes()[v]] = std::move(near[v]);
     }
     for (const auto& [one, other] : options_.treated_elsewhere) {
         std::vector<char>& marks = treated_.emplace_back(X.size(), 0);
@@ -224,21 +221,19 @@ std::vector<GeneralContact::Role> GeneralContact::roles_within(const FacetPairs&
         faced[g].push_back(f);
     }
     std::vector<Role> roles(facets_.size(), Role::none);
-    const auto spread = [&](Index seed) {
-        std::vector<Index> waiting{seed};
-        while (!waiting.empty()) {
-            const Index f = waiting.back();
-            waiting.pop_back();
+    // both roles spread alike, so that they meet at the ends of folds
+    std::deque<std::pair<Index, Role>> waiting;
+    const auto spread = [&] {
+        for (; !waiting.empty(); waiting.pop_front()) {
+            const auto [f, role] = waiting.front();
             if (roles[f] != Role::none) continue;
-            roles[f] = Role::slave;
-            for (const Index g : faced[f])
-                if (roles[g] == Role::none) roles[g] = Role::master;
+            roles[f] = role;
+            for (const Index g : faced[f]) waiting.emplace_back(g, role == Role::slave ? Role::master : Role::slave);
             const auto s = static_cast<std::size_t>(data_[f].surface);
-            for (const Index next : surfaces_[s].side->surface().edge_neighbours(f - first_[s])) {
-                const Index number = next + first_[s];
-                if (next >= 0 && next < static_cast<Index>(surfaces_[s].facets.size()) && faced.contains(number))
-                    waiting.push_back(number);
-            }
+            for (const Index next : surfaces_[s].side->surface().edge_neighbours(f - first_[s]))
+                if (next >= 0 && next < static_cast<Index>(surfaces_[s].facets.size()) &&
+                    faced.contains(next + first_[s]))
+                    waiting.emplace_back(next + first_[s], role);
         }
     };
     for (const ContactHistory& history : before) {
@@ -246,9 +241,13 @@ std::vector<GeneralContact::Role> GeneralContact::roles_within(const FacetPairs&
         if (slaves != masters) continue;
         for (const mesh::Facet& facet : history.pair->slaves().facets)
             for (const Index f : node_facets_[facet.nodes[0]])
-                if (facets_[f].nodes == facet.nodes && faced.contains(f)) spread(f);
+                if (facets_[f].nodes == facet.nodes && faced.contains(f)) waiting.emplace_back(f, Role::slave);
     }
-    for (const auto& [f, others] : faced) spread(f);
+    spread();
+    for (const auto& [f, others] : faced) {
+        waiting.emplace_back(f, Role::slave);
+        spread();
+    }
     return roles;
 }
 
@@ -300,6 +299,10 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
         if (data_[f].surface != data_[g].surface) return is_slave(f, g);
         return roles.empty() || roles[f] == roles[g] ? f < g : roles[f] < roles[g];
     };
+    const auto leads_not = [&](Index node) { // within its own surface
+        return !roles.empty() &&
+               std::ranges::any_of(node_facets_[node], [&](Index f) { return roles[f] == Role::master; });
+    };
     const auto points_at = [&](Index node, Index g) {
         const Vec3& n = normal[g];
         double facets = 0;
@@ -319,7 +322,7 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
             for (const auto& [one, other] : {std::pair{f, g}, std::pair{g, f}})
                 if (leads(one, other))
                     for (const Index node : facets_[one])
-                        if (points_at(node, other))
+                        if (points_at(node, other) && !(data_[one].surface == data_[other].surface && leads_not(node)))
                             found[{data_[one].surface, data_[other].surface}].nodes.push_back(node);
         }
     }
@@ -386,6 +389,8 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(const ContactScope&
         if (slaves.area[j] == 0) slaves.area[j] = all;
         slaves.stiffness.push_back(options_.stiffness_scale * E * slaves.area[j] / largest);
         slaves.along.push_back(along_[nodes[j]]);
+        std::vector<mesh::Facet>& around = slaves.around.emplace_back();
+        for (const Index f : node_facets_[nodes[j]]) around.push_back(facets_[f]);
     }
     if (averages(options_.pair.discretisation) &&
         std::ranges::any_of(nodes, [&](Index node) { return own.in_plane.contains(node); }))
@@ -397,7 +402,6 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(const ContactScope&
     if (slave == master) {
         OwnSurface& within = slaves.own.emplace();
         for (const Index node : nodes) {
-            within.vertex.push_back(vertex_[node]);
             within.around.push_back(around_[node]);
         }
         within.reach = 2 * scope.own[static_cast<std::size_t>(slave)];

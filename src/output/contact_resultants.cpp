@@ -1,4 +1,5 @@
 #include "osculate/output/contact_resultants.hpp"
+
 #include "osculate/model/general_contact.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "osculate/output/history.hpp"
-#include "osculate/model/general_contact.hpp"
 
+#include "osculate/model/general_contact.hpp"
 #include "osculate/output/contact_resultants.hpp"
 
 #include <utility>

@@ -100,7 +100,6 @@ public:
     }
 
     void check_general(const GeneralContact& general, const Named<Body>& bodies) {
-        if (bodies.size() < 2) fault({"contact", "general"}, "two bodies or more", "one");
         Words known;
         for (const auto& [name, body] : bodies) {
             known.push_back(name);

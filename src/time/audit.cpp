@@ -1,6 +1,6 @@
 #include "osculate/time/audit.hpp"
-#include "osculate/model/general_contact.hpp"
 
+#include "osculate/model/general_contact.hpp"
 #include "time/number.hpp"
 
 #include <algorithm>
@@ -55,8 +55,11 @@ std::optional<contact::Intrusion> Audit::deepest() const {
 std::string in_words(const contact::Intrusion& intrusion, const model::Model& model) {
     const model::Body& body = model.bodies[static_cast<std::size_t>(intrusion.body)];
     const Vec3 at = intrusion.place + model.origin;
-    return (intrusion.edge ? "an edge at node " : "node ") + std::to_string(intrusion.node - body.first_node) +
-           " of body '" + body.name + "' lies " + number(intrusion.depth) + " m deep in " +
+    return (intrusion.edge    ? "an edge at node "
+            : intrusion.facet ? "a facet at node "
+                              : "node ") +
+           std::to_string(intrusion.node - body.first_node) + " of body '" + body.name + "' lies " +
+           number(intrusion.depth) + " m deep in " +
            (intrusion.other == intrusion.body
                 ? "the body itself"
                 : "body '" + model.bodies[static_cast<std::size_t>(intrusion.other)].name + "'") +

@@ -1,4 +1,5 @@
 #include "osculate/time/checkpoint.hpp"
+
 #include "osculate/model/general_contact.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "time/stage_run.hpp"
-#include "osculate/model/general_contact.hpp"
 
+#include "osculate/model/general_contact.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 #include "time/step_start.hpp"
@@ -295,7 +295,7 @@ void StageRun::reject(const StepAttempt& attempt) {
 }
 
 Checkpoint StageRun::checkpoint() const {
-    Checkpoint now{progress_, found_pairs(progress_.state, context_.model), {}, {}, equilibrium().memory(), {}};
+    Checkpoint now{progress_, found_pairs(progress_.state, context_.model), {}, {}, {}, equilibrium().memory(), {}};
     if (progress_.state.scope) {
         now.scope_x = progress_.state.scope->x;
         now.scope_margin = progress_.state.scope->margin;

@@ -120,6 +120,19 @@ TEST(SurfaceAudit, SeesEdgesThatCrossBetweenTheirNodes) {
     EXPECT_TRUE(found.nodes.empty());
 }
 
+TEST(SurfaceAudit, SeesSlicesThatOverlapThoughTheirNodesLieOnTheOthersFaces) {
+    // both end at z = 0.5 and z = -0.5; no edge crosses a facet and no node is inside
+    constexpr double depth = 0.1;
+    for (const Index layers : {1, 2}) {
+        Bodies bodies;
+        bodies.add(box({3, 1, 1}, {3, 2, layers}));
+        bodies.add(box({1, 1, 1}, {1, 1, layers}), Mat3::Identity(), {0, 1 - depth, 0});
+        const AuditResult found = bodies.examine();
+        ASSERT_NE(found.worst(), nullptr) << layers;
+        EXPECT_NEAR(found.worst()->excess, depth, round_off) << layers;
+    }
+}
+
 TEST(SurfaceAudit, SeesABodyInsideAnotherWhole) {
     Bodies bodies;
     bodies.add(box({1, 1, 1}, {2, 2, 2}));

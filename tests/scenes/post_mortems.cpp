@@ -237,17 +237,21 @@ INSTANTIATE_TEST_SUITE_P(
         Failure{"through_the_plate", "collision", "cube", 0, "solver.smallest_step", {"solver.smallest_step=1e-4"}}),
     [](const auto& test) { return std::string(test.param.scene); });
 
-class NoRemedy : public Program {};
+class BodyInItself : public Program {};
 
-TEST_F(NoRemedy, IsKnownForABodyThatPassesThroughItself) {
-    const Outcome outcome = osculate({"run", scene_file("configs/extreme/ring_through_itself.yaml"), "-o", "run",
-                                      "--quiet", "--set", "bodies.ring.mesh.tube.divisions=[12, 1, 1]"});
+TEST_F(BodyInItself, IsKeptOutByTheGeneralContactThatIsAdvised) {
+    const std::vector<std::string> run{"run",    scene_file("tests/scenes/pinched_ring.yaml"), "-o", "run", "--quiet",
+                                       "--force"};
+    const Outcome outcome = osculate(run);
     ASSERT_EQ(outcome.code, 3) << outcome.err;
     const json post_mortem = json::parse(content(folder / "run/post_mortem.json"));
     EXPECT_EQ(post_mortem["cause"], "unseen_contact");
-    EXPECT_THAT(post_mortem["no_remedy"], HasSubstr("osculate does not model contact of a body with itself"));
-    EXPECT_THAT(post_mortem["advice"], testing::IsEmpty());
-    EXPECT_THAT(outcome.err, HasSubstr("try         no remedy is known: body 'ring' touches itself"));
+    ASSERT_EQ(post_mortem["advice"].size(), 1u);
+    EXPECT_THAT(post_mortem["advice"][0]["text"], HasSubstr("'ring' from going through itself"));
+    const std::string change = post_mortem["advice"][0]["set"][0];
+    std::vector<std::string> mended = run;
+    mended.insert(mended.end(), {"--set", change, "--set", "contact.general.friction=0.3"});
+    EXPECT_EQ(osculate(mended).code, 0);
 }
 
 class FailedIterate : public Program {};

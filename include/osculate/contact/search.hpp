@@ -18,13 +18,14 @@ struct FacetHit {
     double overhang = 0;   ///< distance of the foot on the extended facet beyond its edge, m; 0 inside
     bool boundary = false; ///< the closest point is on the surface's boundary
     bool latched = false;  ///< keeps this facet and its side of creases for now
+    bool limited = false;  ///< the closest point is where facets end that count
     double beyond = 0;     ///< distance of s past that boundary, in the plane of the facet there, m; 0 inside
 };
 
 /// Search over the facets of one surface; positions are those of the surface's vertices, in local numbering.
 class FacetSearch {
 public:
-    /// Which facets count; empty: all.
+    /// Which facets count, empty: all. The surface ends where they do.
     using Choice = std::function<bool(Index facet)>;
 
     explicit FacetSearch(const mesh::HalfEdgeSurface& surface);
@@ -43,7 +44,8 @@ public:
     FacetSearch(FacetSearch&&) noexcept;
     FacetSearch& operator=(FacetSearch&&) noexcept;
 
-    [[nodiscard]] FacetHit closest_on(Index facet, const Vec3& s, const std::vector<Vec3>& x) const;
+    [[nodiscard]] FacetHit closest_on(Index facet, const Vec3& s, const std::vector<Vec3>& x,
+                                      const Choice& counts = {}) const;
 
     /// Loads the bounding boxes of all facets into an R-tree. O(n log n)
     void build(const std::vector<Vec3>& x);

@@ -10,10 +10,10 @@ namespace osculate::contact {
 
 /// The deepest place at which one body is inside another, or has passed through itself.
 struct Intrusion {
-    Index body = -1;  ///< the body of the node or edge
-    Index other = -1; ///< the body that contains it; `body` itself for self-penetration
-    Index node = -1;  ///< global; for an edge, one of its ends
-    bool edge = false;
+    Index body = -1;                  ///< the body of the node or edge
+    Index other = -1;                 ///< the body that contains it; `body` itself for self-penetration
+    Index node = -1;                  ///< global; for an edge or a facet, one of its nodes
+    bool edge = false, facet = false; ///< neither: the node itself
     Vec3 place = Vec3::Zero();
     double depth = 0;  ///< distance to the surface of `other`, m
     double excess = 0; ///< depth minus the sagitta of the facets there, >= 0, m
@@ -39,7 +39,9 @@ struct AuditResult {
 /// crosses a facet of the other, or if one contains the other completely. Both cases are searched among near pairs,
 /// found by R-trees over the current boxes. From the ends of such edges the nodes inside are found neighbour by
 /// neighbour; their depth is the distance to the closest facet, with the side from the normal there. An edge with both
-/// ends outside is as deep as the midpoint between its entry and exit. Contact status, pairs and gaps are not used.
+/// ends outside is as deep as the midpoint between its entry and exit. From nodes that lie on the other surface, as where
+/// flat bodies end in one plane, the middles of edges and facets are looked at too. Contact status, pairs and gaps are not
+/// used.
 ///
 /// Facets are chords: smooth surfaces bulge beyond them by the sagitta h theta/8, where theta is the rotation of the
 /// normal over a facet of size h. If facets of different size h meet surfaces of curvature theta_a/h_a and theta_b/h_b,

@@ -114,11 +114,12 @@ private:
     void place(const std::vector<Vec3>& x, const std::vector<Vec3>& tails);
     /// See SlaveNodes::along.
     void drop_what_is_not_pointed_at(const std::vector<Vec3>& x);
-    /// Computes facets_ from the positions of the moment.
-    void place_facets();
-    /// Whether slave j, of the surface itself, may touch a facet in this attempt: no neighbour, and it was in front of it and
-    /// faced it at the start.
+    /// Computes facets_ and faces_ from the positions of the moment, those of all nodes being x.
+    void place_facets(const std::vector<Vec3>& x);
+    /// Whether slave j may touch a facet in this attempt, see SlaveNodes::around and OwnSurface.
     [[nodiscard]] bool may_touch(Index j, Index facet) const;
+    /// Whether the closest facet, of those that may be touched, is not below the node but beside it.
+    [[nodiscard]] bool looks_past(const contact::FacetHit& hit) const;
     /// Facets to look for slave j on.
     [[nodiscard]] contact::FacetSearch::Choice choice(Index j) const;
     /// state() of slave j without the force.
@@ -140,7 +141,8 @@ private:
     std::vector<Vec3> vertices_, vertex_tails_; ///< current, of the master surface
     struct {
         std::vector<Vec3> normal, centre;
-    } facets_; ///< of the master surface at the start of the attempt; empty: not needed, see SlaveNodes::own
+    } facets_; ///< of the master surface at the start of the attempt; empty: not needed, see SlaveNodes::around
+    std::vector<std::vector<Vec3>> faces_; ///< (slaves) normals of the facets around each node then
     contact::FacetTracking tracking_;
     std::vector<contact::ContactPoint> points_;
     std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along

@@ -31,7 +31,6 @@ struct ContactHistory {
 
 /// What a surface needs to touch itself: parts of it that face each other and are not neighbours.
 struct OwnSurface {
-    std::vector<Index> vertex; ///< (slaves) of the surface, that the node is
     /// (slaves) facets of the surface that are near the node along the surface, ascending: it does not touch them.
     std::vector<std::vector<Index>> around;
     double reach = 0; ///< how far facets are looked for, m
@@ -47,6 +46,9 @@ struct SlaveNodes {
     /// Nodes at the other ends of the edges that meet in each node, global: a node touches only what it points at, what no
     /// such edge goes into at more than 45 degrees. Empty: it touches whatever it is above.
     std::vector<std::vector<Index>> along{};
+    /// Outer facets that meet at each node, global: a node touches only facets that one of these faces at the start of an
+    /// attempt, and for it the master ends where they do. Empty: it touches whatever it is above.
+    std::vector<std::vector<mesh::Facet>> around{};
     std::optional<OwnSurface> own{}; ///< where slave and master are one surface
 };
 

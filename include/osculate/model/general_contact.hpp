@@ -116,7 +116,6 @@ private:
     std::vector<Index> first_;   ///< (surfaces) number of the first facet
     /// (nodes) facets of the own surface that are near along it, numbers within the surface, ascending
     std::vector<std::vector<Index>> around_;
-    std::vector<Index> vertex_; ///< (nodes) vertex of their surface that they are
     std::vector<std::vector<char>>
         treated_; ///< (pairs treated elsewhere) nodes: 1 of one side, 2 of the other, 3 of both
 };

@@ -3,6 +3,7 @@
 #include "osculate/app/advice.hpp"
 
 #include "osculate/core/without_traps.hpp"
+#include "osculate/model/general_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -346,19 +347,20 @@ private:
             return (slave == body && master == other) || (slave == other && master == body);
         };
         const auto pair = std::ranges::find_if(model.pairs, joins);
-        if (intrusion.body == intrusion.other) {
-            found_.no_remedy = "body '" + body +
-                               "' touches itself, and osculate does not model contact of a body with itself; only "
-                               "loads and motions that stop before this can be run";
+        const bool general = model.general && model.general->meet(intrusion.body, intrusion.other);
+        if (!general && (intrusion.body == intrusion.other || pair == model.pairs.end())) {
+            const std::string who = intrusion.body == intrusion.other ? "'" + body + "' from going through itself"
+                                                                      : "'" + body + "' and '" + other + "' apart";
+            add("contact.general", "{}, which keeps " + who + ": no pair does", {"contact.general={}"});
         } else if (pair == model.pairs.end()) {
-            add("contact", "a pair with surfaces of '" + body + "' and '" + other +
-                               "' that contain this place: no pair keeps these bodies apart");
+            found_.no_remedy = "general contact sees nodes against facets, and no node of '" + body + "' or '" + other +
+                               "' met one here; a finer mesh of either may help";
         } else {
             const model::ContactPair& one = **pair;
             const std::vector<Index>& slaves = one.slaves().node;
             const bool known = std::ranges::count(slaves, intrusion.node) > 0;
             if (averages(one.options().discretisation)) by_nodes(one);
-            if (intrusion.edge)
+            if (intrusion.edge || intrusion.facet)
                 edges_cross(one, intrusion);
             else if (!known)
                 add("contact." + one.name() + ".slave",

@@ -36,6 +36,11 @@ BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, bool
     if (varies()) constant_ = model_.K;
 }
 
+void BodyForces::add_to_tangent(std::function<void(linear::BlockMatrix&)> part) {
+    also_ = std::move(part);
+    tangent_ = constant_ = model_.K;
+}
+
 void BodyForces::add_pressures(double factor, bool end, const Field& u, Field& f) const {
     std::vector<FollowerLoad> scaled = pressures_;
     for (FollowerLoad& load : scaled) load.start = factor * (end ? load.end : load.start);
@@ -145,6 +150,7 @@ bool BodyForces::linearise(const Field& u) {
     tangent_ = constant_;
     if (stabilised()) add_springs(tangent_);
     if (nonlinear()) model_.nonlinear->add_tangent(model_.X, step_to(u), tangent_, threads_);
+    if (also_) also_(tangent_);
     if (!follower_pressure_) return true;
     const double factor = dynamics_ != nullptr ? dynamics_->integrator.alpha_f - 1 : -1;
     const Field x = sum(model_.X, u);

@@ -133,6 +133,9 @@ void name_node(const model::Model& model, Index node, Attempt& attempt) {
     if (const Body* const body = body_of(model, node); body != nullptr) {
         attempt.body = body->name;
         attempt.node = node - body->first_node;
+    } else if (const model::RigidBody* rigid = model::rigid_body_of(model, node)) { // of no mesh: the first of its body
+        attempt.body = model.bodies[static_cast<std::size_t>(rigid->body)].name;
+        attempt.node = 0;
     }
 }
 

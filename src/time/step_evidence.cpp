@@ -21,6 +21,13 @@ CentreMasses::CentreMasses(const model::Model& model, const equilibrium::Dynamic
                 if (constraints.constraint(node, k) != nullptr)
                     free[b] = free[b] && constraints.frame(node).col(k).array().abs() < across;
         }
+    for (const model::RigidBody& body : model.rigid) {
+        const auto b = static_cast<std::size_t>(body.body);
+        mass[b] = body.mass;
+        for (int k = 0; k < 3; ++k)
+            if (constraints.constraint(body.reference, k) != nullptr)
+                free[b] = free[b] && constraints.frame(body.reference).col(k).array().abs() < across;
+    }
 }
 
 bool touches(const model::State& state) {

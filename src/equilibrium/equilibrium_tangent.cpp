@@ -40,7 +40,12 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::C
       dependence_(dependence), at_(at), timings_(timings),
       may_buckle_(model.nonlinear != nullptr || dependence != nullptr), products_(choice.products) {
     const linear::BlockMatrix& K = bodies_.bodies().tangent();
-    for (Index j = 0; j < unknowns.couplings(); ++j) couplings_.push_back({unknowns.slave(j), {}});
+    for (Index j = 0; j < unknowns.couplings(); ++j) {
+        couplings_.push_back({unknowns.slave(j), {}});
+        if (dependence == nullptr) continue; // the force on a dependent node acts elsewhere, even if it is open
+        linear::replace_dependent(*dependence, unknowns.slave(j), couplings_.back().masters);
+        std::ranges::sort(couplings_.back().masters);
+    }
     kept_couplings_ = couplings_;
     if (choice.preconditioned)
         preconditioner_ = std::make_unique<linear::ContactPreconditioner>(

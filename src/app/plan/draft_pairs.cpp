@@ -68,6 +68,20 @@ void add_pairs(Draft& draft) {
     }
 }
 
+namespace {
+/// Two rigid bodies have no pressure between them that equilibrium would tell: they do not meet.
+void keep_rigid_bodies_apart(scene::Scene& scene) {
+    for (std::size_t a = 0; a < scene.bodies.size(); ++a)
+        for (std::size_t b = a + 1; b < scene.bodies.size(); ++b) {
+            if (!scene.bodies[a].second.rigid || !scene.bodies[b].second.rigid) continue;
+            scene::GeneralRule apart;
+            apart.between = {scene.bodies[a].first, scene.bodies[b].first};
+            apart.contact = false;
+            scene.general->pairs.emplace_back("rigid " + apart.between[0] + " and " + apart.between[1], apart);
+        }
+}
+} // namespace
+
 void add_general_contact(Draft& draft) {
     if (!draft.plan.general) return;
     const bool paths = std::ranges::any_of(draft.plan.stages, &time::Stage::follow_paths);
@@ -79,6 +93,7 @@ void add_general_contact(Draft& draft) {
             draft.faults.push_back(fault("contact.general", "bodies of elements without midside nodes",
                                          "body '" + body.name + "' with quadratic elements, which carry no contact"));
     if (!draft.faults.empty()) return;
+    keep_rigid_bodies_apart(draft.scene);
     try {
         draft.plan.model.general = make_general_contact(draft.scene, draft.plan.model, draft.exterior, paths, dynamic);
     } catch (const std::runtime_error& error) {

@@ -33,16 +33,16 @@ std::string ball_on_slab(const Case& c) {
     return R"(
 bodies:
   slab:
-    mesh: {block: {origin: [-0.15 m, -0.15 m, -0.2 m], size: [0.3 m, 0.3 m, 0.2 m], divisions: [6, 6, 1]}}
+    mesh: {block: {origin: [-0.2 m, -0.2 m, -0.2 m], size: [0.4 m, 0.4 m, 0.2 m], divisions: [6, 6, 1]}}
     material: {neo_hookean: {E: 1 MPa, nu: 0.3, density: 1000}}
   ball:
-    mesh: {ball: {radius: 0.25 m, divisions: [4, 1, 4]}, translate: [0.01, 0.02, 0.26]}
+    mesh: {ball: {radius: 0.25 m, divisions: [6, 1, 4]}, translate: [0.01, 0.02, 0.26]}
     rigid: {density: 2000, reference_point: [0.1, 0.05, 0.4], fix: )" +
            std::string(c.fix) + R"(}
 sets:
   bottom: {body: slab, surface: z_min}
   top: {body: slab, surface: z_max}
-  sphere: {body: ball, surface: outer}
+  sphere: {body: ball, normal: {direction: [0, 0, -1], angle: 30 deg}}
 supports:
   bottom: {fix: [x, y, z]}
 contact:

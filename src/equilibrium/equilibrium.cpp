@@ -39,6 +39,9 @@ std::vector<Term*> Equilibrium::list_of_terms() {
     if (!rigid_) return terms;
     bodies_.bodies().add_to_tangent([this](linear::BlockMatrix& tangent) { rigid_->add_tangent(tangent); });
     contact_.use(rigid_->dependence());
+    std::vector<Index> nodes = model::dependent_nodes(model_);
+    for (const model::RigidBody& body : model_.rigid) nodes.insert(nodes.end(), {body.reference, body.rotation()});
+    bodies_.set_without_elements(std::move(nodes));
     terms.push_back(rigid_.get());
     return terms;
 }

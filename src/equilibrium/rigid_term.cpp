@@ -32,6 +32,7 @@ bool RigidTerm::begin(const model::State& state, const Iterate& at, const StepLo
         moving.start = state.rigid[k];
         moving.u_start = state.u[place_of(body.reference)];
         moving.angles_start = state.u[place_of(body.rotation())];
+        moving.turning.setZero();
         moving.R_start = moving.start.orientation.toRotationMatrix();
     }
     (void)renew(at.u);

@@ -15,12 +15,16 @@ std::size_t place_of(Index node) {
 }
 } // namespace
 
-RigidTerm::RigidTerm(const model::Model& model, const Dynamics* dynamics)
+RigidTerm::RigidTerm(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics)
     : model_(model), dynamics_(dynamics), alpha_f_(dynamics != nullptr ? dynamics->integrator.alpha_f : 0),
       bodies_(model.rigid.size()), dependence_(model.nodes()) {
-    for (const RigidBody& body : model.rigid)
+    constexpr double apart = 1e-9; // of the radius
+    for (const RigidBody& body : model.rigid) {
         for (Index i = 0; i < body.nodes; ++i)
             dependence_.set(body.first_node + i, {{body.reference}, {body.rotation()}});
+        by_reference_.push_back((body.centre - model.X[place_of(body.reference)]).norm() > apart * body.radius &&
+                                constraints.free_components(body.reference) < 3);
+    }
 }
 
 bool RigidTerm::begin(const model::State& state, const Iterate& at, const StepLoad&, double dt) {
@@ -64,7 +68,11 @@ bool RigidTerm::move(std::size_t k, const Field& u, Moving& now) const {
     now.end.orientation = model::turned(now.start.orientation, theta);
     now.end.rotation = model::rotation_vector(now.end.orientation, now.start.rotation);
     now.R = now.end.orientation.toRotationMatrix();
-    if (dynamics_ != nullptr) set_inertia(body, now);
+    if (dynamics_ == nullptr) return true;
+    if (by_reference_[k] != 0)
+        set_inertia_of_reference(body, now);
+    else
+        set_inertia_of_centre(body, now);
     return true;
 }
 
@@ -90,7 +98,7 @@ bool RigidTerm::renew(const Field& u) {
     return all;
 }
 
-void RigidTerm::set_inertia(const RigidBody& body, Moving& now) const {
+void RigidTerm::set_inertia_of_centre(const RigidBody& body, Moving& now) const {
     const Integrator& w = dynamics_->integrator;
     const model::RigidMotion& n = now.start;
     model::RigidMotion& end = now.end;
@@ -102,11 +110,73 @@ void RigidTerm::set_inertia(const RigidBody& body, Moving& now) const {
     const Vec3 turned = now.R_start.transpose() * now.c;
     end.angular_velocity = kinematics_.velocity(turned, zero, n.angular_velocity, n.angular_rate);
     end.angular_rate = kinematics_.acceleration(turned, zero, n.angular_velocity, n.angular_rate);
-    const Vec3 p = now.R * (body.inertia * end.angular_velocity), p_n = now.R_start * (body.inertia * n.angular_velocity);
+    const Vec3 p = now.R * (body.inertia * end.angular_velocity),
+               p_n = now.R_start * (body.inertia * n.angular_velocity);
     end.moment = (p - p_n) / (w.gamma * dt_) - (1 - w.gamma) / w.gamma * n.moment;
+    const Vec3 acting = (1 - w.alpha_f) * arm + w.alpha_f * arm_n;
     now.force = body.mass * ((1 - w.alpha_m) * end.acceleration + w.alpha_m * n.acceleration);
-    now.moment = (1 - w.alpha_m) * end.moment + w.alpha_m * n.moment +
-                 ((1 - w.alpha_f) * arm + w.alpha_f * arm_n).cross(now.force);
+    now.moment = (1 - w.alpha_m) * end.moment + w.alpha_m * n.moment + acting.cross(now.force);
+
+    // dp = T dtheta x p + R J dW, dW = (dW/dc) R_n^T C dtheta
+    const double m = (1 - w.alpha_m) * kinematics_.by_u_acceleration * body.mass;
+    const Mat3 C = model::cayley_derivative(now.theta);
+    now.force_by_r = m * Mat3::Identity();
+    now.force_by_theta = -m * cross_matrix(arm) * now.T;
+    const Mat3 p_by_theta = -cross_matrix(p) * now.T +
+                            kinematics_.by_u_velocity * now.R * body.inertia * now.R_start.transpose() * C;
+    now.moment_by_r = m * cross_matrix(acting);
+    now.moment_by_theta = (1 - w.alpha_m) / (w.gamma * dt_) * p_by_theta + cross_matrix(acting) * now.force_by_theta +
+                          (1 - w.alpha_f) * cross_matrix(now.force) * cross_matrix(arm) * now.T;
+}
+
+void RigidTerm::set_inertia_of_reference(const RigidBody& body, Moving& now) const {
+    const Integrator& w = dynamics_->integrator;
+    const model::RigidMotion& n = now.start;
+    model::RigidMotion& end = now.end;
+    const Vec3 zero = Vec3::Zero();
+    const Vec3 arm_n = centre_arm(body, now.R_start), arm = centre_arm(body, now.R),
+               own = body.centre - model_.X[place_of(body.reference)];
+    const Mat3 J_r = body.inertia - body.mass * cross_matrix(own) * cross_matrix(own);
+    const double m = body.mass;
+    // at the start
+    const Vec3 w_n = now.R_start * n.angular_velocity, rate_n = now.R_start * n.angular_rate, b_n = w_n.cross(arm_n),
+               v_n = n.velocity - b_n, a_n = n.acceleration - rate_n.cross(arm_n) - w_n.cross(b_n),
+               q_n = m * n.velocity, l_n = now.R_start * (J_r * n.angular_velocity) + m * arm_n.cross(v_n),
+               q_rate_n = m * n.acceleration, l_rate_n = n.moment + b_n.cross(q_n) + arm_n.cross(q_rate_n);
+    // at the end
+    const Vec3 v = kinematics_.velocity(now.Du, zero, v_n, a_n), turned = now.R_start.transpose() * now.c;
+    end.angular_velocity = kinematics_.velocity(turned, zero, n.angular_velocity, n.angular_rate);
+    end.angular_rate = kinematics_.acceleration(turned, zero, n.angular_velocity, n.angular_rate);
+    const Vec3 spin = now.R * end.angular_velocity, b = spin.cross(arm);
+    end.velocity = v + b;
+    const Vec3 q = m * end.velocity, J_w = now.R * (J_r * end.angular_velocity), l = J_w + m * arm.cross(v);
+    const double old = (1 - w.gamma) / w.gamma, fresh = 1 / (w.gamma * dt_);
+    const Vec3 q_rate = fresh * (q - q_n) - old * q_rate_n, l_rate = fresh * (l - l_n) - old * l_rate_n;
+    end.acceleration = q_rate / m;
+    end.moment = l_rate - b.cross(q) - arm.cross(q_rate);
+    const Mat3 Q = now.R * now.R_start.transpose();
+    const Vec3 before = v_n + Q * v_n, after = v + Q.transpose() * v;
+    now.force = (1 - w.alpha_m) * q_rate + w.alpha_m * q_rate_n;
+    now.moment = (1 - w.alpha_m) * l_rate + w.alpha_m * l_rate_n + m / 4 * (before.cross(b) + after.cross(b_n));
+
+    // derivatives by u_r, and by theta with dphi = T dtheta: d rho = dphi x rho, d w = dphi x w + R dW
+    const double by_v = kinematics_.by_u_velocity;
+    const Mat3 spin_by = -cross_matrix(spin) * now.T +
+                         by_v * now.R * now.R_start.transpose() * model::cayley_derivative(now.theta);
+    const Mat3 arm_by = -cross_matrix(arm) * now.T;
+    const Mat3 b_by = -cross_matrix(arm) * spin_by + cross_matrix(spin) * arm_by;
+    const Mat3 l_by = -cross_matrix(J_w) * now.T +
+                      by_v * now.R * J_r * now.R_start.transpose() * model::cayley_derivative(now.theta) -
+                      m * cross_matrix(v) * arm_by;
+    const double factor = (1 - w.alpha_m) * fresh;
+    now.force_by_r = factor * m * by_v * Mat3::Identity();
+    now.force_by_theta = factor * m * b_by;
+    now.moment_by_r = factor * m * by_v * cross_matrix(arm) -
+                      m / 4 * by_v * cross_matrix(b_n) * (Mat3::Identity() + Q.transpose());
+    // d(Q v_n) = dphi x Q v_n, d(Q^T v) = -Q^T (dphi x v)
+    const Vec3 ahead = Q * v_n;
+    now.moment_by_theta = factor * l_by + m / 4 * (cross_matrix(before) * b_by + cross_matrix(b) * cross_matrix(ahead) * now.T -
+                                                   cross_matrix(b_n) * Q.transpose() * cross_matrix(v) * now.T);
 }
 
 bool RigidTerm::evaluate(const Iterate& at) {
@@ -161,21 +231,10 @@ void RigidTerm::add_tangent(linear::BlockMatrix& tangent) const {
         const double L = body.radius;
         Mat3 by_theta = now.turning;
         if (dynamics_ != nullptr) {
-            const Integrator& w = dynamics_->integrator;
-            const Vec3 arm = centre_arm(body, now.R),
-                       acting = (1 - w.alpha_f) * arm + w.alpha_f * centre_arm(body, now.R_start);
-            const double m = (1 - w.alpha_m) * kinematics_.by_u_acceleration * body.mass;
-            const Mat3 force_by_theta = -m * cross_matrix(arm) * now.T;
-            const Mat3 C = model::cayley_derivative(now.theta);
-            const Vec3 p = now.R * (body.inertia * now.end.angular_velocity);
-            // dp = T dtheta x p + R J dW, dW = (dW/dc) R_n^T C dtheta
-            const Mat3 p_by_theta = -cross_matrix(p) * now.T + kinematics_.by_u_velocity * now.R * body.inertia *
-                                                                   now.R_start.transpose() * C;
-            by_theta += (1 - w.alpha_m) / (w.gamma * dt_) * p_by_theta + cross_matrix(acting) * force_by_theta +
-                        (1 - w.alpha_f) * cross_matrix(now.force) * cross_matrix(arm) * now.T;
-            tangent.block(tangent.slot(r, r)).diagonal().array() += m;
-            tangent.block(tangent.slot(r, t)) += force_by_theta / L;
-            tangent.block(tangent.slot(t, r)) += m * cross_matrix(acting) / L;
+            by_theta += now.moment_by_theta;
+            tangent.block(tangent.slot(r, r)) += now.force_by_r;
+            tangent.block(tangent.slot(r, t)) += now.force_by_theta / L;
+            tangent.block(tangent.slot(t, r)) += now.moment_by_r / L;
         }
         tangent.block(tangent.slot(t, t)) += by_theta / (L * L);
     }

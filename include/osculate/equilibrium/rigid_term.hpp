@@ -17,10 +17,16 @@ namespace osculate::equilibrium {
 ///     moment (1-alpha_m) dp/dt + alpha_m (dp/dt)_n + [(1-alpha_f) rho_c + alpha_f rho_c,n] x f.
 /// Since x_i - x_i,n = Du_r + c x (rho_i + rho_i,n)/2, the work of all these is exact for alpha_m = alpha_f = 1/2, beta =
 /// 1/4, gamma = 1/2, and energy and both momenta of a free body are conserved.                     [Simo & Wong 1991]
+/// Where the reference point is held and the centre is elsewhere, v_c and W would be two velocities of one motion, and
+/// drift apart. There v_r of Du_r takes the place of v_c,
+///     q = m (v_r + b), b = w x rho_c,   l = R J_r W + m rho_c x v_r,   dq/dt and dl/dt as dp/dt above
+///     force (1-alpha_m) dq/dt + alpha_m (dq/dt)_n,
+///     moment (1-alpha_m) dl/dt + alpha_m (dl/dt)_n + m/4 [(v_r,n + Q v_r,n) x b + (v_r + Q^T v_r) x b_n], Q = R R_n^T,
+/// whose work is exact in the same way; about a point at rest the angular momentum is, too.
 class RigidTerm final : public Term {
 public:
     /// @param dynamics  null in statics; must outlive this object, like the model
-    RigidTerm(const model::Model& model, const Dynamics* dynamics);
+    RigidTerm(const model::Model& model, const linear::Constraints& constraints, const Dynamics* dynamics);
 
     /// Sets the displacements of the meshes of rigid bodies from those of their own nodes, (nodes) m.
     void place(Field& u) const;
@@ -60,12 +66,15 @@ private:
         Mat3 T = Mat3::Identity(); ///< dR = [T dtheta] R
         model::RigidMotion end;
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero(); ///< of inertia; the moment about the reference point
+        Mat3 force_by_r, force_by_theta, moment_by_r, moment_by_theta; ///< its derivatives, in dynamics
         Mat3 turning = Mat3::Zero();                      ///< change of the moment of all forces on the mesh by dtheta
     };
     /// Takes body k to displacements of its two nodes. False, and nothing is done, if it turns by half a turn or more.
     [[nodiscard]] bool move(std::size_t k, const Field& u, Moving& now) const;
-    /// Sets velocities, accelerations and inertia of a moved body, in dynamics.
-    void set_inertia(const model::RigidBody& body, Moving& now) const;
+    /// Sets velocities, accelerations and inertia of a moved body, in dynamics: in terms of its centre, or of its
+    /// reference point.
+    void set_inertia_of_centre(const model::RigidBody& body, Moving& now) const;
+    void set_inertia_of_reference(const model::RigidBody& body, Moving& now) const;
     [[nodiscard]] Vec3 centre_arm(const model::RigidBody& body, const Mat3& R) const;
 
     const model::Model& model_;
@@ -73,6 +82,7 @@ private:
     Kinematics kinematics_;
     double dt_ = 0, alpha_f_ = 0;
     std::vector<Moving> bodies_;
+    std::vector<char> by_reference_; ///< (bodies) whether inertia is taken in terms of the reference point
     linear::Dependence dependence_;
 };
 

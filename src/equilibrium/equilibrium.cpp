@@ -37,7 +37,8 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
 std::vector<Term*> Equilibrium::list_of_terms() {
     std::vector<Term*> terms{&bodies_, &loads_, &contact_};
     if (!rigid_) return terms;
-    bodies_.bodies().add_to_tangent([this](linear::BlockMatrix& tangent) { rigid_->add_tangent(tangent); });
+    bodies_.bodies().add_to_tangent([this](linear::BlockMatrix& tangent) { rigid_->add_tangent(tangent); },
+                                    rigid_->dependence());
     contact_.use(rigid_->dependence());
     std::vector<Index> nodes = model::dependent_nodes(model_);
     for (const model::RigidBody& body : model_.rigid) nodes.insert(nodes.end(), {body.reference, body.rotation()});

@@ -22,6 +22,7 @@ struct Case {
     /// Forces on single nodes of a master, averaged over slave facets that reach beyond it, have a derivative that leaves
     /// the motion of the border out: the sum of the forces is exact, their moment is not.
     bool smooth = true;
+    const char* follower = "{}";
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -55,7 +56,8 @@ stages:
            (c.dynamic ? "{dynamic: {integrator: {generalised_alpha: {rho_inf: 0.5}}}}" : "static") + R"(
     duration: 0.1 s
     steps: 10
-)";
+    follower_pressure: )" +
+           c.follower + "\n";
 }
 
 class RigidTangent : public testing::TestWithParam<Case> {};
@@ -75,7 +77,8 @@ TEST_P(RigidTangent, IsTheDerivativeOfTheResidual) {
     const linear::Constraints constraints(model.nodes(), plan.stages[0].constraints, model::dependent_nodes(model));
     const auto& dynamics = plan.stages[0].dynamics;
     equilibrium::Equilibrium equilibrium(model, model.pairs, constraints, dynamics ? &*dynamics : nullptr,
-                                         plan.stages[0].tangent, timings, 1);
+                                         plan.stages[0].tangent, timings, 1,
+                                         !plan.stages[0].follower_pressures.empty());
 
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -107,6 +110,8 @@ TEST_P(RigidTangent, IsTheDerivativeOfTheResidual) {
     }
     equilibrium::StepLoad load{Field(u.size()), Field(u.size()), {}};
     for (Vec3& f : load.force) f = 0.1 * force * shake();
+    for (const auto& pressure : plan.stages[0].follower_pressures)
+        load.pressures.push_back({&pressure.faces, pressure.end / 2, pressure.end});
     equilibrium.begin_attempt(state, load, 0.01);
     equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
     const Vector z = equilibrium.unknowns(u, state.contact);
@@ -163,6 +168,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"rigid_slave_in_dynamics", true, true, "blend"},
                     Case{"rigid_slave_petrov_galerkin", true, false, "facets", "petrov_galerkin"},
                     Case{"rigid_slave_mortar", true, true, "facets", "mortar"},
+                    Case{"follower", false, true, "facets", "node", "[]", true, "{sphere: 500 kPa, top: 100 kPa}"},
+                    Case{"follower_in_statics", false, false, "facets", "node", "[y]", true, "{sphere: 500 kPa}"},
                     Case{"held", false, true, "facets", "node", "[x, rz]"}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 

@@ -4,6 +4,7 @@
 
 #include "osculate/equilibrium/dynamics.hpp"
 #include "osculate/fe/element_block.hpp"
+#include "osculate/linear/dependence.hpp"
 #include "osculate/mesh/surface_faces.hpp"
 #include "osculate/model/model.hpp"
 
@@ -46,7 +47,8 @@ public:
     BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads);
 
     /// Part of the tangent that other terms add at every linearise(), which is then not symmetric.
-    void add_to_tangent(std::function<void(linear::BlockMatrix&)> part);
+    /// @param dependence  what nodes with follower pressures may depend on; it must outlive this object
+    void add_to_tangent(std::function<void(linear::BlockMatrix&)> part, const linear::Dependence& dependence);
     /// Opens a step. True if this changed the tangent.
     bool begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt);
     /// Adds or changes springs, in statics. Afterwards tangent() is another matrix.
@@ -89,6 +91,8 @@ private:
     /// f += factor times the forces of the pressures, with their values at the start or the end of the step.
     void add_pressures(double factor, bool end, const Field& u, Field& f) const;
     void add_springs(linear::BlockMatrix& tangent) const;
+    /// Adds the tangent of a pressure on a face to that of all forces.
+    void add_pressure_tangent(const mesh::SurfaceFace& face, const Field& x, double pressure);
     [[nodiscard]] const linear::BlockMatrix& mass() const { return model_.mass(dynamics_->lumped_mass); }
 
     const model::Model& model_;
@@ -96,6 +100,7 @@ private:
     bool follower_pressure_;
     int threads_;
     std::function<void(linear::BlockMatrix&)> also_; ///< see add_to_tangent(); null: nothing
+    const linear::Dependence* dependence_ = nullptr; ///< the same
     std::vector<FollowerLoad> pressures_;
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;

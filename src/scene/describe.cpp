@@ -367,7 +367,7 @@ void describe(Visitor& v, Stage& stage) {
     at_reference_point("force", "Force on rigid bodies, reached at the end of the stage.",
                        "At the reference point; it keeps its direction.", dimension::force, stage.force);
     at_reference_point("moment", "Moment on rigid bodies, reached at the end of the stage.",
-                       "About the reference point; it keeps its direction.", dimension::moment, stage.moment);
+                       "About the reference point, in N m; it keeps its direction.", dimension::moment, stage.moment);
 }
 
 void describe(Visitor& v, Solver& solver) {

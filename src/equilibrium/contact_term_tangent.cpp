@@ -250,16 +250,17 @@ void ContactTerm::add_derivatives(linear::SystemMatrix& matrix) {
                     const std::vector<Index>& nodes = evaluation.point_nodes(j);
                     if (t.reaches && dependence_ != nullptr &&
                         linear::any_depends(*dependence_, unknowns_.slave(coupling), nodes)) {
-                        const linear::FoldedContact folded(*dependence_, unknowns_.slave(coupling), nodes, t.A, t.E, t.G);
+                        const linear::FoldedContact folded(*dependence_, unknowns_.slave(coupling), nodes, t.A, t.E,
+                                                           t.G);
                         matrix.add_contact(coupling, folded.masters, folded.A, t.D, folded.E, folded.G, lane);
                     } else if (t.reaches)
                         matrix.add_contact(coupling, nodes, t.A, t.D, t.E, t.G, lane);
                     else if (dependence_ != nullptr && dependence_->depends(unknowns_.slave(coupling))) {
-                        const linear::FoldedContact force(*dependence_, unknowns_.slave(coupling), {}, Matrix::Zero(3, 3),
-                                                          contact::MatrixX3(0, 3), Matrix(0, 3));
-                        matrix.add_contact(coupling, force.masters, force.A, t.D, force.E, Matrix::Zero(force.E.rows(), force.A.cols()), lane);
-                    }
-                    else
+                        const linear::FoldedContact force(*dependence_, unknowns_.slave(coupling), {},
+                                                          Matrix::Zero(3, 3), contact::MatrixX3(0, 3), Matrix(0, 3));
+                        matrix.add_contact(coupling, force.masters, force.A, t.D, force.E,
+                                           Matrix::Zero(force.E.rows(), force.A.cols()), lane);
+                    } else
                         matrix.add_contact(coupling, t.D, lane);
                 }
             });

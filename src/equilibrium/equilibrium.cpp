@@ -26,9 +26,8 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
       timings_(timings), bodies_(model, dynamics, follower_pressure, timings, threads),
       contact_(pairs_, constraints, unknowns_, timings, threads),
       rigid_(model.rigid.empty() ? nullptr : std::make_unique<RigidTerm>(model, constraints, dynamics)),
-      terms_(list_of_terms()),
-      tangent_(model, pairs_, constraints, unknowns_, terms_, bodies_, contact_,
-               rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
+      terms_(list_of_terms()), tangent_(model, pairs_, constraints, unknowns_, terms_, bodies_, contact_,
+                                        rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
       factorisable_(choice.factorisable) {
     at_.u.reset(model.X.size());
     at_.x = at_.tail = unbalanced_ = at_.u;

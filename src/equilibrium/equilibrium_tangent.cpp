@@ -32,9 +32,10 @@ std::vector<Index> contact_nodes(const model::ContactPairs& pairs) {
 }
 } // namespace
 
-EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs, const linear::Constraints& constraints,
-                                       const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
-                                       ContactTerm& contact, const linear::Dependence* dependence, const Iterate& at,
+EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
+                                       const linear::Constraints& constraints, const linear::Unknowns& unknowns,
+                                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact,
+                                       const linear::Dependence* dependence, const Iterate& at,
                                        const TangentChoice& choice, Timings& timings, int threads)
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact),
       dependence_(dependence), at_(at), timings_(timings),

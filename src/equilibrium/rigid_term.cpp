@@ -89,10 +89,9 @@ bool RigidTerm::renew(const Field& u) {
         for (Index i = 0; i < body.nodes; ++i) {
             const Vec3 arm = model_.X[place_of(body.first_node + i)] - X_r, rho = now.R * arm;
             const Vec3 acting = (1 - alpha_f_) * rho + alpha_f_ * (now.R_start * arm);
-            dependence_.set(body.first_node + i,
-                            {{body.reference},
-                             {body.rotation(), -cross_matrix(rho) * now.T / body.radius,
-                              cross_matrix(acting) / body.radius}});
+            dependence_.set(body.first_node + i, {{body.reference},
+                                                  {body.rotation(), -cross_matrix(rho) * now.T / body.radius,
+                                                   cross_matrix(acting) / body.radius}});
         }
     }
     return all;
@@ -122,8 +121,8 @@ void RigidTerm::set_inertia_of_centre(const RigidBody& body, Moving& now) const 
     const Mat3 C = model::cayley_derivative(now.theta);
     now.force_by_r = m * Mat3::Identity();
     now.force_by_theta = -m * cross_matrix(arm) * now.T;
-    const Mat3 p_by_theta = -cross_matrix(p) * now.T +
-                            kinematics_.by_u_velocity * now.R * body.inertia * now.R_start.transpose() * C;
+    const Mat3 p_by_theta =
+        -cross_matrix(p) * now.T + kinematics_.by_u_velocity * now.R * body.inertia * now.R_start.transpose() * C;
     now.moment_by_r = m * cross_matrix(acting);
     now.moment_by_theta = (1 - w.alpha_m) / (w.gamma * dt_) * p_by_theta + cross_matrix(acting) * now.force_by_theta +
                           (1 - w.alpha_f) * cross_matrix(now.force) * cross_matrix(arm) * now.T;
@@ -161,8 +160,8 @@ void RigidTerm::set_inertia_of_reference(const RigidBody& body, Moving& now) con
 
     // derivatives by u_r, and by theta with dphi = T dtheta: d rho = dphi x rho, d w = dphi x w + R dW
     const double by_v = kinematics_.by_u_velocity;
-    const Mat3 spin_by = -cross_matrix(spin) * now.T +
-                         by_v * now.R * now.R_start.transpose() * model::cayley_derivative(now.theta);
+    const Mat3 spin_by =
+        -cross_matrix(spin) * now.T + by_v * now.R * now.R_start.transpose() * model::cayley_derivative(now.theta);
     const Mat3 arm_by = -cross_matrix(arm) * now.T;
     const Mat3 b_by = -cross_matrix(arm) * spin_by + cross_matrix(spin) * arm_by;
     const Mat3 l_by = -cross_matrix(J_w) * now.T +
@@ -171,12 +170,14 @@ void RigidTerm::set_inertia_of_reference(const RigidBody& body, Moving& now) con
     const double factor = (1 - w.alpha_m) * fresh;
     now.force_by_r = factor * m * by_v * Mat3::Identity();
     now.force_by_theta = factor * m * b_by;
-    now.moment_by_r = factor * m * by_v * cross_matrix(arm) -
-                      m / 4 * by_v * cross_matrix(b_n) * (Mat3::Identity() + Q.transpose());
+    now.moment_by_r =
+        factor * m * by_v * cross_matrix(arm) - m / 4 * by_v * cross_matrix(b_n) * (Mat3::Identity() + Q.transpose());
     // d(Q v_n) = dphi x Q v_n, d(Q^T v) = -Q^T (dphi x v)
     const Vec3 ahead = Q * v_n;
-    now.moment_by_theta = factor * l_by + m / 4 * (cross_matrix(before) * b_by + cross_matrix(b) * cross_matrix(ahead) * now.T -
-                                                   cross_matrix(b_n) * Q.transpose() * cross_matrix(v) * now.T);
+    now.moment_by_theta =
+        factor * l_by + m / 4 *
+                            (cross_matrix(before) * b_by + cross_matrix(b) * cross_matrix(ahead) * now.T -
+                             cross_matrix(b_n) * Q.transpose() * cross_matrix(v) * now.T);
 }
 
 bool RigidTerm::evaluate(const Iterate& at) {
@@ -199,9 +200,10 @@ void RigidTerm::add_magnitudes(const Iterate&, Field& sums) const {
         const Moving& now = bodies_[k];
         const Vec3 p = body.mass / dt_ * (now.end.velocity.cwiseAbs() + now.start.velocity.cwiseAbs());
         sums[place_of(body.reference)] += p + body.mass * kinematics_.by_u_acceleration * now.Du.cwiseAbs();
-        const double L = (model::angular_momentum(body, now.end).norm() + model::angular_momentum(body, now.start).norm() +
-                          body.inertia.norm() * kinematics_.by_u_velocity * now.c.norm()) /
-                         dt_;
+        const double L =
+            (model::angular_momentum(body, now.end).norm() + model::angular_momentum(body, now.start).norm() +
+             body.inertia.norm() * kinematics_.by_u_velocity * now.c.norm()) /
+            dt_;
         const double arm = centre_arm(body, now.R).norm();
         sums[place_of(body.rotation())].array() += (L + arm * p.norm()) / body.radius;
     }

@@ -261,14 +261,13 @@ MassProperties mass_properties(const Body& body, double density) {
     Mat3 second = Mat3::Zero(); // about the first node, which is near
     const Vec3& origin = body.mesh.nodes.front();
     Matrix mass;
-    for_each_element(
-        body, [&](const fe::ElementKernel& kernel, const std::vector<Index>&, const Eigen::Matrix3Xd& X) {
-            element_mass(kernel, X, density, false, mass);
-            const Eigen::Matrix3Xd x = X.colwise() - origin;
-            total.mass += mass.sum();
-            first += x * mass.rowwise().sum();
-            second += x * mass * x.transpose();
-        });
+    for_each_element(body, [&](const fe::ElementKernel& kernel, const std::vector<Index>&, const Eigen::Matrix3Xd& X) {
+        element_mass(kernel, X, density, false, mass);
+        const Eigen::Matrix3Xd x = X.colwise() - origin;
+        total.mass += mass.sum();
+        first += x * mass.rowwise().sum();
+        second += x * mass * x.transpose();
+    });
     if (!(total.mass > 0)) return total;
     const Vec3 centre = first / total.mass;
     second -= total.mass * centre * centre.transpose();

@@ -311,7 +311,8 @@ struct Writer {
     void operator()(const char* name, const std::vector<model::RigidMotion>& motions) const {
         std::vector<double> flat;
         for (const model::RigidMotion& motion : motions)
-            each_array(motion, [&](const double* values, int count) { flat.insert(flat.end(), values, values + count); });
+            each_array(motion,
+                       [&](const double* values, int count) { flat.insert(flat.end(), values, values + count); });
         (*this)(name, flat);
     }
     void operator()(const char* name, const std::vector<std::vector<contact::RefittedPatch>>& pairs) const {

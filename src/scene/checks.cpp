@@ -156,9 +156,7 @@ public:
         if (!body.rigid) return;
         const Rigid& rigid = *body.rigid;
         const std::vector<std::string> path{"bodies", name, "rigid"};
-        const auto key = [&](const char* last) {
-            return std::vector<std::string>{"bodies", name, "rigid", last};
-        };
+        const auto key = [&](const char* last) { return std::vector<std::string>{"bodies", name, "rigid", last}; };
         if (rigid.mass && rigid.density > 0) fault(key("mass"), "a density or a mass", "both");
         if (rigid.mass && !rigid.inertia) fault(key("mass"), "inertia beside a mass", "none");
         if (rigid.inertia && !rigid.mass) fault(key("inertia"), "a mass beside inertia", "none");
@@ -222,15 +220,15 @@ public:
                     fault({"stages", name, "motion", body, motion_words[a]},
                           "a component that bodies." + body + ".rigid.fix leaves free",
                           motion_words[a] + ", which is held");
-                check_course({"stages", name, "motion", body, motion_words[a]}, *components[a], stage,
-                             range::position);
+                check_course({"stages", name, "motion", body, motion_words[a]}, *components[a], stage, range::position);
             }
             if (!any) fault({"stages", name, "motion", body}, "at least one of x, y, z, rx, ry, rz", "none");
         }
         for (const auto& [key, loads] : {std::pair{"force", &stage.force}, std::pair{"moment", &stage.moment}})
             for (const auto& [body, load] : *loads)
                 if (needs_rigid(key, body) != nullptr)
-                    for (std::size_t a = 0; a < 3; ++a) check_course({"stages", name, key, body}, load[a], stage, {}, a);
+                    for (std::size_t a = 0; a < 3; ++a)
+                        check_course({"stages", name, key, body}, load[a], stage, {}, a);
     }
 
     void check_formulation(const std::string& name, const Body& body) {

@@ -344,8 +344,9 @@ void describe(Visitor& v, Stage& stage) {
            .item = "body"},
           stage.motion, [&](const std::string& body, std::array<std::optional<Course>, 6>& components) {
               v.group({.name = body,
-                       .meaning = "Displacement of the reference point and rotation; a component left out stays free or "
-                                  "as it was."},
+                       .meaning =
+                           "Displacement of the reference point and rotation; a component left out stays free or "
+                           "as it was."},
                       [&] {
                           for (std::size_t a = 0; a < 6; ++a)
                               v.optional_course(
@@ -420,8 +421,8 @@ void describe(Visitor& v, Scene& scene) {
     const auto group = [&v]<class T>(const std::string& name, T& value) {
         v.group({.name = name}, [&] { describe(v, value); });
     };
-    named(v, {.name = "bodies", .meaning = "Bodies, deformable or rigid.", .required = true, .item = "body"}, scene.bodies,
-          group);
+    named(v, {.name = "bodies", .meaning = "Bodies, deformable or rigid.", .required = true, .item = "body"},
+          scene.bodies, group);
     named(v, {.name = "sets", .meaning = "Parts of a body's exterior, or of its nodes.", .item = "set"}, scene.sets,
           group);
     named(

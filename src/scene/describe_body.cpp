@@ -352,8 +352,9 @@ void describe(Visitor& v, Rigid& rigid) {
     for (std::size_t a = 0; a < motion_words.size(); ++a)
         if (rigid.fixed[a]) fixed.push_back(motion_words[a]);
     v.words({.name = "fix",
-             .meaning = "Components of the reference point's displacement (x, y, z) and of the body's rotation (rx, ry, "
-                        "rz) held at zero for the whole run.",
+             .meaning =
+                 "Components of the reference point's displacement (x, y, z) and of the body's rotation (rx, ry, "
+                 "rz) held at zero for the whole run.",
              .default_text = "none"},
             motion_words, fixed);
     for (std::size_t a = 0; a < motion_words.size(); ++a)

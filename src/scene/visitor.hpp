@@ -54,7 +54,7 @@ struct Key {
     bool not_whole = false;             ///< a whole number is outside the range
     bool direction = false;             ///< the vector must not be zero
     bool bare_word = false;             ///< `key: tag` stands for `key: {tag: {}}`
-    bool bare_flag = false;             ///< `key: true` stands for `key: {}`, false for an optional group that is absent
+    bool bare_flag = false; ///< `key: true` stands for `key: {}`, false for an optional group that is absent
     Names names = Names::any;           ///< of a text, or of the keys of a named map
     const char* item = "";              ///< what a named map holds: "body"
     double largest_product = 0;         ///< of divisions

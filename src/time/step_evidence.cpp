@@ -86,7 +86,14 @@ AtNode local_error(const model::Model& model, const equilibrium::Dynamics& dynam
             if (constraints.constraint(i, k) != nullptr) change(k) = 0;
         return dynamics.integrator.local_error(change, Vec3::Zero(), dt);
     };
-    const AtNode largest = largest_over(model.nodes(), error_of, nothing);
+    AtNode largest = largest_over(model.nodes(), error_of, nothing);
+    for (std::size_t k = 0; k < model.rigid.size(); ++k) {
+        const model::RigidBody& body = model.rigid[k];
+        if (constraints.free_components(body.reference) == 0) continue;
+        const Vec3 change = to.rigid[k].acceleration - from.rigid[k].acceleration;
+        if (const double error = dynamics.integrator.local_error(change, Vec3::Zero(), dt); error > largest.value)
+            largest = {error, body.reference};
+    }
     return {std::max(0.0, largest.value), largest.node};
 }
 

@@ -274,9 +274,9 @@ double reference_force(const RunContext& context, const Stage& stage, const line
                                              model::angular_momentum(body, motion).norm() / body.radius);
             const auto r = static_cast<std::size_t>(body.reference);
             carried = std::max({carried, rate, share / dt * momentum});
-            largest = std::max({largest, body.mass * (model.X[r] + state.u[r]).cwiseAbs().maxCoeff(),
-                                body.inertia.norm() / (body.radius * body.radius) *
-                                    state.u[r + 1].cwiseAbs().maxCoeff()});
+            largest =
+                std::max({largest, body.mass * (model.X[r] + state.u[r]).cwiseAbs().maxCoeff(),
+                          body.inertia.norm() / (body.radius * body.radius) * state.u[r + 1].cwiseAbs().maxCoeff()});
         }
         const double digit = std::numeric_limits<double>::epsilon() / options.tolerance;
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;

@@ -52,7 +52,8 @@ TEST(FreeTop, KeepsEnergyAndMomentaAboutItsIntermediateAxis) {
         ASSERT_NEAR(now.kinetic, first.kinetic, kept * first.kinetic);
         ASSERT_LT((now.linear - first.linear).norm(), kept * first.linear.norm());
         ASSERT_LT((now.angular - first.angular).norm(), kept * first.angular.norm());
-        turns += top.steps[k].state.rigid[0].angular_velocity.y() * top.steps[k - 1].state.rigid[0].angular_velocity.y() < 0;
+        turns +=
+            top.steps[k].state.rigid[0].angular_velocity.y() * top.steps[k - 1].state.rigid[0].angular_velocity.y() < 0;
         ASSERT_EQ(top.steps[k].iterations <= 3, true) << "the tangent is exact";
     }
     EXPECT_GT(turns, 5);
@@ -112,19 +113,19 @@ support::SceneRun heavy_top(int steps) {
 bodies:
   top:
     mesh: {block: {origin: [-0.5 m, -0.5 m, 0.9 m], size: [1 m, 1 m, 0.2 m], divisions: [2, 2, 1]}, rotate: {axis: [0, 1, 0], angle: )" +
-               std::to_string(tilt) + R"(}}
+                   std::to_string(tilt) + R"(}}
     rigid: {density: 5, reference_point: [0, 0, 0], fix: [x, y, z]}
     initial_spin: )" +
-               spin + R"(
+                   spin + R"(
 gravity: [0, 0, -1]
 stages:
   spin:
     analysis: {dynamic: {integrator: {generalised_alpha: {rho_inf: 1}}}}
     control: {step_size: fixed}
     duration: 6
-    steps: )" +
-               std::to_string(steps) + "\nsolver: {tolerance: 1e-11}\n",
-           "heavy_top.yaml");
+    steps: )" + std::to_string(steps) +
+                   "\nsolver: {tolerance: 1e-11}\n",
+               "heavy_top.yaml");
 }
 
 /// Largest distance of the centre from its place, m.
@@ -133,7 +134,8 @@ double error_of_precession(const support::SceneRun& top) {
     for (const support::RunStep& step : top.steps) {
         const double angle = precession * step.time;
         const Vec3 exact(std::sin(tilt) * std::cos(angle), std::sin(tilt) * std::sin(angle), std::cos(tilt));
-        worst = std::max(worst, (model::centre_now(top.plan.model, top.plan.model.rigid[0], step.state) - exact).norm());
+        worst =
+            std::max(worst, (model::centre_now(top.plan.model, top.plan.model.rigid[0], step.state) - exact).norm());
     }
     return worst;
 }
@@ -198,7 +200,8 @@ stages:
     const support::RunStep& last = spun.steps.back();
     const model::RigidMotion& motion = last.state.rigid[0];
     EXPECT_NEAR(motion.angular_velocity.z(), 0.8 / 0.4 * 3, 1e-9);
-    EXPECT_NEAR(motion.rotation.z(), 0.8 / 0.4 * 9 / 2, 0.05); // tangents of half the angles follow the trapezoidal rule
+    EXPECT_NEAR(motion.rotation.z(), 0.8 / 0.4 * 9 / 2,
+                0.05); // tangents of half the angles follow the trapezoidal rule
     EXPECT_NEAR(last.ledger.external, last.ledger.kinetic, 1e-9);
     EXPECT_NEAR(last.ledger.angular.z(), 0.8 * 3, 1e-9);
 }

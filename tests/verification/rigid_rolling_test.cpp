@@ -46,9 +46,10 @@ std::string stage(const std::string& name, double duration, int steps, const std
 TEST(RigidBall, RollsDownAnInclineAtFiveSevenths) {
     constexpr double along = 28; // N: an incline of 19 degrees
     support::SceneRun run;
-    support::run_scene(run, support::scene_file("roll.yaml", ball_on_layer(1e6, 0.5, 0,
-                                                                         stage("settle", 0.1, 40, "linear", 0) +
-                                                                             stage("roll", 0.25, 100, "step", along))));
+    support::run_scene(run,
+                       support::scene_file("roll.yaml", ball_on_layer(1e6, 0.5, 0,
+                                                                      stage("settle", 0.1, 40, "linear", 0) +
+                                                                          stage("roll", 0.25, 100, "step", along))));
     const support::RunStep &start = run.steps[run.steps.size() - 101], &end = run.steps.back();
     ASSERT_NEAR(start.time, 0.1, 1e-9);
     const Vec3 gained = end.state.rigid[0].velocity - start.state.rigid[0].velocity;
@@ -61,8 +62,8 @@ TEST(RigidBall, RollsDownAnInclineAtFiveSevenths) {
 TEST(RigidBall, ThatSlidesEndsUpRollingAtFiveSevenths) {
     constexpr double speed = 1;
     support::SceneRun run;
-    support::run_scene(run, support::scene_file("slide.yaml", ball_on_layer(4e6, 0.25, speed,
-                                                                          stage("slide", 0.25, 200, "step", 0))));
+    support::run_scene(
+        run, support::scene_file("slide.yaml", ball_on_layer(4e6, 0.25, speed, stage("slide", 0.25, 200, "step", 0))));
     const model::RigidMotion& end = run.steps.back().state.rigid[0];
     EXPECT_NEAR(end.velocity.x(), 5. / 7 * speed, 0.01 * speed);
     EXPECT_NEAR(radius * model::spin(end).y(), 5. / 7 * speed, 0.02 * speed);

@@ -48,8 +48,8 @@ supports:
   bottom: {fix: [x, y, z]}
 contact:
   touch: {slave: )" +
-           slave + ", master: {set: " + master + ", surface: " + c.surface + "}, friction: 0.3, initial_overlap_limit: 1, discretisation: " +
-           c.discretisation + R"(}
+           slave + ", master: {set: " + master + ", surface: " + c.surface +
+           "}, friction: 0.3, initial_overlap_limit: 1, discretisation: " + c.discretisation + R"(}
 stages:
   press:
     analysis: )" +

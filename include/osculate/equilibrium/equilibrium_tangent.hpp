@@ -23,10 +23,10 @@ public:
     /// @param dependence  what dependent nodes follow; null: there are none
     /// @param at     iterate at which the residual was last evaluated
     EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
-                       const linear::Constraints& constraints,
-                       const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
-                       ContactTerm& contact, const linear::Dependence* dependence, const Iterate& at,
-                       const TangentChoice& choice, Timings& timings, int threads);
+                       const linear::Constraints& constraints, const linear::Unknowns& unknowns,
+                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact,
+                       const linear::Dependence* dependence, const Iterate& at, const TangentChoice& choice,
+                       Timings& timings, int threads);
 
     /// Opens an attempt over dt (0 in statics); changed: the bodies' stiffness has new values.
     void begin(double dt, bool changed);

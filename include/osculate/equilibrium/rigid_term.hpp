@@ -67,7 +67,7 @@ private:
         model::RigidMotion end;
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero(); ///< of inertia; the moment about the reference point
         Mat3 force_by_r, force_by_theta, moment_by_r, moment_by_theta; ///< its derivatives, in dynamics
-        Mat3 turning = Mat3::Zero();                      ///< change of the moment of all forces on the mesh by dtheta
+        Mat3 turning = Mat3::Zero(); ///< change of the moment of all forces on the mesh by dtheta
     };
     /// Takes body k to displacements of its two nodes. False, and nothing is done, if it turns by half a turn or more.
     [[nodiscard]] bool move(std::size_t k, const Field& u, Moving& now) const;

@@ -57,7 +57,8 @@ struct FoldedContact {
     /// @param E        (3m x 3) of the forces by the contact force
     /// @param G        (3m x 3+3n) of the forces; empty: not wanted
     FoldedContact(const Dependence& dependence, Index slave, std::span<const Index> masters,
-                  const Eigen::Ref<const Matrix>& A, const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
+                  const Eigen::Ref<const Matrix>& A,
+                  const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& E,
                   const Eigen::Ref<const Matrix>& G);
 };
 

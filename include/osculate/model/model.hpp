@@ -86,9 +86,9 @@ struct AssembledMass {
 [[nodiscard]] Vec3 centre_of_mass(const Body& body);
 /// Mass, centre of mass and inertia about it of a body of uniform density in its reference configuration.
 struct MassProperties {
-    double mass = 0;                              ///< kg
-    Vec3 centre = Vec3::Zero();                   ///< m
-    Mat3 inertia = Mat3::Zero();                  ///< kg m^2
+    double mass = 0;             ///< kg
+    Vec3 centre = Vec3::Zero();  ///< m
+    Mat3 inertia = Mat3::Zero(); ///< kg m^2
 };
 [[nodiscard]] MassProperties mass_properties(const Body& body, double density);
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).

@@ -17,13 +17,13 @@ struct State;
 /// those of all meshes: node `reference` has the displacement u_r, the next one the sum of the rotation vectors of all
 /// steps, times `radius`. So every unknown is a length and every row a force: a moment is divided by `radius`.
 struct RigidBody {
-    Index body = -1;                  ///< of the model
-    Index first_node = 0, nodes = 0;  ///< of its mesh, global
-    Index reference = -1;             ///< node of the reference point; that of the rotation is the next
-    double radius = 1;                ///< distance of its farthest node from the reference point, m
-    double mass = 0;                  ///< kg; 0: none is needed, every stage is static
-    Vec3 centre = Vec3::Zero();       ///< of mass, in the reference configuration, m
-    Mat3 inertia = Mat3::Zero();      ///< about the centre, in the reference configuration, kg m^2
+    Index body = -1;                 ///< of the model
+    Index first_node = 0, nodes = 0; ///< of its mesh, global
+    Index reference = -1;            ///< node of the reference point; that of the rotation is the next
+    double radius = 1;               ///< distance of its farthest node from the reference point, m
+    double mass = 0;                 ///< kg; 0: none is needed, every stage is static
+    Vec3 centre = Vec3::Zero();      ///< of mass, in the reference configuration, m
+    Mat3 inertia = Mat3::Zero();     ///< about the centre, in the reference configuration, kg m^2
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero(); ///< of the centre at the start, m/s; rad/s
 
     [[nodiscard]] Index rotation() const { return reference + 1; }
@@ -47,7 +47,7 @@ struct RigidMotion {
 
 /// Sums over all rigid bodies.
 struct RigidMomenta {
-    double kinetic = 0;                                         ///< J
+    double kinetic = 0;                                 ///< J
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero(); ///< kg m/s; about X = 0, kg m^2/s
 };
 [[nodiscard]] RigidMomenta rigid_momenta(const Model& model, const State& state);

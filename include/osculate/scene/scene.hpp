@@ -142,12 +142,12 @@ using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean>;
 
 /// A body that does not deform.
 struct Rigid {
-    double density = 0;                     ///< kg/m^3; 0: that of the material, if there is one
-    std::optional<double> mass;             ///< kg; none: of volume and density
-    std::optional<Vec3> centre;             ///< of mass, m; none: that of the volume
-    std::optional<Vec3> inertia, products;  ///< J_xx, J_yy, J_zz and J_xy, J_yz, J_xz about the centre, kg m^2
-    std::optional<Vec3> reference_point;    ///< m; none: the centre of mass
-    std::array<bool, 6> fixed{};            ///< displacement and rotation components held at zero
+    double density = 0;                    ///< kg/m^3; 0: that of the material, if there is one
+    std::optional<double> mass;            ///< kg; none: of volume and density
+    std::optional<Vec3> centre;            ///< of mass, m; none: that of the volume
+    std::optional<Vec3> inertia, products; ///< J_xx, J_yy, J_zz and J_xy, J_yz, J_xz about the centre, kg m^2
+    std::optional<Vec3> reference_point;   ///< m; none: the centre of mass
+    std::array<bool, 6> fixed{};           ///< displacement and rotation components held at zero
     bool operator==(const Rigid&) const = default;
 };
 

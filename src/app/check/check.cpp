@@ -17,8 +17,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace osculate::app {

@@ -109,9 +109,8 @@ void add_rigid_constraints(const Draft& draft, const Driving& driving, CourseLis
             if (moved) {
                 const scene::Course& value = *motion->second[k];
                 if (!value.is_value())
-                    held.course = courses.index("motion." + name + "." + (k < 3 ? "" : "r") +
-                                                    std::string(1, "xyz"[k % 3]),
-                                                value);
+                    held.course = courses.index(
+                        "motion." + name + "." + (k < 3 ? "" : "r") + std::string(1, "xyz"[k % 3]), value);
                 held.target = unit * (value.is_value() ? value.value() : 1);
             }
             constraints.push_back(held);

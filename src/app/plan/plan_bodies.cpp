@@ -1,7 +1,6 @@
 /// Parts of a plan: what bodies do by themselves.
 
 #include "app/plan/plan_items.hpp"
-
 #include "osculate/linear/dependence.hpp"
 
 #include <algorithm>
@@ -58,8 +57,9 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
     double followers = 0;
     for (const model::RigidBody& rigid : model.rigid) followers += rigid.nodes;
     list.say("rigid bodies", !model.rigid.empty(),
-             model.rigid.empty() ? "every body deforms"
-                                 : fmt::format("{} of {} bodies, six unknowns each", model.rigid.size(), model.bodies.size()),
+             model.rigid.empty()
+                 ? "every body deforms"
+                 : fmt::format("{} of {} bodies, six unknowns each", model.rigid.size(), model.bodies.size()),
              {followers * (sizeof(std::vector<int>) + 2 * sizeof(linear::Dependence::Carrier)), followers,
               "nodes an iteration"});
 

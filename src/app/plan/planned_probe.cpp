@@ -87,20 +87,16 @@ std::array<std::string, 3> asks_too_much(const scene::Probe& spec, const model::
                                                       "'" + field + "', of bodies that deform"};
         return found;
     };
-    return std::visit(
-        Overloaded{[&](const scene::PointProbe& p) { return judge("point", body_index(model, p.body), p.fields); },
-                   [&](const scene::LineProbe& p) { return judge("line", body_index(model, p.body), p.fields); },
-                   [&](const scene::NodesProbe& p) {
-                       return judge("nodes", std::ranges::find(model.sets, p.set, &model::Set::name)->body, p.fields);
-                   },
-                   [&](const scene::SectionForceProbe& p) {
-                       std::array<std::string, 3> found = judge("section_force", body_index(model, p.body), {"stress"});
-                       if (!found[0].empty())
-                           found = {"section_force.body", "a body that deforms", "'" + p.body + "', which is rigid"};
-                       return found;
-                   },
-                   [](const auto&) { return std::array<std::string, 3>{}; }},
-        spec.kind);
+    if (const auto* p = std::get_if<scene::PointProbe>(&spec.kind))
+        return judge("point", body_index(model, p->body), p->fields);
+    if (const auto* p = std::get_if<scene::LineProbe>(&spec.kind))
+        return judge("line", body_index(model, p->body), p->fields);
+    if (const auto* p = std::get_if<scene::NodesProbe>(&spec.kind))
+        return judge("nodes", std::ranges::find(model.sets, p->set, &model::Set::name)->body, p->fields);
+    const auto* p = std::get_if<scene::SectionForceProbe>(&spec.kind);
+    if (p != nullptr && model.bodies[static_cast<std::size_t>(body_index(model, p->body))].rigid)
+        return {"section_force.body", "a body that deforms", "'" + p->body + "', which is rigid"};
+    return {};
 }
 
 } // namespace

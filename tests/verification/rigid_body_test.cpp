@@ -152,6 +152,35 @@ TEST(HeavyTop, PrecessesSteadily) {
     for (const double u : step.state.u[static_cast<std::size_t>(coarse.plan.model.rigid[0].reference)]) EXPECT_EQ(u, 0);
 }
 
+/// A bar that hangs from its end, let go at a right angle: the period is an elliptic integral.
+TEST(Pendulum, SwingsInItsPeriodWithTheDefaultIntegrator) {
+    const support::SceneRun bar = run(R"(
+gravity: [0, 0, -9.81]
+bodies:
+  bar:
+    mesh: {block: {origin: [0, -0.05 m, -0.05 m], size: [1 m, 0.1 m, 0.1 m], divisions: [10, 1, 1]}}
+    rigid: {density: 1000, reference_point: [0, 0, 0], fix: [x, y, z]}
+stages:
+  swing: {analysis: dynamic, duration: 5 s, steps: 500}
+)");
+    std::vector<double> passed; // the lowest place
+    for (std::size_t k = 1; k < bar.steps.size(); ++k) {
+        const auto left = [&](std::size_t i) {
+            return bar.steps[i].state.rigid[0].rotation.y() - std::numbers::pi / 2;
+        };
+        if (left(k - 1) * left(k) >= 0) continue;
+        const double share = left(k - 1) / (left(k - 1) - left(k));
+        passed.push_back(bar.steps[k - 1].time + share * (bar.steps[k].time - bar.steps[k - 1].time));
+    }
+    ASSERT_GE(passed.size(), 5U);
+    const double swings = static_cast<double>(passed.size() - 1) / 2;
+    // 10 kg, about the end: J = m (1 + 0.1^2)/12 + m/4; amplitude 90 degrees
+    const double period = 4 * std::sqrt((1.01 / 12 + 0.25) / (9.81 * 0.5)) * std::comp_ellint_1(std::sqrt(0.5));
+    EXPECT_NEAR((passed.back() - passed.front()) / swings, period, 5e-4 * period);
+    const time::Ledger& last = bar.steps.back().ledger;
+    EXPECT_NEAR(last.kinetic, last.external, 1e-4 * last.kinetic);
+}
+
 // ---- driven motion, loads ------------------------------------------------------------------------------------------------
 
 TEST(RigidBody, TurnsAsItIsDrivenBeyondAWholeTurn) {

@@ -36,6 +36,12 @@ BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, bool
     if (varies()) constant_ = model_.K;
 }
 
+void BodyForces::add_to_tangent(std::function<void(linear::BlockMatrix&)> part, const linear::Dependence& dependence) {
+    also_ = std::move(part);
+    dependence_ = &dependence;
+    tangent_ = constant_ = model_.K;
+}
+
 void BodyForces::add_pressures(double factor, bool end, const Field& u, Field& f) const {
     std::vector<FollowerLoad> scaled = pressures_;
     for (FollowerLoad& load : scaled) load.start = factor * (end ? load.end : load.start);
@@ -145,13 +151,29 @@ bool BodyForces::linearise(const Field& u) {
     tangent_ = constant_;
     if (stabilised()) add_springs(tangent_);
     if (nonlinear()) model_.nonlinear->add_tangent(model_.X, step_to(u), tangent_, threads_);
+    if (also_) also_(tangent_);
     if (!follower_pressure_) return true;
     const double factor = dynamics_ != nullptr ? dynamics_->integrator.alpha_f - 1 : -1;
     const Field x = sum(model_.X, u);
     for (const FollowerLoad& load : pressures_)
-        for (const mesh::SurfaceFace& face : *load.faces)
-            tangent_.add({face.begin(), face.end()}, fe::pressure_tangent(face, x, factor * load.end));
+        for (const mesh::SurfaceFace& face : *load.faces) add_pressure_tangent(face, x, factor * load.end);
     return true;
+}
+
+void BodyForces::add_pressure_tangent(const mesh::SurfaceFace& face, const Field& x, double pressure) {
+    const std::vector<Index> nodes(face.begin(), face.end());
+    const Matrix tangent = fe::pressure_tangent(face, x, pressure);
+    if (dependence_ == nullptr || !dependence_->depends(nodes.front())) {
+        tangent_.add(nodes, tangent);
+        return;
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) // all of one body, on whose nodes they depend alike
+        for (std::size_t j = 0; j < nodes.size(); ++j) {
+            const Mat3 block = tangent.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j));
+            for (const linear::Dependence::Carrier& row : dependence_->carriers(nodes[i]))
+                for (const linear::Dependence::Carrier& column : dependence_->carriers(nodes[j]))
+                    tangent_.block(tangent_.slot(row.node, column.node)) += row.loads * block * column.moves;
+        }
 }
 
 void BodyForces::complete(model::State& state) const {

@@ -14,6 +14,8 @@ bool BodyTerm::begin(const model::State& state, const Iterate&, const StepLoad& 
 
 bool BodyTerm::evaluate(const Iterate& at) {
     const ScopedTimer timer(timings_, Part::assembly);
+    if (!linear_about_.empty())
+        for (const Index node : without_elements_) linear_about_[node] = at.u[node];
     linearised_ = !linear_about_.empty() && linear_about_ != at.u;
     const Field& u = linearised_ ? linear_about_ : at.u;
     worst_element_ = bodies_.evaluate(u, internal_);
@@ -21,6 +23,7 @@ bool BodyTerm::evaluate(const Iterate& at) {
         bodies_.linearise(u);
         bodies_.tangent().multiply_add(weighted(1, at.u, -1, u), internal_, threads_);
     }
+    if (linearised_ && !without_elements_.empty()) linearised_about_ = linear_about_;
     linear_about_.clear();
     return worst_element_.admissible();
 }
@@ -31,6 +34,7 @@ void BodyTerm::add_forces(Field& f) const {
 
 bool BodyTerm::update_stiffness(const Iterate& at) {
     const ScopedTimer timer(timings_, Part::assembly);
+    if (linearised_ && !without_elements_.empty()) return bodies_.linearise(linearised_about_); // others have moved on
     return linearised_ || bodies_.linearise(at.u);
 }
 

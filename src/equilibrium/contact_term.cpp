@@ -21,7 +21,10 @@ ContactTerm::ContactTerm(const model::ContactPairs& pairs, const linear::Constra
         for (const Index node : slaves) {
             bool any = false;
             for (int k = 0; k < 3; ++k)
-                if (const auto* c = constraints.constraint(node, k)) any = any || !c->symmetry;
+                if (const auto* c = constraints.constraint(node, k))
+                    any = any || !c->symmetry;
+                else // dependent nodes have no equations of their own
+                    any = any || constraints.equation(node, k) == Constraints::held;
             held.push_back(any);
         }
         evaluation.hold(std::move(held));

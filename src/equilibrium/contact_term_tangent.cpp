@@ -93,6 +93,36 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
     return list;
 }
 
+namespace {
+/// The same spring between the nodes that dependent nodes follow. A slave that depends on others becomes one of the
+/// masters with the opposite sign, and the slave itself does not move.
+void follow_carriers(const linear::Dependence& dependence, linear::Spring& spring) {
+    if (!linear::any_depends(dependence, spring.slave, spring.masters)) return;
+    linear::Spring folded;
+    const auto add = [&](Index node, const Mat3& follow) {
+        if (!dependence.depends(node)) {
+            folded.masters.push_back(node);
+            folded.follow.push_back(follow);
+            return;
+        }
+        for (const linear::Dependence::Carrier& carrier : dependence.carriers(node)) {
+            // each once: their nodes are many, and each pair of entries costs a product
+            const auto at = std::ranges::find(folded.masters, carrier.node);
+            if (at == folded.masters.end()) {
+                folded.masters.push_back(carrier.node);
+                folded.follow.push_back(follow * carrier.moves);
+            } else {
+                folded.follow[static_cast<std::size_t>(at - folded.masters.begin())] += follow * carrier.moves;
+            }
+        }
+    };
+    for (std::size_t i = 0; i < spring.masters.size(); ++i) add(spring.masters[i], spring.follow[i]);
+    if (dependence.depends(spring.slave)) add(spring.slave, -Mat3::Identity());
+    spring.masters = std::move(folded.masters);
+    spring.follow = std::move(folded.follow);
+}
+} // namespace
+
 linear::SoftContact ContactTerm::soften(std::size_t p, Index j) const {
     const model::ContactEvaluation& evaluation = evaluations_[p];
     linear::SoftContact soft;
@@ -107,6 +137,7 @@ linear::SoftContact ContactTerm::soften(std::size_t p, Index j) const {
     soft.normal = evaluation.point(j).normal;
     soft.B = kept * (law.by_gap * soft.normal.transpose() + law.by_drift);
     evaluation.follow_master(j, soft.where.masters, soft.where.follow);
+    if (dependence_ != nullptr) follow_carriers(*dependence_, soft.where);
     return soft;
 }
 
@@ -168,10 +199,14 @@ bool ContactTerm::add_pattern(std::vector<linear::Coupling>& couplings) const {
         return std::ranges::all_of(masters,
                                    [&](Index node) { return std::ranges::binary_search(coupling.masters, node); });
     };
+    const auto independent = [&](std::size_t p, Index j, std::vector<Index> masters) {
+        if (dependence_ != nullptr) linear::replace_dependent(*dependence_, unknowns_.slave(first_[p] + j), masters);
+        return masters;
+    };
     for (std::size_t p = 0; p < evaluations_.size() && covered; ++p)
         for (Index j = 0; j < evaluations_[p].pair().size() && covered; ++j)
-            covered = !reaches(p, j) ||
-                      covers(couplings[static_cast<std::size_t>(first_[p] + j)], evaluations_[p].point_nodes(j));
+            covered = !reaches(p, j) || covers(couplings[static_cast<std::size_t>(first_[p] + j)],
+                                               independent(p, j, evaluations_[p].point_nodes(j)));
     if (covered) return true;
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
@@ -181,6 +216,7 @@ bool ContactTerm::add_pattern(std::vector<linear::Coupling>& couplings) const {
             masters = evaluations_[p].patch_nodes(evaluations_[p].facets()[j]);
             const auto& own = evaluations_[p].point_nodes(j);
             masters.insert(masters.end(), own.begin(), own.end());
+            masters = independent(p, j, std::move(masters));
             std::sort(masters.begin(), masters.end());
             masters.erase(std::unique(masters.begin(), masters.end()), masters.end()); // mirror images repeat nodes
         }
@@ -211,9 +247,20 @@ void ContactTerm::add_derivatives(linear::SystemMatrix& matrix) {
                 for (Index k = 0; k < count; ++k) {
                     const ContactTangent& t = tangents_[k];
                     const Index j = first + k, coupling = first_[p] + j;
-                    if (t.reaches)
-                        matrix.add_contact(coupling, evaluation.point_nodes(j), t.A, t.D, t.E, t.G, lane);
-                    else
+                    const std::vector<Index>& nodes = evaluation.point_nodes(j);
+                    if (t.reaches && dependence_ != nullptr &&
+                        linear::any_depends(*dependence_, unknowns_.slave(coupling), nodes)) {
+                        const linear::FoldedContact folded(*dependence_, unknowns_.slave(coupling), nodes, t.A, t.E,
+                                                           t.G);
+                        matrix.add_contact(coupling, folded.masters, folded.A, t.D, folded.E, folded.G, lane);
+                    } else if (t.reaches)
+                        matrix.add_contact(coupling, nodes, t.A, t.D, t.E, t.G, lane);
+                    else if (dependence_ != nullptr && dependence_->depends(unknowns_.slave(coupling))) {
+                        const linear::FoldedContact force(*dependence_, unknowns_.slave(coupling), {},
+                                                          Matrix::Zero(3, 3), contact::MatrixX3(0, 3), Matrix(0, 3));
+                        matrix.add_contact(coupling, force.masters, force.A, t.D, force.E,
+                                           Matrix::Zero(force.E.rows(), force.A.cols()), lane);
+                    } else
                         matrix.add_contact(coupling, t.D, lane);
                 }
             });

@@ -23,11 +23,26 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
                          bool follower_pressure)
     : model_(model), pairs_(std::move(pairs)), constraints_(constraints), unknowns_(constraints, slaves_of(pairs_)),
       timings_(timings), bodies_(model, dynamics, follower_pressure, timings, threads),
-      contact_(pairs_, constraints, unknowns_, timings, threads), terms_{&bodies_, &loads_, &contact_},
-      tangent_(model, pairs_, constraints, unknowns_, terms_, bodies_, contact_, at_, choice, timings, threads),
+      contact_(pairs_, constraints, unknowns_, timings, threads),
+      rigid_(model.rigid.empty() ? nullptr : std::make_unique<RigidTerm>(model, constraints, dynamics)),
+      terms_(list_of_terms()), tangent_(model, pairs_, constraints, unknowns_, terms_, bodies_, contact_,
+                                        rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
       factorisable_(choice.factorisable) {
     at_.u.reset(model.X.size());
     at_.x = at_.tail = unbalanced_ = at_.u;
+}
+
+std::vector<Term*> Equilibrium::list_of_terms() {
+    std::vector<Term*> terms{&bodies_, &loads_, &contact_};
+    if (!rigid_) return terms;
+    bodies_.bodies().add_to_tangent([this](linear::BlockMatrix& tangent) { rigid_->add_tangent(tangent); },
+                                    rigid_->dependence());
+    contact_.use(rigid_->dependence());
+    std::vector<Index> nodes = model::dependent_nodes(model_);
+    for (const model::RigidBody& body : model_.rigid) nodes.insert(nodes.end(), {body.reference, body.rotation()});
+    bodies_.set_without_elements(std::move(nodes));
+    terms.push_back(rigid_.get());
+    return terms;
 }
 
 void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double dt) {
@@ -65,7 +80,9 @@ void Equilibrium::release() {
 }
 
 bool Equilibrium::advance_friction(Vector& z) {
-    if (!friction_) friction_ = std::make_unique<FrictionStep>(constraints_, unknowns_, bodies_, contact_);
+    if (!friction_)
+        friction_ = std::make_unique<FrictionStep>(constraints_, unknowns_, bodies_, contact_,
+                                                   rigid_ ? &rigid_->dependence() : nullptr);
     return friction_->advance(at_, unbalanced_, z);
 }
 
@@ -75,6 +92,7 @@ void Equilibrium::place() {
 
 void Equilibrium::unpack() {
     constraints_.scatter(last_z_, prescribed_, at_.u);
+    if (rigid_) rigid_->place(at_.u);
     at_.z = &last_z_;
     place();
 }
@@ -89,6 +107,7 @@ Vector Equilibrium::unknowns(const Field& u, const std::vector<model::ContactHis
 Field Equilibrium::displacements(const Vector& z) const {
     Field u(at_.u.size());
     constraints_.scatter(z, prescribed_, u);
+    if (rigid_) rigid_->place(u);
     return u;
 }
 
@@ -122,6 +141,7 @@ void Equilibrium::fill(VectorRef F) {
         term->add_forces(unbalanced_);
         if (const Index node = term->write_rows(F); node >= 0) without_value = node;
     }
+    if (rigid_) rigid_->fold(unbalanced_);
     double worst = -1;
     for (Index node = 0; node < model_.nodes(); ++node) {
         const Vec3 local = constraints_.to_local(node, unbalanced_[node]);
@@ -162,6 +182,7 @@ bool Equilibrium::at_round_off(const ConstVectorRef& F) const {
         if (!term->rows_within(at_, F, last_digits)) return false;
         term->add_magnitudes(at_, sums);
     }
+    if (rigid_) rigid_->dependence().fold_magnitudes(sums);
     for (Index node = 0; node < model_.nodes(); ++node) {
         const Vec3 local = constraints_.frame(node).cwiseAbs().transpose() * sums[node];
         for (int k = 0; k < 3; ++k)

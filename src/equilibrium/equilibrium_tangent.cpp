@@ -35,11 +35,18 @@ std::vector<Index> contact_nodes(const model::ContactPairs& pairs) {
 EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
                                        const linear::Constraints& constraints, const linear::Unknowns& unknowns,
                                        std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact,
-                                       const Iterate& at, const TangentChoice& choice, Timings& timings, int threads)
-    : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact), at_(at),
-      timings_(timings), may_buckle_(model.nonlinear != nullptr), products_(choice.products) {
+                                       const linear::Dependence* dependence, const Iterate& at,
+                                       const TangentChoice& choice, Timings& timings, int threads)
+    : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact),
+      dependence_(dependence), at_(at), timings_(timings),
+      may_buckle_(model.nonlinear != nullptr || dependence != nullptr), products_(choice.products) {
     const linear::BlockMatrix& K = bodies_.bodies().tangent();
-    for (Index j = 0; j < unknowns.couplings(); ++j) couplings_.push_back({unknowns.slave(j), {}});
+    for (Index j = 0; j < unknowns.couplings(); ++j) {
+        couplings_.push_back({unknowns.slave(j), {}});
+        if (dependence == nullptr) continue; // the force on a dependent node acts elsewhere, even if it is open
+        linear::replace_dependent(*dependence, unknowns.slave(j), couplings_.back().masters);
+        std::ranges::sort(couplings_.back().masters);
+    }
     kept_couplings_ = couplings_;
     if (choice.preconditioned)
         preconditioner_ = std::make_unique<linear::ContactPreconditioner>(
@@ -143,7 +150,9 @@ void EquilibriumTangent::multiply(const ConstVectorRef& x, VectorRef y) {
             if (const Index e = constraints_.equation(node, k); e != linear::Constraints::held) local(k) = x[e];
         u[node] = constraints_.to_global(node, local);
     }
+    if (dependence_ != nullptr) dependence_->move(u);
     for (Term* term : terms_) term->add_product({u, x}, f, y);
+    if (dependence_ != nullptr) dependence_->fold(f);
     for (Index node = 0; node < constraints_.nodes(); ++node) {
         const Vec3 local = constraints_.to_local(node, f[node]);
         for (int k = 0; k < 3; ++k)

@@ -16,8 +16,8 @@ constexpr double tolerance = 1e-10; ///< of solve::friction_error()
 } // namespace
 
 FrictionStep::FrictionStep(const linear::Constraints& constraints, const linear::Unknowns& unknowns, BodyTerm& bodies,
-                           ContactTerm& contact)
-    : constraints_(constraints), unknowns_(unknowns), bodies_(bodies), contact_(contact),
+                           ContactTerm& contact, const linear::Dependence* dependence)
+    : constraints_(constraints), unknowns_(unknowns), bodies_(bodies), contact_(contact), dependence_(dependence),
       stiffness_(constraints, bodies.bodies().tangent()) {}
 
 bool FrictionStep::factorise(const Iterate& at) {
@@ -35,12 +35,23 @@ bool FrictionStep::factorise(const Iterate& at) {
 }
 
 void FrictionStep::add_force(Index node, const Vec3& force, VectorRef right) const {
+    if (dependence_ != nullptr && dependence_->depends(node)) {
+        for (const linear::Dependence::Carrier& carrier : dependence_->carriers(node))
+            add_force(carrier.node, carrier.loads * force, right);
+        return;
+    }
     const Vec3 local = constraints_.to_local(node, force);
     for (int k = 0; k < 3; ++k)
         if (const Index e = constraints_.equation(node, k); e != Constraints::held) right(e) += local(k);
 }
 
 Vec3 FrictionStep::motion(Index node, const ConstVectorRef& du) const {
+    if (dependence_ != nullptr && dependence_->depends(node)) {
+        Vec3 moved = Vec3::Zero();
+        for (const linear::Dependence::Carrier& carrier : dependence_->carriers(node))
+            moved += carrier.moves * motion(carrier.node, du);
+        return moved;
+    }
     Vec3 local = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
         if (const Index e = constraints_.equation(node, k); e != Constraints::held) local(k) = du(e);
@@ -68,6 +79,7 @@ bool FrictionStep::advance(const Iterate& at, const Field& unbalanced, Vector& z
 
     Field free = unbalanced, carried(unbalanced.size()); // f(u) - f_ext
     contact_.add_forces(carried);
+    if (dependence_ != nullptr) dependence_->fold(carried);
     free.add(-1, carried);
     Vector right(equations), du(equations);
     constraints_.gather(free, right);

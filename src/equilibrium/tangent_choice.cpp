@@ -58,11 +58,11 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     const bool symmetric = !follows && (!dynamic || !model.nonlinear);
     const bool contact = !pairs.empty();
     TangentChoice choice;
-    choice.multigrid = goes_by_multigrid(model, asked, pays);
+    choice.multigrid = model.rigid.empty() && goes_by_multigrid(model, asked, pays);
     choice.factorisable = !choice.multigrid || model.nodes() <= most;
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned = choice.multigrid || ((contact || !symmetric) && asked != LinearSolver::direct);
-    choice.condensed = !model.nonlinear && !follows && !choice.multigrid && choice.products &&
+    choice.condensed = !model.nonlinear && model.rigid.empty() && !follows && !choice.multigrid && choice.products &&
                        (asked == LinearSolver::condensed || (asked == LinearSolver::automatic && pays));
     return choice;
 }

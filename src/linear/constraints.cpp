@@ -11,7 +11,8 @@ constexpr double same_direction = 1e-9; ///< sine or cosine below which unit vec
 constexpr double same_value = 1e-12;    ///< relative
 } // namespace
 
-Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constraints)
+Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constraints,
+                         const std::vector<Index>& dependent)
     : entry_(static_cast<std::size_t>(nodes), -1), equation_(3 * static_cast<std::size_t>(nodes), 0) {
     std::vector<std::vector<NodeConstraint>> at;
     for (const NodeConstraint& c : constraints) {
@@ -69,9 +70,12 @@ Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constra
         if (count < 3) entry.frame.col(2) = entry.frame.col(0).cross(entry.frame.col(1));
     }
 
+    for (const Index node : dependent)
+        for (int k = 0; k < 3; ++k) equation_[3 * static_cast<std::size_t>(node) + k] = held;
     for (Index node = 0; node < nodes; ++node)
         for (int k = 0; k < 3; ++k)
-            equation_[3 * static_cast<std::size_t>(node) + k] = constraint(node, k) ? held : equations_++;
+            if (Index& e = equation_[3 * static_cast<std::size_t>(node) + k]; e != held)
+                e = constraint(node, k) ? held : equations_++;
 }
 
 int Constraints::free_components(Index node) const {

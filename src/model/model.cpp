@@ -33,9 +33,17 @@ template <class F> void for_each_element(const Body& body, F&& f) {
 namespace {
 linear::BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
     std::vector<std::vector<Index>> elements;
-    for (const Body& body : bodies)
-        for_each_element(body, [&](const fe::ElementKernel&, const std::vector<Index>& element,
-                                   const Eigen::Matrix3Xd&) { elements.push_back(element); });
+    Index last = 0, rigid = 0;
+    for (const Body& body : bodies) {
+        last = body.first_node + body.nodes();
+        rigid += body.rigid ? 1 : 0;
+        if (body.rigid) // its nodes have no equations
+            for (Index node = body.first_node; node < last; ++node) elements.push_back({node});
+        else
+            for_each_element(body, [&](const fe::ElementKernel&, const std::vector<Index>& element,
+                                       const Eigen::Matrix3Xd&) { elements.push_back(element); });
+    }
+    for (Index k = 0; k < rigid; ++k) elements.push_back({last + 2 * k, last + 2 * k + 1});
     return {nodes, elements};
 }
 } // namespace
@@ -120,6 +128,7 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
     AssembledMass assembled{pattern_of(bodies, nodes), {}};
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const Body& body = bodies[b];
+        if (body.rigid) continue;
         const auto first = massless.begin() + (massless.empty() ? 0 : body.first_node);
         std::optional<std::vector<double>> factors;
         if (!massless.empty() && body.density > 0 &&
@@ -149,6 +158,7 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
 linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
     linear::BlockMatrix K = pattern_of(bodies, nodes);
     for (const Body& body : bodies) {
+        if (body.rigid) continue;
         Matrix Ke;
         for_each_element(
             body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
@@ -210,7 +220,13 @@ double strain_energy(const Model& model, const Field& u, const MaterialHistory& 
 
 std::vector<double> volume_shares(const Model& model) {
     std::vector<double> share(model.X.size(), 0.0);
+    for (const RigidBody& body : model.rigid) {
+        constexpr double turning = 0.4; // second moment of a ball, of its radius
+        share[static_cast<std::size_t>(body.reference)] = 1;
+        share[static_cast<std::size_t>(body.rotation())] = turning;
+    }
     for (const Body& body : model.bodies) {
+        if (body.rigid) continue;
         double volume = 0;
         Vector part;
         for_each_element(
@@ -239,6 +255,27 @@ Vec3 centre_of_mass(const Body& body) {
     return moment / volume;
 }
 
+MassProperties mass_properties(const Body& body, double density) {
+    MassProperties total;
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero(); // about the first node, which is near
+    const Vec3& origin = body.mesh.nodes.front();
+    Matrix mass;
+    for_each_element(body, [&](const fe::ElementKernel& kernel, const std::vector<Index>&, const Eigen::Matrix3Xd& X) {
+        element_mass(kernel, X, density, false, mass);
+        const Eigen::Matrix3Xd x = X.colwise() - origin;
+        total.mass += mass.sum();
+        first += x * mass.rowwise().sum();
+        second += x * mass * x.transpose();
+    });
+    if (!(total.mass > 0)) return total;
+    const Vec3 centre = first / total.mass;
+    second -= total.mass * centre * centre.transpose();
+    total.centre = origin + centre;
+    total.inertia = second.trace() * Mat3::Identity() - second;
+    return total;
+}
+
 void add_body_force(const Body& body, const Vec3& b, Field& f) {
     for_each_element(
         body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
@@ -252,6 +289,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index 
     const Body& body = model.bodies[static_cast<std::size_t>(b)];
     std::size_t history = history_place(model.bodies, static_cast<std::size_t>(b)).first;
     Eigen::Matrix<double, Eigen::Dynamic, 6> stress = decltype(stress)::Zero(body.nodes(), 6);
+    if (body.rigid) return stress;
     Vector weight = Vector::Zero(body.nodes());
     Matrix element_stress;
     for_each_element(body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element,

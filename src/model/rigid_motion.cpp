@@ -24,6 +24,17 @@ void RigidHold::hold(const Vec3& point, const Vec3& direction) {
     gram_ += row * row.transpose();
 }
 
+void RigidHold::hold_turning(const Vec3& axis) {
+    Motion row;
+    row << Vec3::Zero(), axis;
+    gram_ += row * row.transpose();
+}
+
+void RigidHold::hold(const RigidBody& body, const linear::NodeConstraint& constraint, const std::vector<Vec3>& x) {
+    if (constraint.node == body.reference) hold(x[static_cast<std::size_t>(body.reference)], constraint.direction);
+    if (constraint.node == body.rotation()) hold_turning(constraint.direction);
+}
+
 int RigidHold::free() const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram_, Eigen::EigenvaluesOnly);
     const auto& values = eigen.eigenvalues(); // ascending

@@ -235,6 +235,15 @@ void each_value(History& history,
     visit("facet", history.facet); // the master is made from the patches
 }
 
+/// Calls visit(values, count) for every array of numbers of a rigid body's motion.
+template <class Motion, class Visit> void each_array(Motion& motion, const Visit& visit) {
+    visit(motion.orientation.coeffs().data(), 4);
+    for (auto* value : {&motion.rotation, &motion.velocity, &motion.acceleration, &motion.angular_velocity,
+                        &motion.angular_rate, &motion.moment})
+        visit(value->data(), 3);
+}
+constexpr std::size_t motion_size = 4 + 6 * 3;
+
 template <class Pair, class Visit>
 void each_value(Pair& pair, const Visit& visit) requires std::is_same_v<std::remove_const_t<Pair>, time::FoundPair> {
     visit("slave", pair.slave);
@@ -256,6 +265,7 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
     visit("a", run.state.a);
     visit("contact", run.state.contact);
     visit("material", run.state.material);
+    visit("rigid", run.state.rigid);
     visit("ledger", run.ledger);
     visit("moved", run.moved);
     visit("attempts", run.counts.attempts);
@@ -299,6 +309,13 @@ struct Writer {
             json[name].push_back(std::move(one));
         }
     }
+    void operator()(const char* name, const std::vector<model::RigidMotion>& motions) const {
+        std::vector<double> flat;
+        for (const model::RigidMotion& motion : motions)
+            each_array(motion,
+                       [&](const double* values, int count) { flat.insert(flat.end(), values, values + count); });
+        (*this)(name, flat);
+    }
     void operator()(const char* name, const std::vector<std::vector<contact::RefittedPatch>>& pairs) const {
         json[name] = Json::array();
         for (const auto& patches : pairs) json[name].push_back(to_json(patches));
@@ -329,6 +346,18 @@ struct Reader {
     }
     void operator()(const char* name, std::vector<time::FoundPair>& pairs) const {
         for (const Json& one : member(json, name)) each_value(pairs.emplace_back(), Reader{one});
+    }
+    void operator()(const char* name, std::vector<model::RigidMotion>& motions) const {
+        std::vector<double> flat;
+        (*this)(name, flat);
+        if (flat.size() % motion_size != 0) incomplete(name);
+        motions.resize(flat.size() / motion_size);
+        const double* from = flat.data();
+        for (model::RigidMotion& motion : motions)
+            each_array(motion, [&](double* values, int count) {
+                std::copy_n(from, count, values);
+                from += count;
+            });
     }
     void operator()(const char* name, std::vector<std::vector<contact::RefittedPatch>>& pairs) const {
         for (const Json& one : member(json, name)) pairs.push_back(refitted_patches(one));

@@ -130,10 +130,14 @@ template <int k> Values principal(const Snapshot& snapshot, Index body) {
 }
 
 Values strain(const Snapshot& snapshot, Index body) {
+    const model::Body& part = snapshot.model().bodies[body];
+    if (part.rigid) return Values(6 * static_cast<std::size_t>(part.nodes()), 0.0);
     return nodal_strain(snapshot.model().bodies[body], snapshot.state().u);
 }
 
 Values energy_density(const Snapshot& snapshot, Index body) {
+    const model::Body& part = snapshot.model().bodies[body];
+    if (part.rigid) return Values(static_cast<std::size_t>(part.nodes()), 0.0);
     return nodal_energy_density(snapshot.model(), body, snapshot.state());
 }
 

@@ -71,6 +71,10 @@ std::vector<std::string> History::columns(const model::Model& model, bool pairs,
         }
     }
     for (const Index set : sets) vector("set." + model.sets[set].name + ".reaction");
+    for (const model::RigidBody& rigid : model.rigid) {
+        const std::string prefix = "body." + model.bodies[static_cast<std::size_t>(rigid.body)].name + ".ref_";
+        for (const char* name : {"u", "rotation", "force", "moment"}) vector(prefix + name);
+    }
     if (ledger) {
         for (const EnergyColumn& energy : energies) names.push_back(std::string("energy.") + energy.name);
         vector("momentum.linear");
@@ -107,6 +111,14 @@ std::vector<Cell> History::cells(const Snapshot& snapshot, const linear::Constra
     if (!sets.empty()) {
         const std::vector<Vec3> reactions = set_reactions(snapshot, constraints);
         for (const Index set : sets) append(cells, reactions[set]);
+    }
+    for (std::size_t k = 0; k < model.rigid.size(); ++k) {
+        const model::RigidBody& rigid = model.rigid[k];
+        const auto r = static_cast<std::size_t>(rigid.reference);
+        append(cells, snapshot.state().u[r]);
+        append(cells, snapshot.state().rigid[k].rotation);
+        append(cells, snapshot.reactions()[r]);
+        append(cells, Vec3(rigid.radius * snapshot.reactions()[r + 1]));
     }
     if (ledger && energies_now != nullptr) {
         for (const EnergyColumn& energy : energies) cells.emplace_back(energies_now->*energy.value);

@@ -36,6 +36,7 @@ Session::Session(app::LoadedScene loaded, int threads)
     const app::Plan& plan = loaded_.plan;
     reactions_ = loaded_.scene.output.history_reactions && !plan.constrained_sets.empty();
     if (reactions_) sets_ = plan.constrained_sets;
+    reactions_ = reactions_ || !plan.model.rigid.empty();
     ledger_ = std::ranges::any_of(plan.stages, [](const time::Stage& stage) { return stage.dynamics.has_value(); });
     columns_ = output::History::columns(plan.model, loaded_.scene.output.history_pairs, sets_, ledger_);
 }

@@ -111,6 +111,27 @@ public:
                     fault({"contact", "general", "pairs", name, "between"}, "bodies or finishes", "'" + side + "'");
                     faults_.back().nearest = nearest(side, known);
                 }
+        for (std::size_t a = 0; a < bodies.size(); ++a)
+            for (std::size_t b = a + 1; b < bodies.size(); ++b)
+                if (bodies[a].second.rigid && bodies[b].second.rigid && may_meet(general, bodies[a], bodies[b]))
+                    fault({"contact", "general"},
+                          "a rule of contact.general.pairs with `contact: false` for every two rigid bodies: they have "
+                          "no "
+                          "contact pressure of their own",
+                          "none for '" + bodies[a].first + "' and '" + bodies[b].first + "'");
+    }
+
+    [[nodiscard]] static bool may_meet(const GeneralContact& general, const Named<Body>::value_type& one,
+                                       const Named<Body>::value_type& other) {
+        const auto is = [](const std::string& side, const Named<Body>::value_type& body) {
+            return side == body.first || side == body.second.finish;
+        };
+        bool meet = true;
+        for (const auto& [name, rule] : general.pairs)
+            if ((is(rule.between[0], one) && is(rule.between[1], other)) ||
+                (is(rule.between[0], other) && is(rule.between[1], one)))
+                meet = rule.contact;
+        return meet;
     }
 
     template <class Surface> void check_basis(const std::string& name, const char* tag, const Surface& surface) {
@@ -144,12 +165,94 @@ public:
     }
 
     void check_density(const std::string& name, const Body& body, const std::string& reason) {
+        if (body.rigid && (body.rigid->mass || body.rigid->density > 0)) return;
         if (elastic(body.material).density == 0)
-            fault({"bodies", name, "material"}, "a density, which " + reason + " needs", "none");
+            fault({"bodies", name, body.has_material ? "material" : "rigid"},
+                  (body.rigid ? "a density or a mass, which " : "a density, which ") + reason + " needs", "none");
+    }
+
+    void check_rigid(const std::string& name, const Body& body) {
+        if (!body.has_material && !body.rigid) fault({"bodies", name}, "a material, or rigid: true", "neither");
+        if (!body.rigid) return;
+        const Rigid& rigid = *body.rigid;
+        const std::vector<std::string> path{"bodies", name, "rigid"};
+        const auto key = [&](const char* last) { return std::vector<std::string>{"bodies", name, "rigid", last}; };
+        if (rigid.mass && rigid.density > 0) fault(key("mass"), "a density or a mass", "both");
+        if (rigid.mass && !rigid.inertia) fault(key("mass"), "inertia beside a mass", "none");
+        if (rigid.inertia && !rigid.mass) fault(key("inertia"), "a mass beside inertia", "none");
+        if (rigid.products && !rigid.inertia) fault(key("products"), "inertia beside products", "none");
+        if (rigid.centre && !rigid.mass) fault(key("centre"), "a mass beside a centre of mass", "none");
+        if (body.has_material && rigid.density > 0 && elastic(body.material).density > 0 &&
+            elastic(body.material).density != rigid.density)
+            fault(key("density"), "the density of the material, or none", number_text(rigid.density) + " kg/m^3");
+        if (!rigid.inertia) return;
+        const Vec3 J = *rigid.inertia, P = rigid.products.value_or(Vec3::Zero());
+        // positive definite, by the leading minors
+        const double second = J[0] * J[1] - P[0] * P[0];
+        const double third = J[0] * (J[1] * J[2] - P[1] * P[1]) - P[0] * (P[0] * J[2] - P[1] * P[2]) +
+                             P[2] * (P[0] * P[1] - J[1] * P[2]);
+        if (!(second > 0) || !(third > 0))
+            fault(key("inertia"), "a positive definite tensor of inertia", "one that is not");
+    }
+
+    /// Sets of rigid bodies have no equations of their own.
+    void check_rigid_sets(const Scene& scene) {
+        const auto rigid = [&](const std::string& set) -> const std::string* {
+            const SetSpec* spec = find(scene.sets, set);
+            const Body* body = spec != nullptr ? find(scene.bodies, spec->body) : nullptr;
+            return body != nullptr && body->rigid ? &spec->body : nullptr;
+        };
+        for (const auto& [set, support] : scene.supports)
+            if (const std::string* body = rigid(set))
+                fault({"supports", set}, "bodies." + *body + ".rigid.fix, which holds the whole body",
+                      "a set of rigid body '" + *body + "'");
+        for (const auto& [name, stage] : scene.stages)
+            for (const auto& [set, components] : stage.displacement)
+                if (const std::string* body = rigid(set))
+                    fault({"stages", name, "displacement", set},
+                          "stages." + name + ".motion." + *body + ", which moves the whole body",
+                          "a set of rigid body '" + *body + "'");
+        for (const auto& [name, pair] : scene.contact) {
+            const bool between = !pair.between[0].empty();
+            const std::string *slave = rigid(between ? pair.between[0] : pair.slave),
+                              *master = rigid(between ? pair.between[1] : pair.master.set);
+            if (slave != nullptr && master != nullptr)
+                fault({"contact", name}, "a side that deforms: two rigid bodies have no contact pressure of their own",
+                      "two rigid bodies, '" + *slave + "' and '" + *master + "'");
+        }
+    }
+
+    void check_motion(const std::string& name, const Stage& stage, const Named<Body>& bodies) {
+        const auto needs_rigid = [&](const char* key, const std::string& body) -> const Rigid* {
+            const Body* spec = find(bodies, body);
+            if (spec == nullptr) return nullptr;
+            if (!spec->rigid) fault({"stages", name, key, body}, "a rigid body", "'" + body + "', which deforms");
+            return spec->rigid ? &*spec->rigid : nullptr;
+        };
+        for (const auto& [body, components] : stage.motion) {
+            const Rigid* rigid = needs_rigid("motion", body);
+            if (rigid == nullptr) continue;
+            bool any = false;
+            for (std::size_t a = 0; a < components.size(); ++a) {
+                if (!components[a]) continue;
+                any = true;
+                if (rigid->fixed[a])
+                    fault({"stages", name, "motion", body, motion_words[a]},
+                          "a component that bodies." + body + ".rigid.fix leaves free",
+                          motion_words[a] + ", which is held");
+                check_course({"stages", name, "motion", body, motion_words[a]}, *components[a], stage, range::position);
+            }
+            if (!any) fault({"stages", name, "motion", body}, "at least one of x, y, z, rx, ry, rz", "none");
+        }
+        for (const auto& [key, loads] : {std::pair{"force", &stage.force}, std::pair{"moment", &stage.moment}})
+            for (const auto& [body, load] : *loads)
+                if (needs_rigid(key, body) != nullptr)
+                    for (std::size_t a = 0; a < 3; ++a)
+                        check_course({"stages", name, key, body}, load[a], stage, {}, a);
     }
 
     void check_formulation(const std::string& name, const Body& body) {
-        if (body.hex_formulation == HexFormulation::incompatible_modes &&
+        if (body.hex_formulation == HexFormulation::incompatible_modes && body.has_material &&
             !std::holds_alternative<LinearElastic>(body.material))
             fault({"bodies", name, "hex_formulation"}, "full or b_bar with a material at finite strain",
                   "incompatible_modes");
@@ -240,6 +343,9 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     for (const auto& [name, body] : scene.bodies)
         std::visit([&, &n = name](const auto& source) { rules.check_mesh(n, source); }, body.mesh.source);
     for (const auto& [name, body] : scene.bodies) rules.check_formulation(name, body);
+    for (const auto& [name, body] : scene.bodies) rules.check_rigid(name, body);
+    rules.check_rigid_sets(scene);
+    for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene.bodies);
     for (const auto& [name, set] : scene.sets) rules.check_set(name, set);
     for (const auto& [stage_name, stage] : scene.stages)
         if (std::holds_alternative<DynamicAnalysis>(stage.analysis)) {

@@ -338,6 +338,38 @@ void describe(Visitor& v, Stage& stage) {
                          .required = true},
                         value);
           });
+    named(v,
+          {.name = "motion",
+           .meaning = "Motion of rigid bodies reached at the end of the stage.",
+           .names = Names::body,
+           .item = "body"},
+          stage.motion, [&](const std::string& body, std::array<std::optional<Course>, 6>& components) {
+              v.group({.name = body,
+                       .meaning =
+                           "Displacement of the reference point and rotation; a component left out stays free or "
+                           "as it was."},
+                      [&] {
+                          for (std::size_t a = 0; a < 6; ++a)
+                              v.optional_course(
+                                  {.name = motion_words[a],
+                                   .meaning = a < 3 ? "Component from the reference position."
+                                                    : "Rotation about the axis, the sum of what all steps turn by.",
+                                   .unit = a < 3 ? dimension::length : dimension::angle,
+                                   .range = range::position},
+                                  components[a]);
+                      });
+          });
+    const auto at_reference_point = [&](const char* name, const char* meaning, const char* component,
+                                        const Dimension& unit, Named<std::array<Course, 3>>& values) {
+        named(v, {.name = name, .meaning = meaning, .names = Names::body, .item = "body"}, values,
+              [&v, component, unit](const std::string& body, std::array<Course, 3>& value) {
+                  v.courses({.name = body, .meaning = component, .unit = unit, .required = true}, value);
+              });
+    };
+    at_reference_point("force", "Force on rigid bodies, reached at the end of the stage.",
+                       "At the reference point; it keeps its direction.", dimension::force, stage.force);
+    at_reference_point("moment", "Moment on rigid bodies, reached at the end of the stage.",
+                       "About the reference point, in N m; it keeps its direction.", dimension::moment, stage.moment);
 }
 
 void describe(Visitor& v, Solver& solver) {
@@ -390,8 +422,8 @@ void describe(Visitor& v, Scene& scene) {
     const auto group = [&v]<class T>(const std::string& name, T& value) {
         v.group({.name = name}, [&] { describe(v, value); });
     };
-    named(v, {.name = "bodies", .meaning = "Deformable bodies.", .required = true, .item = "body"}, scene.bodies,
-          group);
+    named(v, {.name = "bodies", .meaning = "Bodies, deformable or rigid.", .required = true, .item = "body"},
+          scene.bodies, group);
     named(v, {.name = "sets", .meaning = "Parts of a body's exterior, or of its nodes.", .item = "set"}, scene.sets,
           group);
     named(

@@ -312,19 +312,83 @@ void describe(Visitor& v, MeshSpec& mesh) {
              p.translation);
 }
 
+void describe(Visitor& v, Rigid& rigid) {
+    v.number({.name = "density",
+              .meaning = "Mass per volume; 0: that of the material, if there is one.",
+              .unit = dimension::density,
+              .range = range::not_negative},
+             rigid.density);
+    v.optional_number({.name = "mass",
+                       .meaning = "Mass, in place of the density's; inertia belongs to it.",
+                       .unit = dimension::mass,
+                       .range = range::positive,
+                       .default_text = "density times volume"},
+                      rigid.mass);
+    v.optional_vector({.name = "centre",
+                       .meaning = "Centre of mass, after the mesh is placed.",
+                       .unit = dimension::length,
+                       .range = range::position,
+                       .default_text = "the centre of the volume"},
+                      rigid.centre);
+    v.optional_vector({.name = "inertia",
+                       .meaning = "Moments of inertia J_xx, J_yy, J_zz about the centre of mass.",
+                       .unit = dimension::inertia,
+                       .range = range::positive,
+                       .default_text = "those of the volume"},
+                      rigid.inertia);
+    v.optional_vector({.name = "products",
+                       .meaning = "J_xy, J_yz, J_xz of the same tensor: J_xy is the integral of -x y over the mass.",
+                       .unit = dimension::inertia,
+                       .range = {},
+                       .default_text = "0 beside inertia"},
+                      rigid.products);
+    v.optional_vector({.name = "reference_point",
+                       .meaning = "Point that fix, motion, force and moment speak of; it moves with the body.",
+                       .unit = dimension::length,
+                       .range = range::position,
+                       .default_text = "the centre of mass"},
+                      rigid.reference_point);
+    std::vector<std::string> fixed;
+    for (std::size_t a = 0; a < motion_words.size(); ++a)
+        if (rigid.fixed[a]) fixed.push_back(motion_words[a]);
+    v.words({.name = "fix",
+             .meaning =
+                 "Components of the reference point's displacement (x, y, z) and of the body's rotation (rx, ry, "
+                 "rz) held at zero for the whole run.",
+             .default_text = "none"},
+            motion_words, fixed);
+    for (std::size_t a = 0; a < motion_words.size(); ++a)
+        rigid.fixed[a] = std::ranges::count(fixed, motion_words[a]) > 0;
+}
+
 } // namespace
 
 void describe(Visitor& v, Body& body) {
     v.group({.name = "mesh", .meaning = "A generator or a file, and its placement.", .required = true},
             [&] { describe(v, body.mesh); });
-    v.group({.name = "material", .meaning = "Constitutive law.", .required = true}, [&] {
+    bool is_rigid = body.rigid.has_value();
+    Rigid rigid = body.rigid.value_or(Rigid{});
+    v.optional_group({.name = "rigid",
+                      .meaning = "The body does not deform: it moves and turns as one. true: with its mass from volume "
+                                 "and density.",
+                      .bare_flag = true},
+                     is_rigid, [&] { describe(v, rigid); });
+    body.rigid = is_rigid ? std::optional(rigid) : std::nullopt;
+    const auto material = [&] {
         static const Words tags{"linear_elastic", "saint_venant_kirchhoff", "neo_hookean"};
         one_of(v, tags,
                {"Isotropic linear elasticity at small strain: no large rotations.",
                 "Hooke's law at finite strain: large rotations, small strains.",
                 "Compressible neo-Hookean elasticity: large rotations, large strains."},
                true, body.material, [&v](auto& alternative) { describe(v, alternative); });
-    });
+    };
+    const Key law{.name = "material",
+                  .meaning = "Constitutive law. Of that of a rigid body only the density counts.",
+                  .required = true,
+                  .instead = "rigid"};
+    bool has_material = body.has_material;
+    v.optional_group(law, has_material, material);
+    body.has_material = has_material;
     static const Words formulations{"full", "b_bar", "incompatible_modes"};
     word(v, {.name = "hex_formulation", .meaning = "Formulation of the body's hexahedra."}, formulations,
          body.hex_formulation);

@@ -10,6 +10,7 @@
 namespace osculate::scene {
 
 inline const Words axis_words{"x", "y", "z"};
+inline const Words motion_words{"x", "y", "z", "rx", "ry", "rz"}; ///< components of a rigid body's motion
 
 /// An enum whose enumerators stand in the order of the vocabulary.
 template <class E> void word(Visitor& v, const Key& key, const Words& vocabulary, E& value) {

@@ -26,6 +26,9 @@ public:
         list(key, "[x, y, z] " + unit(key),
              "[" + number_text(value.x()) + ", " + number_text(value.y()) + ", " + number_text(value.z()) + "]");
     }
+    void optional_vector(const Key& key, std::optional<Vec3>& /*value*/) override {
+        list(key, "[x, y, z] " + unit(key), "not set");
+    }
     void course(const Key& key, Course& value) override { list(key, unit(key), number_text(value.value()), over_time); }
     void optional_course(const Key& key, std::optional<Course>& /*value*/) override {
         list(key, unit(key), "not set", over_time);

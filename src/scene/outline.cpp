@@ -35,6 +35,9 @@ public:
             add(key, value->metres ? engineering(value->value, "m") : digits(value->value) + " of the facet size");
     }
     void vector(const Key& key, Vec3& value) override { add(key, components(key, {value.x(), value.y(), value.z()})); }
+    void optional_vector(const Key& key, std::optional<Vec3>& value) override {
+        if (value) vector(key, *value);
+    }
     void course(const Key& key, Course& value) override { add(key, in_words(value, key)); }
     void optional_course(const Key& key, std::optional<Course>& value) override {
         if (value) add(key, in_words(*value, key));

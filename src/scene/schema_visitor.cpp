@@ -179,6 +179,7 @@ void SchemaVisitor::group(const Key& key, const std::function<void()>& body) {
         add(key, schema, "one of " + join(level.tags) + ", as a word or with its keys", level.chosen);
         return;
     }
+    if (key.bare_flag) schema = {{"anyOf", {Json{{"type", "boolean"}}, std::move(schema)}}};
     add(key, schema, "", nullptr);
 }
 
@@ -243,6 +244,10 @@ void SchemaVisitor::optional_relative_length(const Key& key, std::optional<Relat
 void SchemaVisitor::vector(const Key& key, Vec3& value) {
     add(key, key.direction ? direction(key) : list_of(quantity(key), 3), "[x, y, z], each a " + in_words(key),
         Json{plain(value.x()), plain(value.y()), plain(value.z())});
+}
+
+void SchemaVisitor::optional_vector(const Key& key, std::optional<Vec3>& /*value*/) {
+    add(key, list_of(quantity(key), 3), "[x, y, z], each a " + in_words(key), nullptr);
 }
 
 void SchemaVisitor::course(const Key& key, Course& value) {

@@ -21,6 +21,7 @@ public:
     void optional_number(const Key& key, std::optional<double>& value) override;
     void optional_relative_length(const Key& key, std::optional<RelativeLength>& value) override;
     void vector(const Key& key, Vec3& value) override;
+    void optional_vector(const Key& key, std::optional<Vec3>& value) override;
     void course(const Key& key, Course& value) override;
     void optional_course(const Key& key, std::optional<Course>& value) override;
     void courses(const Key& key, std::array<Course, 3>& value) override;

@@ -27,6 +27,14 @@ std::string expected_vector(const Key& key) {
     return "a list of three, each " + expected_number(key);
 }
 
+bool is_true(const Tree& tree) {
+    return tree.kind == Tree::Kind::scalar && (tree.scalar == "true" || tree.scalar == "yes");
+}
+
+bool is_false(const Tree& tree) {
+    return tree.kind == Tree::Kind::scalar && (tree.scalar == "false" || tree.scalar == "no");
+}
+
 bool is_identifier(const std::string& name) {
     const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
     return !name.empty() && name.front() != '-' && std::ranges::all_of(name, fits);
@@ -179,6 +187,10 @@ void TreeReader::vector(const Key& key, Vec3& value) {
     if (const Tree* tree = take(key, expected_vector(key))) value = read_vector(*tree, key).value_or(value);
 }
 
+void TreeReader::optional_vector(const Key& key, std::optional<Vec3>& value) {
+    if (const Tree* tree = take(key, expected_vector(key))) value = read_vector(*tree, key);
+}
+
 void TreeReader::integer(const Key& key, int& value) {
     const std::string expected = expected_integer(key);
     if (const Tree* tree = take(key, expected)) value = read_integer(*tree, key, expected).value_or(value);
@@ -206,10 +218,9 @@ void TreeReader::flag(const Key& key, bool& value) {
     const std::string expected = "true or false";
     const Tree* tree = take(key, expected);
     if (!tree) return;
-    const bool scalar = tree->kind == Tree::Kind::scalar;
-    if (scalar && (tree->scalar == "true" || tree->scalar == "yes"))
+    if (is_true(*tree))
         value = true;
-    else if (scalar && (tree->scalar == "false" || tree->scalar == "no"))
+    else if (is_false(*tree))
         value = false;
     else
         fault(*tree, key, expected);
@@ -306,14 +317,14 @@ void TreeReader::axes(const Key& key, Mat3& value) {
 // ---- maps --------------------------------------------------------------------------------------------------------------
 
 void TreeReader::group(const Key& key, const std::function<void()>& body) {
-    const std::string expected = "a map of keys";
+    const std::string expected = key.bare_flag ? "true, false or a map of keys" : "a map of keys";
     const Tree* tree = take(key, expected);
     if (!tree) return;
     Tree map{.kind = Tree::Kind::map, .place = tree->place};
     if (key.bare_word && tree->kind == Tree::Kind::scalar) {
         map.children.push_back({.key = tree->scalar, .place = tree->place, .key_place = tree->place});
         tree = &map;
-    } else if (tree->kind == Tree::Kind::null) {
+    } else if (tree->kind == Tree::Kind::null || (key.bare_flag && is_true(*tree))) {
         tree = &map;
     } else if (tree->kind != Tree::Kind::map) {
         return fault(*tree, key, expected);
@@ -322,8 +333,12 @@ void TreeReader::group(const Key& key, const std::function<void()>& body) {
 }
 
 void TreeReader::optional_group(const Key& key, bool& present, const std::function<void()>& body) {
-    present = levels_.back().map->find(key.name) != nullptr;
-    group(key, body);
+    const Tree* tree = levels_.back().map->find(key.name);
+    present = tree != nullptr && !(key.bare_flag && is_false(*tree));
+    if (tree != nullptr && !present)
+        levels_.back().known.push_back(key.name);
+    else
+        group(key, body);
 }
 
 void TreeReader::one_of(const Choice& choice) {

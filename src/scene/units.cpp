@@ -39,6 +39,7 @@ constexpr std::array named_dimensions{
     NamedDimension{{2, 1, -2, 0}, "energy", "J"},
     NamedDimension{{2, 1, -3, 0}, "power", "W"},
     NamedDimension{{0, 1, -2, 0}, "force per length", "N/m"},
+    NamedDimension{dimension::inertia, "moment of inertia", "kg m^2"},
 };
 
 const NamedDimension* find_named(Dimension dimension) {

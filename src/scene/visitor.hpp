@@ -51,12 +51,13 @@ struct Key {
     Dimension unit{};
     Range range{};
     bool required = false;
-    bool not_whole = false;             ///< a whole number is outside the range
-    bool direction = false;             ///< the vector must not be zero
-    bool bare_word = false;             ///< `key: tag` stands for `key: {tag: {}}`
-    Names names = Names::any;           ///< of a text, or of the keys of a named map
-    const char* item = "";              ///< what a named map holds: "body"
-    double largest_product = 0;         ///< of divisions
+    bool not_whole = false;     ///< a whole number is outside the range
+    bool direction = false;     ///< the vector must not be zero
+    bool bare_word = false;     ///< `key: tag` stands for `key: {tag: {}}`
+    bool bare_flag = false;     ///< `key: true` stands for `key: {}`, false for an optional group that is absent
+    Names names = Names::any;   ///< of a text, or of the keys of a named map
+    const char* item = "";      ///< what a named map holds: "body"
+    double largest_product = 0; ///< of divisions
     const char* default_text = nullptr; ///< where the default is not the member's own value
     const char* instead = nullptr;      ///< of a required key: the key that may stand in its place, which a rule judges
 };
@@ -89,6 +90,7 @@ public:
     /// A plain number within the key's range, or a length with its unit.
     virtual void optional_relative_length(const Key& key, std::optional<RelativeLength>& value) = 0;
     virtual void vector(const Key& key, Vec3& value) = 0;
+    virtual void optional_vector(const Key& key, std::optional<Vec3>& value) = 0;
     virtual void course(const Key& key, Course& value) = 0;
     virtual void optional_course(const Key& key, std::optional<Course>& value) = 0;
     virtual void courses(const Key& key, std::array<Course, 3>& value) = 0; ///< components of a vector

@@ -54,6 +54,9 @@ public:
         if (value) line(key, decimal(value->value) + (value->metres ? " m" : ""));
     }
     void vector(const Key& key, Vec3& value) override { line(key, list(value)); }
+    void optional_vector(const Key& key, std::optional<Vec3>& value) override {
+        if (value) line(key, list(*value));
+    }
     void course(const Key& key, Course& value) override { line(key, inline_course(value)); }
     void optional_course(const Key& key, std::optional<Course>& value) override {
         if (value) line(key, inline_course(*value));

@@ -79,6 +79,11 @@ void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equil
         for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
             for (int k = 0; k < 3; ++k)
                 if (constraints.constraint(node, k) != nullptr) hold.hold(x[node], constraints.frame(node).col(k));
+        for (const model::RigidBody& rigid : model.rigid)
+            if (rigid.body == static_cast<Index>(b))
+                for (const Index node : {rigid.reference, rigid.rotation()})
+                    for (int k = 0; k < 3; ++k)
+                        if (const auto* c = constraints.constraint(node, k)) hold.hold(rigid, *c, x);
         one.free_by_supports = hold.free();
         for (std::size_t p = 0; p < state.contact.size(); ++p) {
             const model::ContactEvaluation& evaluation = equilibrium.contact()[p];

@@ -88,6 +88,12 @@ std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std:
         (!state.v.empty() && state.v.size() != nodes))
         return "number of nodes";
     if (state.material.size() != model::initial_history(model).size()) return "values that materials remember";
+    if (state.rigid.size() != model.rigid.size()) return "number of rigid bodies";
+    for (const model::RigidMotion& motion : state.rigid)
+        if (!(std::abs(motion.orientation.norm() - 1) < 1e-9) || !motion.rotation.allFinite() ||
+            !motion.velocity.allFinite() || !motion.acceleration.allFinite() || !motion.angular_velocity.allFinite() ||
+            !motion.angular_rate.allFinite() || !motion.moment.allFinite())
+            return "motions of rigid bodies";
     if (!finite(state.u) || !finite(state.v) || !finite(state.a) || !finite(checkpoint.displacement_start))
         return "values that are not finite";
     const std::vector<FoundPair>& found = checkpoint.found;

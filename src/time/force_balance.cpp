@@ -33,8 +33,17 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
     }
     const Field outer = equilibrium.bodies().outer_forces(state);
     const Field &load = equilibrium.external_force(), &unbalanced = equilibrium.unbalanced();
-    for (const model::Body& body : model.bodies) {
-        Vec3 sum = Vec3::Zero();
+    std::vector<Vec3> reaction_of(model.bodies.size(), Vec3::Zero()); // at the nodes of rigid bodies
+    for (std::size_t k = 0; k < model.rigid.size(); ++k) {
+        const auto r = static_cast<std::size_t>(model.rigid[k].reference);
+        const Vec3 inertia = equilibrium.rigid()->inertia_force(k),
+                   reaction = equilibrium.constraints().reaction(model.rigid[k].reference, unbalanced[r]);
+        reaction_of[static_cast<std::size_t>(model.rigid[k].body)] = reaction + load[r] - inertia;
+        balance.acting += reaction.norm() + load[r].norm() + inertia.norm();
+    }
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const model::Body& body = model.bodies[b];
+        Vec3 sum = reaction_of[b];
         for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node) {
             const auto i = static_cast<std::size_t>(node);
             const Vec3 reaction = equilibrium.constraints().reaction(node, unbalanced[i]);

@@ -18,10 +18,15 @@ void take_stock(Ledger& ledger, const model::Model& model, const equilibrium::Dy
     const Field p = times(model.mass(dynamics.lumped_mass), state.v);
     ledger.kinetic = 0.5 * dot(state.v, p);
     ledger.strain = model::strain_energy(model, state.u, state.material, 1);
+    const model::RigidMomenta rigid = model::rigid_momenta(model, state);
     const Vec3 none = Vec3::Zero();
     ledger.linear = sum_over(model.nodes(), none, [&](Index i) { return p[i]; });
     ledger.angular =
         sum_over(model.nodes(), none, [&](Index i) { return Vec3((model.X[i] + state.u[i]).cross(p[i])); });
+    if (model.rigid.empty()) return;
+    ledger.kinetic += rigid.kinetic;
+    ledger.linear += rigid.linear;
+    ledger.angular += rigid.angular;
 }
 
 } // namespace
@@ -37,12 +42,14 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibri
                 const Field& force) {
     Ledger next = ledger;
     take_stock(next, model, dynamics, to);
-    const Field Du = weighted(1, to.u, -1, from.u);
+    Field Du = weighted(1, to.u, -1, from.u);
+    if (equilibrium.rigid() != nullptr) equilibrium.rigid()->make_conjugate(Du);
 
     double external = sum_over(model.nodes(), dot(Du, force), [&](Index i) {
         return Du[i].dot(equilibrium.constraints().reaction(i, equilibrium.unbalanced()[i]));
     });
-    const equilibrium::BodyWork work = equilibrium.bodies().work(to);
+    equilibrium::BodyWork work = equilibrium.bodies().work(to);
+    if (equilibrium.rigid() != nullptr) work.inertia += equilibrium.rigid()->work_of_inertia();
     external += work.follower;
     double contact = 0, friction = 0;
     for (std::size_t p = 0; p < to.contact.size(); ++p) {

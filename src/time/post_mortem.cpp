@@ -133,6 +133,9 @@ void name_node(const model::Model& model, Index node, Attempt& attempt) {
     if (const Body* const body = body_of(model, node); body != nullptr) {
         attempt.body = body->name;
         attempt.node = node - body->first_node;
+    } else if (const model::RigidBody* rigid = model::rigid_body_of(model, node)) { // of no mesh: the first of its body
+        attempt.body = model.bodies[static_cast<std::size_t>(rigid->body)].name;
+        attempt.node = 0;
     }
 }
 
@@ -256,15 +259,18 @@ PostMortem examine(const LoadNotFinite& failure, const model::Model& model, cons
     found.smallest_dt = stage.limits.dt_min;
     found.limit = "not cut: the value is missing at a time that must be reached";
     std::string key = failure.course(); // components of a body force have no key of their own
-    constexpr std::string_view body_force = "body_force.";
-    if (key.starts_with(body_force)) key = key.substr(0, key.rfind('.'));
+    bool of_body = key.starts_with("motion.");
+    for (const char* vector : {"body_force.", "force.", "moment."})
+        if (key.starts_with(vector)) {
+            key = key.substr(0, key.rfind('.'));
+            of_body = true;
+        }
     const std::size_t from = key.find('.') + 1; // kind.set or kind.set.component, set or body
     const std::string loaded = key.substr(from, key.find('.', from) - from);
     for (const Body& body : model.bodies)
         if (body.name == loaded) found.body = body.name;
     for (const model::Set& set : model.sets)
-        if (set.name == loaded && !key.starts_with(body_force))
-            found.body = model.bodies[static_cast<std::size_t>(set.body)].name;
+        if (set.name == loaded && !of_body) found.body = model.bodies[static_cast<std::size_t>(set.body)].name;
     found.missing_load = {failure.course(), failure.elapsed(), stage.duration};
     return found;
 }

@@ -31,7 +31,8 @@ Machinery::Machinery(RunContext& context, const Stage& stage, const linear::Cons
 StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, StepObserver& observer,
                    const Checkpoint* from)
     : context_(context), stage_(stage), progress_(progress), observer_(observer),
-      constraints_(context.model.nodes(), stage.constraints), dynamics_(stage.dynamics ? &*stage.dynamics : nullptr),
+      constraints_(context.model.nodes(), stage.constraints, model::dependent_nodes(context.model)),
+      dynamics_(stage.dynamics ? &*stage.dynamics : nullptr),
       machinery_(std::make_unique<Machinery>(context, stage, constraints_, progress.state)) {
     const model::Model& model = context.model;
     if (from == nullptr) {

@@ -191,7 +191,7 @@ Field initial_acceleration(RunContext& context, const Stage& stage, const linear
     for (solve::SparseIndex i = 0; i < matrix.rows(); ++i)
         for (solve::SparseIndex k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
             if (matrix.column[k] == i && matrix.value[k] == 0) {
-                matrix.value[k] = heaviest;
+                matrix.value[k] = heaviest > 0 ? heaviest : 1;
                 empty[static_cast<std::size_t>(i)] = 1;
             }
     if (solver->factorise(matrix) != solve::FactorStatus::ok)
@@ -212,7 +212,8 @@ void start_motion(RunContext& context, const Stage& stage, const linear::Constra
     const model::Model& model = context.model;
     model::State& state = progress.state;
     // a later one, after statics, starts at rest
-    state.v = progress.moved ? Field(model.X.size()) : model.initial_velocity;
+    const bool moved = progress.moved;
+    state.v = moved ? Field(model.X.size()) : model.initial_velocity;
     progress.moved = true;
     for (Index node = 0; node < model.nodes(); ++node) { // what holds a body does not move with it
         Vec3 v = constraints.to_local(node, state.v[node]);
@@ -222,6 +223,14 @@ void start_motion(RunContext& context, const Stage& stage, const linear::Constra
     }
     equilibrium::add_follower_forces(load.pressures, model, state.u, load.force);
     state.a = initial_acceleration(context, stage, constraints, state, load.force);
+    if (!model.rigid.empty()) {
+        if (!moved)
+            for (std::size_t k = 0; k < model.rigid.size(); ++k) {
+                state.rigid[k].velocity = model.rigid[k].velocity;
+                state.rigid[k].angular_velocity = state.rigid[k].orientation.inverse() * model.rigid[k].spin;
+            }
+        equilibrium::start_rigid_motion(model, constraints, load.force, state);
+    }
     progress.ledger = opened(model, *stage.dynamics, state);
 }
 
@@ -257,6 +266,18 @@ double reference_force(const RunContext& context, const Stage& stage, const line
             M.multiply_add(displacements ? state.u : sum(state.u, model.X), internal, options.threads);
             largest = std::max(largest, largest_component(internal));
             if (state.contact.empty()) break;
+        }
+        for (std::size_t k = 0; k < model.rigid.size(); ++k) {
+            const model::RigidBody& body = model.rigid[k];
+            const model::RigidMotion& motion = state.rigid[k];
+            const double rate = std::max(body.mass * motion.acceleration.norm(), motion.moment.norm() / body.radius),
+                         momentum = std::max(body.mass * motion.velocity.norm(),
+                                             model::angular_momentum(body, motion).norm() / body.radius);
+            const auto r = static_cast<std::size_t>(body.reference);
+            carried = std::max({carried, rate, share / dt * momentum});
+            largest =
+                std::max({largest, body.mass * (model.X[r] + state.u[r]).cwiseAbs().maxCoeff(),
+                          body.inertia.norm() / (body.radius * body.radius) * state.u[r + 1].cwiseAbs().maxCoeff()});
         }
         const double digit = std::numeric_limits<double>::epsilon() / options.tolerance;
         const double by_u = kinematics(stage.dynamics->integrator, dt).by_u_acceleration;

@@ -12,6 +12,7 @@ Stepper::Stepper(const model::Model& model, std::vector<Stage> stages, StepperOp
     progress_.state.u.reset(model.X.size());
     for (const auto& pair : model.pairs) progress_.state.contact.push_back(model::opened(pair));
     progress_.state.material = model::initial_history(model);
+    progress_.state.rigid.resize(model.rigid.size());
     Vec3 low = model.X[0], high = low;
     for (const Vec3& X : model.X) {
         low = low.cwiseMin(X);

@@ -35,6 +35,7 @@ constexpr const char* scenes[] = {
 const std::string expected = R"(
 stiffness                    x x x x x x x x x x x x x x
 nonlinear elements           . . . x . . . . . . . . . .
+rigid bodies                 . . . . . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .

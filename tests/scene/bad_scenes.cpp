@@ -220,7 +220,9 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
             "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
             "for both",
             "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, control, ramp, "
-            "displacement, pressure, follower_pressure, body_force, found unknown key 'stpes' (did you mean 'steps'?)",
+            "displacement, pressure, follower_pressure, body_force, motion, force, moment, found unknown key 'stpes' "
+            "(did "
+            "you mean 'steps'?)",
             "bad.yaml:24:16: stages.load.pressure.tpo: expected the name of a set: bed, ground, under, "
             "top, found 'tpo' (did you mean 'top'?)",
             "bad.yaml:24:21: stages.load.pressure.tpo: expected a pressure (Pa), found '5 kN' (force)",

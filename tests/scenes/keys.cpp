@@ -118,7 +118,7 @@ supports:
 stages:
   compress: {analysis: static, pressure: {tip: 0.1 Pa}}
   swing:
-    analysis: {dynamic: )" + analysis + R"(}
+    analysis: )" + analysis + R"(
     duration: 4 s
     steps: )" + std::to_string(steps) + R"(
     ramp: step
@@ -158,9 +158,9 @@ TEST(DynamicKeys, OneElementFollowsNewmarksFormulas) {
         const double solver = 1e-8; // residuals of 1e-9, over the steps
         for (std::size_t k = 0; k < u.size(); ++k) EXPECT_NEAR(u[k], exact[k], solver) << keys << ", step " << k;
     };
-    expect("{integrator: {newmark: {beta: 0.3025, gamma: 0.6}}}", newmark(1.0 / 3, 0, 0.3025, 0.6, 20));
-    expect("{integrator: {newmark: {}}, mass: lumped}", newmark(0.5, 0, 0.25, 0.5, 20));
-    expect("{integrator: {newmark: {}}, mass_damping: 0.4 Hz}", newmark(1.0 / 3, 0.4, 0.25, 0.5, 20));
+    expect("{dynamic: {integrator: {newmark: {beta: 0.3025, gamma: 0.6}}}}", newmark(1.0 / 3, 0, 0.3025, 0.6, 20));
+    expect("{dynamic: {integrator: {newmark: {}}, mass: lumped}}", newmark(0.5, 0, 0.25, 0.5, 20));
+    expect("{dynamic: {integrator: {newmark: {}}, mass_damping: 0.4 Hz}}", newmark(1.0 / 3, 0.4, 0.25, 0.5, 20));
 }
 
 /// A contactor pressed into a coarse tube, and pushed on.

@@ -92,7 +92,24 @@ INSTANTIATE_TEST_SUITE_P(
                 {"9:39: bodies.base.material.linear_elastic.nu: expected a number in (-1, 0.5), found '0.5'"}},
         Refusal{"unit_of_another_kind",
                 {"44:58: stages.pull.displacement.rear.x.unit: expected a unit of length such as m, found 'kPa' "
-                 "(pressure)"}}),
+                 "(pressure)"}},
+        Refusal{"rigid_contradictions",
+                {"6:19: bodies.base.rigid.mass: expected inertia beside a mass, found none",
+                 "9:53: bodies.cap.rigid.centre: expected a mass beside a centre of mass, found none",
+                 "14:5: bodies.bare: expected a material, or rigid: true, found neither",
+                 "20:8: supports.bed: expected bodies.base.rigid.fix, which holds the whole body, found a set of rigid "
+                 "body 'base'",
+                 "22:12: contact.meeting: expected a side that deforms: two rigid bodies have no contact pressure of "
+                 "their own, found two rigid bodies, 'cap' and 'base'",
+                 "25:27: stages.push.displacement.under: expected stages.push.motion.cap, which moves the whole body, "
+                 "found a set of rigid body 'cap'",
+                 "27:16: stages.push.motion.cap.x: expected a component that bodies.cap.rigid.fix leaves free, found "
+                 "x, which is held",
+                 "28:13: stages.push.motion.soft: expected a rigid body, found 'soft', which deforms",
+                 "29:20: stages.push.moment.soft: expected a rigid body, found 'soft', which deforms"}},
+        Refusal{"rigid_without_mass",
+                {"6:12: bodies.tool.rigid: expected a density or a mass, which dynamic stage 'fall' needs, found "
+                 "none"}}),
     [](const auto& test) { return std::string(test.param.scene); });
 
 const std::string press = scene_file("tests/scenes/press.yaml");

@@ -68,6 +68,9 @@ public:
         if (value && value->metres) value->value *= by_.length;
     }
     void vector(const scene::Key& key, Vec3& value) override { value *= by_.factor(key.unit); }
+    void optional_vector(const scene::Key& key, std::optional<Vec3>& value) override {
+        if (value) *value *= by_.factor(key.unit);
+    }
     void course(const scene::Key& key, scene::Course& value) override {
         rescale(value, by_.factor(key.unit), by_.time);
     }

@@ -4,8 +4,11 @@
 
 #include "osculate/equilibrium/dynamics.hpp"
 #include "osculate/fe/element_block.hpp"
+#include "osculate/linear/dependence.hpp"
 #include "osculate/mesh/surface_faces.hpp"
 #include "osculate/model/model.hpp"
+
+#include <functional>
 
 namespace osculate::equilibrium {
 
@@ -43,6 +46,9 @@ public:
     /// @param follower_pressure  whether any step may have follower pressures
     BodyForces(const model::Model& model, const Dynamics* dynamics, bool follower_pressure, int threads);
 
+    /// Part of the tangent that other terms add at every linearise(), which is then not symmetric.
+    /// @param dependence  what nodes with follower pressures may depend on; it must outlive this object
+    void add_to_tangent(std::function<void(linear::BlockMatrix&)> part, const linear::Dependence& dependence);
     /// Opens a step. True if this changed the tangent.
     bool begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt);
     /// Adds or changes springs, in statics. Afterwards tangent() is another matrix.
@@ -62,7 +68,9 @@ public:
         return dynamics_ || varies() || stabilised() ? tangent_ : model_.K;
     }
     [[nodiscard]] bool dynamic() const { return dynamics_ != nullptr; }
-    [[nodiscard]] bool symmetric() const { return !follower_pressure_ && (dynamics_ == nullptr || !nonlinear()); }
+    [[nodiscard]] bool symmetric() const {
+        return !follower_pressure_ && !also_ && (dynamics_ == nullptr || !nonlinear());
+    }
 
     /// Computes velocities, accelerations and element histories at the end of the step from the displacements there; no
     /// velocities or accelerations in statics.
@@ -78,17 +86,21 @@ public:
 private:
     [[nodiscard]] bool nonlinear() const { return model_.nonlinear != nullptr; }
     /// Whether the tangent depends on u.
-    [[nodiscard]] bool varies() const { return nonlinear() || follower_pressure_; }
+    [[nodiscard]] bool varies() const { return nonlinear() || follower_pressure_ || also_; }
     [[nodiscard]] model::BodyStep step_to(const Field& u) const { return {u_start_, u, history_start_, mean_}; }
     /// f += factor times the forces of the pressures, with their values at the start or the end of the step.
     void add_pressures(double factor, bool end, const Field& u, Field& f) const;
     void add_springs(linear::BlockMatrix& tangent) const;
+    /// Adds the tangent of a pressure on a face to that of all forces.
+    void add_pressure_tangent(const mesh::SurfaceFace& face, const Field& x, double pressure);
     [[nodiscard]] const linear::BlockMatrix& mass() const { return model_.mass(dynamics_->lumped_mass); }
 
     const model::Model& model_;
     const Dynamics* dynamics_;
     bool follower_pressure_;
     int threads_;
+    std::function<void(linear::BlockMatrix&)> also_; ///< see add_to_tangent(); null: nothing
+    const linear::Dependence* dependence_ = nullptr; ///< the same
     std::vector<FollowerLoad> pressures_;
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;

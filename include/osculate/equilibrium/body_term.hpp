@@ -17,6 +17,8 @@ public:
     void linearise_next_about(const Field& u) {
         if (nonlinear_) linear_about_ = u;
     }
+    /// Nodes that carry no elements: linearise_next_about() takes them where they are.
+    void set_without_elements(std::vector<Index> nodes) { without_elements_ = std::move(nodes); }
     [[nodiscard]] BodyForces& bodies() { return bodies_; }
     [[nodiscard]] const BodyForces& bodies() const { return bodies_; }
     /// Forces at the last evaluate(), (nodes) N.
@@ -41,7 +43,9 @@ private:
     int threads_;
     bool nonlinear_;
     Field internal_;
-    Field linear_about_;      ///< for the next evaluate(); empty: exact
+    Field linear_about_;     ///< for the next evaluate(); empty: exact
+    Field linearised_about_; ///< of the last evaluate(), if other terms add to the tangent
+    std::vector<Index> without_elements_;
     bool linearised_ = false; ///< whether the last evaluate() was linear; the stiffness then belongs to it
     model::WorstElement worst_element_;
 };

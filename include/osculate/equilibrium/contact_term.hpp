@@ -4,6 +4,7 @@
 #include "osculate/core/timing.hpp"
 #include "osculate/equilibrium/contact_tangent.hpp"
 #include "osculate/equilibrium/term.hpp"
+#include "osculate/linear/dependence.hpp"
 #include "osculate/model/contact_evaluation.hpp"
 
 #include <vector>
@@ -41,6 +42,8 @@ public:
     ContactTerm(const model::ContactPairs& pairs, const linear::Constraints& constraints,
                 const linear::Unknowns& unknowns, Timings& timings, int threads);
 
+    /// Says that nodes depend on others. It must outlive this object.
+    void use(const linear::Dependence& dependence) { dependence_ = &dependence; }
     /// Sets the statuses for the next solve. With `natural` they are used only at the next iterate, and only if
     /// `force_first`.
     void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
@@ -98,9 +101,10 @@ private:
     const linear::Unknowns& unknowns_;
     Timings& timings_;
     int threads_;
-    model::ContactEvaluations evaluations_; ///< of the attempt
-    std::vector<Index> first_;              ///< (pairs + 1) couplings
-    std::vector<std::vector<Vec3>> lambda_; ///< (pairs) (slaves) N, global
+    const linear::Dependence* dependence_ = nullptr; ///< null: no node depends on others
+    model::ContactEvaluations evaluations_;          ///< of the attempt
+    std::vector<Index> first_;                       ///< (pairs + 1) couplings
+    std::vector<std::vector<Vec3>> lambda_;          ///< (pairs) (slaves) N, global
     Statuses statuses_;
     StatusRule rule_ = StatusRule::natural;
     bool force_next_ = false;

@@ -6,12 +6,12 @@
 #include "osculate/equilibrium/cycle_watch.hpp"
 #include "osculate/equilibrium/equilibrium_tangent.hpp"
 #include "osculate/equilibrium/friction_step.hpp"
+#include "osculate/equilibrium/rigid_term.hpp"
 #include "osculate/linear/constraints.hpp"
 #include "osculate/linear/unknowns.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 
-#include <array>
 #include <vector>
 
 namespace osculate::equilibrium {
@@ -87,7 +87,8 @@ public:
     [[nodiscard]] const std::vector<IterationRecord>& records() const { return records_; }
     /// The last few different sets of statuses since begin_attempt, the latest last, for diagnosis of a failure.
     [[nodiscard]] const std::vector<Statuses>& recent_statuses() const { return cycles_.recent(); }
-    /// f_int - f_ext - f_contact at the last residual: the forces of the supports, and round-off elsewhere. (nodes) N
+    /// f_int - f_ext - f_contact at the last residual: the forces of the supports, and round-off elsewhere. (nodes) N;
+    /// those on the meshes of rigid bodies act at the bodies' own nodes
     [[nodiscard]] const Field& unbalanced() const { return unbalanced_; }
     [[nodiscard]] const Field& internal_force() const { return bodies_.internal_force(); }
     /// Dead loads of the attempt, in dynamics their mean over the step. (nodes) N
@@ -106,8 +107,11 @@ public:
     [[nodiscard]] model::ContactEvaluations& contact() { return contact_.evaluations(); }
     [[nodiscard]] long patterns_built() const { return tangent_.patterns_built(); }
     [[nodiscard]] const linear::Constraints& constraints() const { return constraints_; }
+    /// Rigid bodies at the last residual; null: the model has none.
+    [[nodiscard]] const RigidTerm* rigid() const { return rigid_.get(); }
 
 private:
+    [[nodiscard]] std::vector<Term*> list_of_terms();
     void unpack();
     void fill(VectorRef F);
     void record(const ConstVectorRef& F);
@@ -124,7 +128,8 @@ private:
     BodyTerm bodies_;
     LoadTerm loads_;
     ContactTerm contact_;
-    std::array<Term*, 3> terms_;
+    std::unique_ptr<RigidTerm> rigid_; ///< null: there are no rigid bodies
+    std::vector<Term*> terms_;
     Iterate at_; ///< of the last residual
     EquilibriumTangent tangent_;
     std::unique_ptr<FrictionStep> friction_; ///< null: not needed yet

@@ -7,6 +7,7 @@
 #include "osculate/equilibrium/tangent_choice.hpp"
 #include "osculate/linear/condensed_tangent.hpp"
 #include "osculate/linear/contact_preconditioner.hpp"
+#include "osculate/linear/dependence.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 
 #include <functional>
@@ -19,11 +20,13 @@ namespace osculate::equilibrium {
 class EquilibriumTangent final : public solve::Preconditioner, public solve::Tangent {
 public:
     /// @param terms  of the residual, including `bodies` and `contact`; all arguments must outlive this object
+    /// @param dependence  what dependent nodes follow; null: there are none
     /// @param at     iterate at which the residual was last evaluated
     EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
                        const linear::Constraints& constraints, const linear::Unknowns& unknowns,
-                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact, const Iterate& at,
-                       const TangentChoice& choice, Timings& timings, int threads);
+                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact,
+                       const linear::Dependence* dependence, const Iterate& at, const TangentChoice& choice,
+                       Timings& timings, int threads);
 
     /// Opens an attempt over dt (0 in statics); changed: the bodies' stiffness has new values.
     void begin(double dt, bool changed);
@@ -61,6 +64,7 @@ private:
     std::span<Term* const> terms_;
     BodyTerm& bodies_;
     ContactTerm& contact_;
+    const linear::Dependence* dependence_;
     const Iterate& at_;
     Timings& timings_;
     bool may_buckle_, products_;                               ///< products_: see TangentChoice

@@ -20,7 +20,7 @@ class FrictionStep {
 public:
     /// All arguments must outlive this object.
     FrictionStep(const linear::Constraints& constraints, const linear::Unknowns& unknowns, BodyTerm& bodies,
-                 ContactTerm& contact);
+                 ContactTerm& contact, const linear::Dependence* dependence);
 
     /// Replaces z, at which the residual was last evaluated, by the solution of this problem.
     /// @param unbalanced  Equilibrium::unbalanced() there
@@ -42,6 +42,7 @@ private:
     const linear::Unknowns& unknowns_;
     BodyTerm& bodies_;
     ContactTerm& contact_;
+    const linear::Dependence* dependence_; ///< null: no node depends on others
     linear::PenaltyStiffness stiffness_;
     std::unique_ptr<solve::DirectSolver> cholesky_, lu_; ///< null: not used yet
     solve::DirectSolver* solver_ = nullptr;              ///< the one with factors of K

@@ -25,8 +25,10 @@ class Constraints {
 public:
     static constexpr Index held = -1;
 
+    /// @param dependent  nodes without equations, whose motion follows from that of others, see Dependence; none of them
+    ///                   may be constrained
     /// @throws std::invalid_argument naming the node (global number) whose directions or values contradict each other
-    Constraints(Index nodes, const std::vector<NodeConstraint>& constraints);
+    Constraints(Index nodes, const std::vector<NodeConstraint>& constraints, const std::vector<Index>& dependent = {});
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(entry_.size()); }
     [[nodiscard]] Index equations() const { return equations_; }

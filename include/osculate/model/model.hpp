@@ -6,6 +6,7 @@
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/model/contact_pair.hpp"
 #include "osculate/model/nonlinear_elements.hpp"
+#include "osculate/model/rigid_body.hpp"
 
 #include <memory>
 #include <string>
@@ -22,6 +23,7 @@ struct Body {
     Index first_node = 0;                                    ///< global number of its node 0
     std::vector<std::unique_ptr<fe::ElementKernel>> kernels; ///< one per element block
     double density = 0;                                      ///< kg/m^3
+    bool rigid = false; ///< moves as one, see RigidBody; its kernels know volumes alone
 
     [[nodiscard]] Index nodes() const { return mesh.node_count(); }
 };
@@ -37,7 +39,9 @@ struct Set {
 struct Model {
     std::vector<Body> bodies;
     Vec3 origin = Vec3::Zero(); ///< position of X = 0 in the scene's coordinates, m; saves digits far from their zero
-    Field X;                    ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m
+    Field X; ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m; at the end the two
+             ///< nodes of each rigid body, both at its reference point
+    std::vector<RigidBody> rigid; ///< what is special about the rigid ones of the bodies
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
     std::shared_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
@@ -82,6 +86,13 @@ struct AssembledMass {
 [[nodiscard]] std::vector<double> volume_shares(const Model& model);
 /// Centre of mass of a body of uniform density in its reference configuration, m.
 [[nodiscard]] Vec3 centre_of_mass(const Body& body);
+/// Mass, centre of mass and inertia about it of a body of uniform density in its reference configuration.
+struct MassProperties {
+    double mass = 0;             ///< kg
+    Vec3 centre = Vec3::Zero();  ///< m
+    Mat3 inertia = Mat3::Zero(); ///< kg m^2
+};
+[[nodiscard]] MassProperties mass_properties(const Body& body, double density);
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).
 void add_body_force(const Body& body, const Vec3& b, Field& f);
 
@@ -93,6 +104,7 @@ struct State {
     std::vector<ContactHistory> contact; ///< of the model's pairs, in their order, then of those of general contact
     std::shared_ptr<const ContactScope> scope{}; ///< of the latter; null without general contact
     MaterialHistory material{};
+    std::vector<RigidMotion> rigid{}; ///< of the model's rigid bodies
 
     /// The step of zero length from this state to itself; its forces are those of the state.
     [[nodiscard]] BodyStep at_rest() const { return {u, u, material}; }

@@ -1,6 +1,7 @@
 #pragma once
 /// Determines which rigid motions of a body are held by directions at its nodes.
 
+#include "osculate/linear/constraints.hpp"
 #include "osculate/model/model.hpp"
 
 #include <string>
@@ -24,6 +25,10 @@ public:
 
     /// Holds a point of the body along a unit direction.
     void hold(const Vec3& point, const Vec3& direction);
+    /// Holds the body against turning about an axis.
+    void hold_turning(const Vec3& axis);
+    /// What is held at the nodes of a rigid body, if the body is one.
+    void hold(const RigidBody& body, const linear::NodeConstraint& constraint, const std::vector<Vec3>& x);
     /// Number of rigid motions that are not held, 0 to 6.
     [[nodiscard]] int free() const;
     /// These motions in words: "along z", "about x" for coordinate axes through the body's centre, and the number of

@@ -140,9 +140,22 @@ using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean>;
     return std::visit([](const auto& m) -> const ElasticConstants& { return m; }, material);
 }
 
+/// A body that does not deform.
+struct Rigid {
+    double density = 0;                    ///< kg/m^3; 0: that of the material, if there is one
+    std::optional<double> mass;            ///< kg; none: of volume and density
+    std::optional<Vec3> centre;            ///< of mass, m; none: that of the volume
+    std::optional<Vec3> inertia, products; ///< J_xx, J_yy, J_zz and J_xy, J_yz, J_xz about the centre, kg m^2
+    std::optional<Vec3> reference_point;   ///< m; none: the centre of mass
+    std::array<bool, 6> fixed{};           ///< displacement and rotation components held at zero
+    bool operator==(const Rigid&) const = default;
+};
+
 struct Body {
     MeshSpec mesh;
     Material material;
+    std::optional<Rigid> rigid;
+    bool has_material = true; ///< a rigid body needs none
     HexFormulation hex_formulation = HexFormulation::full;
     std::string finish; ///< name of its surface, for pairs of general contact; empty: none
     Vec3 initial_velocity = Vec3::Zero(), initial_spin = Vec3::Zero(); ///< m/s; rad/s about the centre of mass
@@ -327,7 +340,9 @@ struct Stage {
     Named<std::array<std::optional<Course>, 3>> displacement; ///< set -> components along the support's axes, m
     Named<Course> follower_pressure; ///< set -> pressure on the current area, along the current normal, Pa
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
-    Named<std::array<Course, 3>> body_force; ///< body -> N/m^3
+    Named<std::array<Course, 3>> body_force;            ///< body -> N/m^3
+    Named<std::array<std::optional<Course>, 6>> motion; ///< rigid body -> displacement and rotation components, m, rad
+    Named<std::array<Course, 3>> force, moment;         ///< rigid body -> at its reference point, N, N m
     bool operator==(const Stage&) const = default;
 };
 

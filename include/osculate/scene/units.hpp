@@ -26,6 +26,9 @@ inline constexpr Dimension spin{0, 0, -1, 1};
 inline constexpr Dimension rate{0, 0, -1, 0};
 inline constexpr Dimension acceleration{1, 0, -2, 0};
 inline constexpr Dimension force_per_volume{-2, 1, -2, 0};
+inline constexpr Dimension mass{0, 1, 0, 0};
+inline constexpr Dimension inertia{2, 1, 0, 0};
+inline constexpr Dimension moment{2, 1, -2, 0};
 } // namespace dimension
 
 /// "pressure", "force per volume"; the SI unit if the dimension has no name, "number" if it has no unit.

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace osculate::app {
@@ -46,7 +47,8 @@ const model::Body& owner(const model::Model& model, Index node) {
 }
 
 double modulus(const LoadedScene& loaded, Index node) {
-    return scene::elastic(scene::find(loaded.scene.bodies, owner(loaded.plan.model, node).name)->material).E;
+    const scene::Body& body = *scene::find(loaded.scene.bodies, owner(loaded.plan.model, node).name);
+    return body.rigid ? std::numeric_limits<double>::infinity() : scene::elastic(body.material).E;
 }
 
 double stiffness_ratio(const LoadedScene& loaded, const model::ContactPair& pair) {

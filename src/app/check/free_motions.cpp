@@ -79,6 +79,7 @@ Split split(const Eigen::MatrixXd& m) {
 /// Points and directions that hold a body.
 struct Holds {
     std::vector<std::pair<Vec3, Vec3>> supports, contact;
+    std::vector<Vec3> turning; ///< axes about which it cannot turn
     bool rubs = false, apart = false;
 };
 
@@ -91,7 +92,12 @@ public:
 
     std::vector<FreeMotion> find(const time::Stage& stage) {
         for (const linear::NodeConstraint& c : stage.constraints)
-            holds_[body_of(c.node)].supports.emplace_back(plan_.model.X[static_cast<std::size_t>(c.node)], c.direction);
+            if (const model::RigidBody* rigid = model::rigid_body_of(plan_.model, c.node);
+                rigid != nullptr && c.node == rigid->rotation())
+                holds_[static_cast<std::size_t>(rigid->body)].turning.push_back(c.direction);
+            else
+                holds_[rigid != nullptr ? static_cast<std::size_t>(rigid->body) : body_of(c.node)]
+                    .supports.emplace_back(plan_.model.X[static_cast<std::size_t>(c.node)], c.direction);
         for (const model::ContactEvaluation& evaluation : contact_) add(evaluation);
         std::vector<FreeMotion> found;
         std::vector<std::vector<std::string>> own;
@@ -142,6 +148,7 @@ private:
         RigidFreedom freedom(box.center(), 0.5 * box.diagonal().norm());
         for (const std::size_t b : bodies) {
             for (const auto& [point, direction] : holds_[b].supports) freedom.hold(point, direction);
+            for (const Vec3& axis : holds_[b].turning) freedom.hold_turning(axis);
             if (with_contact)
                 for (const auto& [point, direction] : holds_[b].contact) freedom.press(point, direction);
         }
@@ -195,6 +202,12 @@ void add_row(const Vec3& arm, const Vec3& direction, Eigen::Matrix<double, 6, 6>
 
 void RigidFreedom::hold(const Vec3& point, const Vec3& direction) {
     add_row((point - centre_) / size_, direction, held_);
+}
+
+void RigidFreedom::hold_turning(const Vec3& axis) {
+    Eigen::Matrix<double, 6, 1> row;
+    row << Vec3::Zero(), axis;
+    held_ += row * row.transpose();
 }
 
 void RigidFreedom::press(const Vec3& point, const Vec3& normal) {

@@ -27,6 +27,7 @@ public:
     /// @param size  of the body, m
     RigidFreedom(const Vec3& centre, double size) : centre_(centre), size_(size) {}
     void hold(const Vec3& point, const Vec3& direction);
+    void hold_turning(const Vec3& axis);
     /// The same by contact, whose normals are not exact.
     void press(const Vec3& point, const Vec3& normal);
     /// @param origin  added to places

@@ -3,6 +3,7 @@
 #include "app/check/surface_shape.hpp"
 #include "app/plan/settle_pairs.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <numbers>
 #include <variant>
@@ -63,9 +64,11 @@ private:
 
     void stiffness() {
         if (examined_.stiffness_ratio < much_stiffer) return;
-        say(".slave", fmt::format("its body is {:.2g} times as stiff as the master's: make the softer side the slave, "
+        const double ratio = examined_.stiffness_ratio;
+        say(".slave", fmt::format("its body is {}: make the softer side the slave, "
                                   "and mesh it as finely; otherwise the solver may take many times as long",
-                                  examined_.stiffness_ratio));
+                                  std::isinf(ratio) ? std::string("rigid")
+                                                    : fmt::format("{:.2g} times as stiff as the master's", ratio)));
     }
 
     void sharp_edges() {

@@ -187,7 +187,7 @@ std::vector<Warning> thin_layers(const scene::Scene& scene, const Plan& plan) {
     std::vector<Warning> found;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         const scene::Body& body = scene.bodies[b].second;
-        if (body.hex_formulation != HexFormulation::full) continue;
+        if (body.rigid || body.hex_formulation != HexFormulation::full) continue;
         const Locking locking = Layers(plan, b, scene::elastic(body.material).nu).locking();
         if (locking.thin == 0 || static_cast<double>(locking.thin) < few * static_cast<double>(locking.hexahedra))
             continue;

@@ -66,6 +66,7 @@ private:
         static constexpr const char* laws[] = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean"};
         static_assert(std::size(laws) == std::variant_size_v<scene::Material>, "a law without its word");
         for (const auto& [name, body] : scene_.bodies) {
+            if (body.rigid) continue;
             const scene::ElasticConstants& m = scene::elastic(body.material);
             const std::string law = "bodies." + name + ".material." + laws[body.material.index()];
             if (m.E < softest)
@@ -106,7 +107,7 @@ private:
              {std::pair{"pressure", &stage.pressure}, std::pair{"follower_pressure", &stage.follower_pressure}})
             for (const auto& [name, course] : *loads) {
                 const model::Set* loaded = set(name);
-                if (loaded == nullptr) continue;
+                if (loaded == nullptr || scene_.bodies[static_cast<std::size_t>(loaded->body)].second.rigid) continue;
                 const double E =
                     scene::elastic(scene_.bodies[static_cast<std::size_t>(loaded->body)].second.material).E;
                 const double p = largest(course, stage.duration);

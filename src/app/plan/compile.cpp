@@ -63,6 +63,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     check_plots(scene, draft.plan, draft.faults);
     throw_faults(draft);
     add_matrices(draft);
+    throw_faults(draft);
     choose_tangents(draft);
     draft.plan.stepper = {.tolerance = scene.solver.tolerance,
                           .max_iterations = scene.solver.max_iterations,

@@ -19,6 +19,11 @@ void Driving::update(const scene::Stage& stage) {
     for (const auto& [set, value] : stage.pressure) pressure[set] = value;
     for (const auto& [set, value] : stage.follower_pressure) follower_pressure[set] = value;
     for (const auto& [body, value] : stage.body_force) body_force[body] = value;
+    for (const auto& [body, components] : stage.motion)
+        for (std::size_t k = 0; k < components.size(); ++k)
+            if (components[k]) motion[body][k] = components[k];
+    for (const auto& [body, value] : stage.force) force[body] = value;
+    for (const auto& [body, value] : stage.moment) moment[body] = value;
 }
 
 void Driving::settle(double duration) {
@@ -27,24 +32,36 @@ void Driving::settle(double duration) {
             if (component) settle_one(*component, duration);
     for (auto& [set, value] : pressure) settle_one(value, duration);
     for (auto& [set, value] : follower_pressure) settle_one(value, duration);
-    for (auto& [body, components] : body_force)
-        for (auto& component : components) settle_one(component, duration);
+    for (auto* vectors : {&body_force, &force, &moment})
+        for (auto& [body, components] : *vectors)
+            for (auto& component : components) settle_one(component, duration);
+    for (auto& [body, components] : motion)
+        for (auto& component : components)
+            if (component) settle_one(*component, duration);
 }
 
 bool Driving::has_load_courses() const {
     const auto varies = [](const scene::Course& course) { return !course.is_value(); };
-    return std::ranges::any_of(pressure, [&](const auto& entry) { return varies(entry.second); }) ||
-           std::ranges::any_of(body_force,
-                               [&](const auto& entry) { return std::ranges::any_of(entry.second, varies); });
+    const auto any = [&](const auto& vectors) {
+        return std::ranges::any_of(vectors,
+                                   [&](const auto& entry) { return std::ranges::any_of(entry.second, varies); });
+    };
+    return std::ranges::any_of(pressure, [&](const auto& entry) { return varies(entry.second); }) || any(body_force) ||
+           any(force) || any(moment);
 }
 
 Driving Driving::without_courses_of(const Driving& next) const {
     Driving kept = *this;
     for (auto& [set, value] : kept.pressure)
         if (!next.pressure.at(set).is_value()) value = 0.0;
-    for (auto& [body, components] : kept.body_force)
-        for (std::size_t k = 0; k < 3; ++k)
-            if (!next.body_force.at(body)[k].is_value()) components[k] = 0.0;
+    const auto drop = [](auto& vectors, const auto& then) {
+        for (auto& [body, components] : vectors)
+            for (std::size_t k = 0; k < 3; ++k)
+                if (!then.at(body)[k].is_value()) components[k] = 0.0;
+    };
+    drop(kept.body_force, next.body_force);
+    drop(kept.force, next.force);
+    drop(kept.moment, next.moment);
     return kept;
 }
 

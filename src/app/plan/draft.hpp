@@ -12,7 +12,7 @@
 namespace osculate::app {
 
 struct Draft {
-    scene::Scene scene; ///< pairs are settled in it
+    scene::Scene scene; ///< pairs are settled in it, and rigid bodies get a stiff material
     int threads;
     Timings& timings;
     Plan plan{};
@@ -20,6 +20,8 @@ struct Draft {
     std::vector<Fault> faults{};
 
     [[nodiscard]] Index body_index(const std::string& name) const;
+    /// Of the name of a rigid body.
+    [[nodiscard]] const model::RigidBody& rigid(const std::string& name) const;
     [[nodiscard]] const model::Set& set(const std::string& name) const;
     /// Faces of a set, global nodes.
     [[nodiscard]] std::vector<mesh::SurfaceFace> faces(const model::Set& set) const;

@@ -27,6 +27,62 @@ void move_origin(Draft& draft, std::vector<mesh::Mesh>& meshes) {
         for (Vec3& X : m.nodes) X -= draft.plan.model.origin;
 }
 
+/// What asks for the stiffness of a body finds a rigid one much stiffer than all that deform.
+void give_rigid_bodies_materials(scene::Scene& scene) {
+    constexpr double stiffer = 1e3;
+    double stiffest = 0;
+    for (const auto& [name, body] : scene.bodies)
+        if (!body.rigid) stiffest = std::max(stiffest, scene::elastic(body.material).E);
+    for (auto& [name, body] : scene.bodies) {
+        if (!body.rigid) continue;
+        scene::LinearElastic stand_in;
+        stand_in.E = stiffest > 0 ? stiffer * stiffest : 1;
+        stand_in.density = body.rigid->density > 0 ? body.rigid->density : scene::elastic(body.material).density;
+        body.material = stand_in;
+        body.hex_formulation = HexFormulation::full;
+    }
+}
+
+/// Mass and centre of a rigid body, as given or those of its volume; faults where inertia would be missing.
+void set_mass(Draft& draft, const std::string& name, const scene::Body& spec, model::RigidBody& rigid) {
+    const model::Body& body = draft.plan.model.bodies[static_cast<std::size_t>(rigid.body)];
+    const scene::Rigid& given = *spec.rigid;
+    const model::MassProperties volume = model::mass_properties(body, 1);
+    const bool solid = volume.mass > 0;
+    if (!solid && !given.mass)
+        draft.faults.push_back(fault("bodies." + name + ".rigid", "a volume, or mass, centre and inertia",
+                                     fmt::format("a volume of {:.3g} m^3", volume.mass)));
+    rigid.centre = given.centre ? *given.centre - draft.plan.model.origin : volume.centre;
+    rigid.mass = given.mass ? *given.mass : body.density * volume.mass;
+    rigid.inertia = body.density * volume.inertia;
+    if (!given.inertia) return;
+    const Vec3 &J = *given.inertia, P = given.products.value_or(Vec3::Zero());
+    rigid.inertia << J.x(), P.x(), P.z(), P.x(), J.y(), P.y(), P.z(), P.y(), J.z();
+}
+
+/// The two nodes of each rigid body, behind those of all meshes.
+void add_rigid_bodies(Draft& draft) {
+    model::Model& m = draft.plan.model;
+    for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+        const auto& [name, spec] = draft.scene.bodies[b];
+        if (!spec.rigid) continue;
+        model::RigidBody& rigid = m.rigid.emplace_back();
+        rigid.body = static_cast<Index>(b);
+        rigid.first_node = m.bodies[b].first_node;
+        rigid.nodes = m.bodies[b].nodes();
+        set_mass(draft, name, spec, rigid);
+        rigid.velocity = spec.initial_velocity;
+        rigid.spin = spec.initial_spin;
+        const Vec3 point = spec.rigid->reference_point ? *spec.rigid->reference_point - m.origin : rigid.centre;
+        rigid.radius = 0;
+        for (const Vec3& X : m.bodies[b].mesh.nodes) rigid.radius = std::max(rigid.radius, (X - point).norm());
+        if (!(rigid.radius > 0)) rigid.radius = 1;
+        rigid.reference = m.nodes();
+        auto& X = m.X.values();
+        X.insert(X.end(), 2, point);
+    }
+}
+
 std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation formulation,
                                           const scene::Material& spec) {
     const material::LinearElastic elastic{scene::elastic(spec).E, scene::elastic(spec).nu};
@@ -90,6 +146,13 @@ Index Draft::body_index(const std::string& name) const {
     throw InternalError("the scene names a body it does not have");
 }
 
+const model::RigidBody& Draft::rigid(const std::string& name) const {
+    const Index body = body_index(name);
+    for (const model::RigidBody& one : plan.model.rigid)
+        if (one.body == body) return one;
+    throw InternalError("the scene asks for the motion of a body that deforms");
+}
+
 const model::Set& Draft::set(const std::string& name) const {
     for (const model::Set& s : plan.model.sets)
         if (s.name == name) return s;
@@ -108,12 +171,14 @@ bool Draft::audited() const {
 
 void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
     move_origin(draft, meshes);
+    give_rigid_bodies_materials(draft.scene);
     for (std::size_t b = 0; b < meshes.size(); ++b) {
         const auto& [name, spec] = draft.scene.bodies[b];
         check_mesh(draft, name, meshes[b]);
         model::Body body;
         body.name = name;
         body.density = scene::elastic(spec.material).density;
+        body.rigid = spec.rigid.has_value();
         body.mesh = std::move(meshes[b]);
         body.first_node = draft.plan.model.nodes();
         for (const mesh::ElementBlock& block : body.mesh.blocks)
@@ -123,6 +188,7 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
         draft.exterior.push_back(mesh::exterior_facets(body.mesh));
         draft.plan.model.bodies.push_back(std::move(body));
     }
+    if (draft.faults.empty()) add_rigid_bodies(draft);
 }
 
 void add_sets(Draft& draft) {

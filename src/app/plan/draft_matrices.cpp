@@ -1,5 +1,6 @@
 /// Matrices of a plan, and weight, which acts on masses.
 
+#include "app/fault.hpp"
 #include "app/plan/draft.hpp"
 #include "osculate/model/general_contact.hpp"
 
@@ -50,6 +51,7 @@ void add_mass(Draft& draft) {
             for (const Vec3& X : body.mesh.nodes)
                 m.initial_velocity.values().push_back(spec.initial_velocity + spec.initial_spin.cross(X - centre));
         }
+        m.initial_velocity.values().resize(m.X.size(), Vec3::Zero()); // rigid bodies know theirs
     }
 }
 
@@ -70,6 +72,18 @@ const equilibrium::Dynamics* weighed(const Draft& draft, std::size_t s) {
     return nullptr;
 }
 
+/// At the centre of mass, which turns about the reference point with the mesh.
+void add_weight(Draft& draft, const model::RigidBody& rigid, Field& weight) {
+    const model::Body& body = draft.plan.model.bodies[static_cast<std::size_t>(rigid.body)];
+    if (rigid.mass == 0) return;
+    const std::vector<double> share = model::weights_about(body.mesh.nodes, rigid.centre);
+    if (share.empty() && draft.faults.empty())
+        draft.faults.push_back(fault("bodies." + body.name + ".rigid.centre",
+                                     "a centre of mass in the plane of a flat mesh, for gravity", "one outside it"));
+    for (std::size_t i = 0; i < share.size(); ++i)
+        weight[static_cast<std::size_t>(rigid.first_node) + i] += share[i] * rigid.mass * draft.scene.gravity;
+}
+
 /// In full from the start. It acts on mass where the mass is, so that bodies fall without strain, and in statics on the
 /// same mass, so that what rests goes on resting when inertia sets in.
 void add_gravity(Draft& draft) {
@@ -81,7 +95,9 @@ void add_gravity(Draft& draft) {
             m.mass(dynamics->lumped_mass).multiply_add(Field(m.X.size(), draft.scene.gravity), weight, draft.threads);
         else
             for (const model::Body& body : m.bodies)
-                if (body.density > 0) model::add_body_force(body, body.density * draft.scene.gravity, weight);
+                if (body.density > 0 && !body.rigid)
+                    model::add_body_force(body, body.density * draft.scene.gravity, weight);
+        for (const model::RigidBody& rigid : m.rigid) add_weight(draft, rigid, weight);
         for (Field* force : {&draft.plan.stages[s].force_start, &draft.plan.stages[s].force_end}) force->add(1, weight);
     }
 }

@@ -69,6 +69,19 @@ void add_pairs(Draft& draft) {
     }
 }
 
+namespace {
+/// A rigid body does not change its shape: it does not meet itself.
+void keep_rigid_bodies_from_themselves(scene::Scene& scene) {
+    for (const auto& [name, body] : scene.bodies) {
+        if (!body.rigid) continue;
+        scene::GeneralRule apart;
+        apart.between = {name, name};
+        apart.contact = false;
+        scene.general->pairs.emplace_back("rigid " + name, apart);
+    }
+}
+} // namespace
+
 void add_general_contact(Draft& draft) {
     if (!draft.plan.general) return;
     const bool dynamic =
@@ -80,6 +93,7 @@ void add_general_contact(Draft& draft) {
             draft.faults.push_back(fault("contact.general", "bodies of elements without midside nodes",
                                          "body '" + body.name + "' with quadratic elements, which carry no contact"));
     if (!draft.faults.empty()) return;
+    keep_rigid_bodies_from_themselves(draft.scene);
     try {
         draft.plan.model.general = make_general_contact(draft.scene, draft.plan.model, draft.exterior, dynamic);
     } catch (const std::runtime_error& error) {

@@ -56,6 +56,11 @@ Field ramped_forces(const Draft& draft, const Driving& driving) {
     for (const auto& [body, b] : driving.body_force)
         model::add_body_force(draft.plan.model.bodies[draft.body_index(body)],
                               {ramped(b[0]), ramped(b[1]), ramped(b[2])}, force);
+    for (const auto& [body, f] : driving.force)
+        force[static_cast<std::size_t>(draft.rigid(body).reference)] += Vec3(ramped(f[0]), ramped(f[1]), ramped(f[2]));
+    for (const auto& [body, m] : driving.moment) // moments are forces at the radius
+        force[static_cast<std::size_t>(draft.rigid(body).rotation())] +=
+            Vec3(ramped(m[0]), ramped(m[1]), ramped(m[2])) / draft.rigid(body).radius;
     return force;
 }
 
@@ -72,6 +77,45 @@ void add_course_forces(const Draft& draft, const Driving& driving, CourseList& c
             if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value())
                 model::add_body_force(draft.plan.model.bodies[draft.body_index(body)], Vec3::Unit(k),
                                       pattern("body_force." + body + "." + std::string(1, "xyz"[k]), course));
+    const auto add_at_point = [&](const std::string& key, const auto& vectors, bool moment) {
+        for (const auto& [body, components] : vectors)
+            for (int k = 0; k < 3; ++k)
+                if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value()) {
+                    const model::RigidBody& rigid = draft.rigid(body);
+                    const auto node = static_cast<std::size_t>(moment ? rigid.rotation() : rigid.reference);
+                    pattern(key + "." + body + "." + std::string(1, "xyz"[k]), course)[node] =
+                        Vec3::Unit(k) / (moment ? rigid.radius : 1);
+                }
+    };
+    add_at_point("force", driving.force, false);
+    add_at_point("moment", driving.moment, true);
+}
+
+/// Held and driven components of rigid bodies, at their own nodes.
+void add_rigid_constraints(const Draft& draft, const Driving& driving, CourseList& courses,
+                           std::vector<linear::NodeConstraint>& constraints) {
+    for (const auto& [name, spec] : draft.scene.bodies) {
+        if (!spec.rigid) continue;
+        const model::RigidBody& rigid = draft.rigid(name);
+        const auto motion = driving.motion.find(name);
+        for (std::size_t k = 0; k < 6; ++k) {
+            const bool moved = motion != driving.motion.end() && motion->second[k];
+            if (!moved && !spec.rigid->fixed[k]) continue;
+            const double unit = k < 3 ? 1 : rigid.radius; // a rotation is the path of a point at the radius
+            linear::NodeConstraint held;
+            held.node = k < 3 ? rigid.reference : rigid.rotation();
+            held.direction = Vec3::Unit(static_cast<Eigen::Index>(k % 3));
+            held.driven = moved;
+            if (moved) {
+                const scene::Course& value = *motion->second[k];
+                if (!value.is_value())
+                    held.course = courses.index(
+                        "motion." + name + "." + (k < 3 ? "" : "r") + std::string(1, "xyz"[k % 3]), value);
+                held.target = unit * (value.is_value() ? value.value() : 1);
+            }
+            constraints.push_back(held);
+        }
+    }
 }
 
 void add_constraints(const Draft& draft, const Driving& driving, CourseList& courses,
@@ -124,6 +168,7 @@ void add_stages(Draft& draft) {
         now.update(spec);
         CourseList courses(stage.courses);
         add_constraints(draft, now, courses, stage.constraints);
+        add_rigid_constraints(draft, now, courses, stage.constraints);
         const bool varying = now.has_load_courses();
         if (draft.plan.stages.empty() || settled || varying)
             stage.force_start = ramped_forces(draft, before.without_courses_of(now));

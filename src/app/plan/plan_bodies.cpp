@@ -1,6 +1,7 @@
 /// Parts of a plan: what bodies do by themselves.
 
 #include "app/plan/plan_items.hpp"
+#include "osculate/linear/dependence.hpp"
 #include "osculate/model/general_contact.hpp"
 
 #include <algorithm>
@@ -53,6 +54,15 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
     list.say("nonlinear elements", nonlinear,
              nonlinear ? "forces and tangent anew at every iterate" : "every body is linear",
              nonlinear ? nonlinear_cost(model) : PlanCost{});
+
+    double followers = 0;
+    for (const model::RigidBody& rigid : model.rigid) followers += rigid.nodes;
+    list.say("rigid bodies", !model.rigid.empty(),
+             model.rigid.empty()
+                 ? "every body deforms"
+                 : fmt::format("{} of {} bodies, six unknowns each", model.rigid.size(), model.bodies.size()),
+             {followers * (sizeof(std::vector<int>) + 2 * sizeof(linear::Dependence::Carrier)), followers,
+              "nodes an iteration"});
 
     const std::size_t dynamic = dynamic_stages(plan);
     constexpr double states = 10; // u, v, a: of the state, of the start of the step and after it; force at the start

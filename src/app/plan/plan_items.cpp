@@ -38,12 +38,13 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     const bool contact = !plan.model.pairs.empty() || plan.model.general, nonlinear = plan.model.nonlinear != nullptr;
     const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
                                      [](const time::Stage& s) { return !s.follower_pressures.empty(); });
+    const bool rigid = !plan.model.rigid.empty();
     const bool unsymmetric = contact || follows || (nonlinear && dynamic_stages(plan) > 0);
     const LinearSolver asked = scene.solver.linear_solver;
     const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start());
     const bool condensed = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
-    const bool direct = unsymmetric && asked == LinearSolver::direct;
+    const bool direct = (unsymmetric && asked == LinearSolver::direct) || (rigid && !contact && !follows);
     say("multigrid", multigrid,
         multigrid ? fmt::format("multigrid cycles over {} nodes instead of factors", plan.model.nodes())
                   : "too few nodes for multigrid to pay off, or the scene asks for another solver");
@@ -52,14 +53,16 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
                                   cost.condensed, cost.factorising)
         : !contact  ? "the scene has no pair"
         : multigrid ? "multigrid is used"
-        : nonlinear || follows ? "the tangent of the bodies is not constant"
+        : nonlinear || follows || rigid ? "the tangent of the bodies is not constant"
         : asked == LinearSolver::automatic
             ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
                           "{:.2g} operations",
                           cost.condensed, 1e-9 * cost.bytes, cost.factorising)
             : "the scene asks for another solver");
     say("LU factorisation", direct,
-        direct ? "the scene asks for it, in every iteration" : "only if GMRES does not converge");
+        direct ? asked == LinearSolver::direct ? "the scene asks for it, in every iteration"
+                                               : "of the tangent with rigid bodies, which is not symmetric"
+               : "only if GMRES does not converge");
     say("Cholesky factorisation", !direct && !multigrid,
         direct        ? "the tangent itself is factorised"
         : multigrid   ? "multigrid cycles replace it"

@@ -4,6 +4,7 @@
 #include "app/overloaded.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace osculate::app {
@@ -71,12 +72,43 @@ std::pair<std::string, std::string> place_of(const scene::Probe& spec) {
         spec.kind);
 }
 
+/// What a probe asks of a rigid body that it does not have: key, expected, found; empty: nothing.
+std::array<std::string, 3> asks_too_much(const scene::Probe& spec, const model::Model& model) {
+    const auto judge = [&](const std::string& key, Index body, const std::vector<std::string>& fields) {
+        std::array<std::string, 3> found;
+        if (!model.bodies[static_cast<std::size_t>(body)].rigid) return found;
+        const std::string& name = model.bodies[static_cast<std::size_t>(body)].name;
+        for (const std::string& field : fields)
+            for (const char* of_strain :
+                 {"stress", "von_mises", "stress_max", "stress_mid", "stress_min", "strain", "energy_density"})
+                if (field == of_strain)
+                    return std::array<std::string, 3>{key + ".fields",
+                                                      "fields that rigid body '" + name + "' has, as displacement",
+                                                      "'" + field + "', of bodies that deform"};
+        return found;
+    };
+    if (const auto* p = std::get_if<scene::PointProbe>(&spec.kind))
+        return judge("point", body_index(model, p->body), p->fields);
+    if (const auto* p = std::get_if<scene::LineProbe>(&spec.kind))
+        return judge("line", body_index(model, p->body), p->fields);
+    if (const auto* p = std::get_if<scene::NodesProbe>(&spec.kind))
+        return judge("nodes", std::ranges::find(model.sets, p->set, &model::Set::name)->body, p->fields);
+    const auto* p = std::get_if<scene::SectionForceProbe>(&spec.kind);
+    if (p != nullptr && model.bodies[static_cast<std::size_t>(body_index(model, p->body))].rigid)
+        return {"section_force.body", "a body that deforms", "'" + p->body + "', which is rigid"};
+    return {};
+}
+
 } // namespace
 
 std::vector<PlannedProbe> make_probes(const scene::Scene& scene, const model::Model& model,
                                       std::vector<Fault>& faults) {
     std::vector<PlannedProbe> probes;
     for (const auto& [name, spec] : scene.output.probes) try {
+            if (const auto [key, expected, found] = asks_too_much(spec, model); !key.empty()) {
+                faults.push_back(fault("output.probes." + name + "." + key, expected, found));
+                continue;
+            }
             probes.push_back({name, spec.every, make(spec, model)});
         } catch (const std::invalid_argument& error) {
             const auto [key, expected] = place_of(spec);

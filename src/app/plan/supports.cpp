@@ -11,6 +11,10 @@ std::vector<std::string> unsupported_bodies(const Plan& plan) {
         model::RigidHold hold(body, plan.model.X);
         for (const linear::NodeConstraint& c : plan.stages.front().constraints)
             if (owns(c.node)) hold.hold(plan.model.X[c.node], c.direction);
+        for (const model::RigidBody& rigid : plan.model.rigid)
+            if (&plan.model.bodies[static_cast<std::size_t>(rigid.body)] == &body)
+                for (const linear::NodeConstraint& c : plan.stages.front().constraints)
+                    hold.hold(rigid, c, plan.model.X);
         const bool held = hold.free() == 0;
         bool touched = plan.model.general != nullptr;
         for (const auto& pair : plan.model.pairs)

@@ -54,7 +54,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
     const scene::Output& out = scene.output;
     const fs::path& folder = directory();
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
-    history_reactions_ = reactions;
+    history_reactions_ = reactions || !plan.model.rigid.empty();
     frame_reactions_ = std::ranges::count(out.body_fields, "reaction") > 0;
     probe_reactions_ =
         std::ranges::any_of(plan.probes, [](const PlannedProbe& probe) { return probe.probe->reads("reaction"); });

@@ -349,8 +349,9 @@ private:
         const auto pair = std::ranges::find_if(model.pairs, joins);
         const bool general = model.general && model.general->meet(intrusion.body, intrusion.other);
         if (!general && (intrusion.body == intrusion.other || pair == model.pairs.end())) {
-            const std::string who = intrusion.body == intrusion.other ? "'" + body + "' from going through itself"
-                                                                      : "'" + body + "' and '" + other + "' apart";
+            const std::string who = intrusion.body == intrusion.other
+                                        ? "'" + body + "' from going through itself where its mesh resolves the folds"
+                                        : "'" + body + "' and '" + other + "' apart";
             add("contact.general", "{}, which keeps " + who + ": no pair does", {"contact.general={}"});
         } else if (pair == model.pairs.end()) {
             found_.no_remedy = "general contact sees nodes against facets, and no node of '" + body + "' or '" + other +

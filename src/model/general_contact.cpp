@@ -25,8 +25,6 @@ constexpr double facing = -0.17;
 constexpr double behind = 0.5;
 /// A node points at a surface if no edge that meets there goes deeper into it than this, over its length.
 constexpr double pointing = -0.5;
-/// A corner or edge pricks a facet if no face there is flatter on it than this cosine, and no edge goes into it.
-constexpr double flat = -0.98, along_ridge = -0.1;
 /// Facets of one surface do not meet if they are nearer along it than this, in sizes of the larger one: folds between them are
 /// sharper than what the mesh resolves.
 constexpr double neighbourhood = 2.5;
@@ -77,12 +75,6 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
     for (const auto& [a, b] : options_.left_out)
         left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] =
             left_out_[static_cast<std::size_t>(b) * surfaces_.size() + static_cast<std::size_t>(a)] = 1;
-    sharp_.assign(X.size(), 0);
-    for (const OuterSurface& surface : surfaces_) {
-        const mesh::HalfEdgeSurface& mesh = surface.side->surface();
-        for (Index h = 0; h < static_cast<Index>(mesh.half_edges().size()); ++h)
-            if (mesh.is_feature_edge(h)) sharp_[surface.side->nodes()[mesh.half_edges()[h].origin]] = 1;
-    }
     around_.resize(X.size());
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         if (left_out_[s * surfaces_.size() + s] != 0) continue;
@@ -321,21 +313,7 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
                    return (x[end] - x[node]).normalized().dot(n) >= pointing;
                });
     };
-    // a corner or an edge of the master that goes into a slave facet between its nodes
-    const auto pricks = [&](Index node, Index g) {
-        return sharp_[node] != 0 && points_at(node, g) &&
-               std::ranges::all_of(node_facets_[node], [&](Index f) { return normal[f].dot(normal[g]) > flat; }) &&
-               std::ranges::all_of(along_[node], [&](Index end) {
-                   return (x[end] - x[node]).normalized().dot(normal[g]) >= along_ridge;
-               });
-    };
     for (const auto& [f, g] : near) {
-        if (data_[f].surface != data_[g].surface)
-            for (const auto& [one, other] : {std::pair{f, g}, std::pair{g, f}})
-                if (!leads(one, other))
-                    for (const Index node : facets_[one])
-                        if (pricks(node, other))
-                            found[{data_[one].surface, data_[other].surface}].nodes.push_back(node);
         if (normal[f].dot(normal[g]) < facing) {
             if (!in_front(f, g) || !in_front(g, f)) continue;
             consider(f, g);

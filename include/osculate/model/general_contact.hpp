@@ -113,7 +113,6 @@ private:
     std::vector<std::vector<Index>> node_facets_,
         along_;                  ///< (nodes) facets that meet there; nodes at other ends of edges
     std::vector<char> left_out_; ///< (surfaces x surfaces)
-    std::vector<char> sharp_;    ///< (nodes) at a feature edge
     std::vector<Index> first_;   ///< (surfaces) number of the first facet
     /// (nodes) facets of the own surface that are near along it, numbers within the surface, ascending
     std::vector<std::vector<Index>> around_;

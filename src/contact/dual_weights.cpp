@@ -1,6 +1,7 @@
 #include "osculate/contact/dual_weights.hpp"
 
 #include "contact/facet_rule.hpp"
+#include "osculate/contact/near_facets.hpp"
 #include "osculate/core/without_traps.hpp"
 
 #include <Eigen/Geometry>
@@ -51,8 +52,6 @@ double reference_per_plane(const Shape& N, const std::vector<Vec3>& X, const std
     }
     return A.cross(B).norm() / plane.normal().dot(a.cross(b));
 }
-/// Largest cosine between the normals of facets that face each other: ten degrees from edge-on.
-constexpr double facing = -0.17;
 
 Vec3 normal_of(std::span<const Vec3> corner) {
     const Vec3 a = corner[1] - corner[0], b = corner[2] - corner[0];

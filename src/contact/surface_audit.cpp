@@ -253,7 +253,9 @@ private:
             h = std::max(h, own.size[f]);
             bend = std::max(bend, curvature(own, f));
         }
-        bend += curvature(host, facet);
+        const double sharpest =
+            crease / h; // what turns by more over h is too fine for the other's facets: no sagitta of theirs
+        bend = std::min(bend, sharpest) + std::min(curvature(host, facet), sharpest);
         const double sagitta = h * h / 8 * bend + warp(host.facets[facet]);
         const double excess = std::max(0.0, depth - sagitta);
         if (deepest_.body < 0 || excess / h > deepest_.relative())

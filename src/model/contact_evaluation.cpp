@@ -1,5 +1,6 @@
 #include "osculate/model/contact_evaluation.hpp"
 
+#include "osculate/contact/near_facets.hpp"
 #include "osculate/core/parallel.hpp"
 #include "osculate/model/model.hpp"
 
@@ -12,8 +13,6 @@ namespace osculate::model {
 namespace {
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
-/// Cosine between normals of facets that may touch each other: ten degrees from edge-on.
-constexpr double faced = -0.17;
 /// How deep a node may be behind such a facet at the start of an attempt, in sizes of it and in thicknesses of the body behind:
 /// a node that is deeper is on the body's other side.
 constexpr double behind_at_start = 0.3;
@@ -130,7 +129,8 @@ bool ContactEvaluation::looks_past(const contact::FacetHit& hit) const {
 
 bool ContactEvaluation::may_touch(Index j, Index facet) const {
     const Vec3& n = facets_.normal[static_cast<std::size_t>(facet)];
-    if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)], [&](const Vec3& m) { return m.dot(n) < faced; }))
+    if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)],
+                             [&](const Vec3& m) { return m.dot(n) < contact::facing; }))
         return false;
     const double depth = behind_at_start * std::min(pair_->surface().facet_size(facet), pair_->thickness(facet));
     if (!((start_.slaves[j] - facets_.centre[static_cast<std::size_t>(facet)]).dot(n) > -depth)) return false;

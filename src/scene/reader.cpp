@@ -10,6 +10,7 @@
 #include <cctype>
 #include <filesystem>
 #include <tuple>
+#include <utility>
 
 namespace osculate::scene {
 
@@ -55,6 +56,19 @@ void sort_by_place(std::vector<Fault>& faults, const std::string& file) {
     });
 }
 
+/// Pairs that general contact finds have no frames of their own: what is asked of slaves is asked of bodies, too.
+void ask_bodies_what_slaves_are_asked(Output& output) {
+    constexpr std::pair<const char*, const char*> same[] = {{"gap", "contact_gap"},
+                                                            {"contact_force", "contact_force"},
+                                                            {"normal_stress", "contact_pressure"},
+                                                            {"slip", "contact_slip"},
+                                                            {"status", "contact_status"}};
+    for (const auto& [of_slaves, of_bodies] : same)
+        if (std::ranges::count(output.slave_fields, of_slaves) > 0 &&
+            std::ranges::count(output.body_fields, of_bodies) == 0)
+            output.body_fields.emplace_back(of_bodies);
+}
+
 Scene build(Tree tree, const std::string& file, const fs::path& directory, const std::vector<Override>& overrides,
             std::vector<Fault> faults) {
     expand_short_forms(tree, faults);
@@ -75,6 +89,7 @@ Scene build(Tree tree, const std::string& file, const fs::path& directory, const
         sort_by_place(faults, file);
         throw SceneError(std::move(faults));
     }
+    if (scene.general) ask_bodies_what_slaves_are_asked(scene.output);
     return scene;
 }
 

@@ -133,6 +133,18 @@ TEST(SurfaceAudit, SeesSlicesThatOverlapThoughTheirNodesLieOnTheOthersFaces) {
     }
 }
 
+TEST(SurfaceAudit, SeesAFineBallInTheMiddleOfACoarseFacet) {
+    // no node of the floor is near; the curvature of the ball times the facet's size squared would excuse any depth
+    constexpr double depth = 0.08, size = 0.25, radius = 0.05;
+    Bodies bodies;
+    bodies.add(box({1, 1, 1}, {4, 4, 2}), Mat3::Identity(), {0, 0, -0.5});
+    bodies.add(mesh::make_ball(radius, {4, 4, 4}), Mat3::Identity(), {0.5 * size, 0.5 * size, radius - depth});
+    const AuditResult found = bodies.examine();
+    ASSERT_NE(found.worst(), nullptr);
+    constexpr double arc = 40 * std::numbers::pi / 180; // all that is excused of the ball
+    EXPECT_NEAR(found.worst()->excess, depth - size / 8 * arc, 1e-3) << "the lowest node of the ball";
+}
+
 TEST(SurfaceAudit, SeesABodyInsideAnotherWhole) {
     Bodies bodies;
     bodies.add(box({1, 1, 1}, {2, 2, 2}));

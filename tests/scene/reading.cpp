@@ -68,6 +68,15 @@ TEST(Reader, TakesTheContactTemplateWhenNoneIsNamed) {
     EXPECT_TRUE(scene.output.history_reactions);
 }
 
+TEST(Reader, AsksBodiesWhatSlavesAreAskedWhereGeneralContactFindsThese) {
+    const std::vector<Override> asked{{"output.body_fields", "[displacement, contact_gap]"},
+                                      {"output.slave_fields", "[gap, status, area]"}};
+    EXPECT_THAT(read_small(asked).output.body_fields, ElementsAre("displacement", "contact_gap"));
+    std::vector<Override> general = asked;
+    general.emplace_back("contact.general", "{}");
+    EXPECT_THAT(read_small(general).output.body_fields, ElementsAre("displacement", "contact_gap", "contact_status"));
+}
+
 TEST(Reader, SelectsTheSurfaceByABareWord) {
     const Scene scene = parse_scene(replaced(small_scene, "{rpim: {ring: 1}}", "facets"), "s.yaml");
     EXPECT_TRUE(std::holds_alternative<FacetsSurface>(master(scene).surface));

@@ -27,6 +27,22 @@ struct Diary final : time::StepObserver {
     }
 };
 
+/// Runs a plan to its end.
+/// @param reject_every  the step controller rejects every so many attempts; 0: none
+inline Diary diary_of(app::Plan& plan, int reject_every = 0) {
+    Timings timings;
+    plan.stepper.reject_every = reject_every;
+    Diary diary;
+    time::Stepper stepper(plan.model, plan.stages, plan.stepper, timings);
+    stepper.run(diary);
+    return diary;
+}
+
+inline app::Plan compiled(const scene::Scene& scene, int threads = 1) {
+    Timings timings;
+    return app::compile(scene, app::build_meshes(scene), threads, timings);
+}
+
 /// @param b  begins later: every step of it is compared with the last ones of a
 inline void expect_same_end(const Diary& a, const Diary& b) {
     ASSERT_GT(b.states.size(), 0U);
@@ -38,7 +54,9 @@ inline void expect_same_end(const Diary& a, const Diary& b) {
         ASSERT_EQ(x.u, y.u) << "step " << k;
         ASSERT_EQ(x.v, y.v) << "step " << k;
         ASSERT_EQ(x.a, y.a) << "step " << k;
+        ASSERT_EQ(x.contact.size(), y.contact.size()) << "step " << k;
         for (std::size_t p = 0; p < x.contact.size(); ++p) {
+            ASSERT_EQ(x.contact[p].pair->slaves().node, y.contact[p].pair->slaves().node) << "step " << k;
             ASSERT_EQ(x.contact[p].lambda, y.contact[p].lambda) << "step " << k;
             ASSERT_EQ(x.contact[p].status, y.contact[p].status) << "step " << k;
             ASSERT_EQ(x.contact[p].facet, y.contact[p].facet) << "step " << k;

@@ -52,14 +52,8 @@ contact:
 
 Diary run(const std::string& text, const std::vector<scene::Override>& changes = {}, int reject_every = 0,
           int threads = 1) {
-    const scene::Scene scene = scene::read_scene(support::scene_file("general.yaml", text), changes);
-    Timings timings;
-    app::Plan plan = app::compile(scene, app::build_meshes(scene), threads, timings);
-    plan.stepper.reject_every = reject_every;
-    Diary diary;
-    time::Stepper stepper(plan.model, plan.stages, plan.stepper, timings);
-    stepper.run(diary);
-    return diary;
+    app::Plan plan = support::compiled(scene::read_scene(support::scene_file("general.yaml", text), changes), threads);
+    return support::diary_of(plan, reject_every);
 }
 
 /// Largest difference of displacements over the largest displacement.

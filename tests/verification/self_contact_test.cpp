@@ -40,14 +40,9 @@ struct Result {
 
 Result run(const std::string& text, const std::vector<scene::Override>& changes = {}, int reject_every = 0,
            int threads = 1) {
-    const scene::Scene scene = scene::read_scene(support::scene_file("self.yaml", text), changes);
-    Timings timings;
-    app::Plan plan = app::compile(scene, app::build_meshes(scene), threads, timings);
-    plan.stepper.reject_every = reject_every;
-    Result result{std::move(plan.model), {}};
-    time::Stepper stepper(result.model, plan.stages, plan.stepper, timings);
-    stepper.run(result.diary);
-    return result;
+    app::Plan plan = support::compiled(scene::read_scene(support::scene_file("self.yaml", text), changes), threads);
+    Diary diary = support::diary_of(plan, reject_every);
+    return {std::move(plan.model), std::move(diary)};
 }
 
 /// The least height of nodes of the roof above the floor, by straight lines between its nodes, m.

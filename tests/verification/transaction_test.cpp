@@ -14,14 +14,8 @@ using support::Diary, support::expect_same_bits, support::impact, support::slide
 
 Diary run(const std::string& scene_name, const std::vector<scene::Override>& overrides, int reject_every,
           int threads = 1) {
-    const scene::Scene scene = scene::read_scene(support::shipped(scene_name), overrides);
-    Timings timings;
-    app::Plan plan = app::compile(scene, app::build_meshes(scene), threads, timings);
-    plan.stepper.reject_every = reject_every;
-    Diary diary;
-    time::Stepper stepper(plan.model, plan.stages, plan.stepper, timings);
-    stepper.run(diary);
-    return diary;
+    app::Plan plan = support::compiled(scene::read_scene(support::shipped(scene_name), overrides), threads);
+    return support::diary_of(plan, reject_every);
 }
 
 TEST(Transaction, RejectedAttemptsOfAThrowWithFrictionLeaveNoTrace) {

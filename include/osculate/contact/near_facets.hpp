@@ -9,6 +9,9 @@
 
 namespace osculate::contact {
 
+/// Largest cosine between the normals of facets that face each other: ten degrees from edge-on.
+inline constexpr double facing = -0.17;
+
 /// All pairs of facets, the lower number first, ascending, whose bounding boxes overlap after each is extended by its
 /// facet's margin: every two facets whose margins together bridge the distance between them, and a few more. One R-tree
 /// holds the boxes of all facets. O((n + pairs) log n)

@@ -48,7 +48,8 @@ struct AuditResult {
 /// nodes may be
 ///     s = h^2/8 (theta_a/h_a + theta_b/h_b) + w,   h = max(h_a, h_b)
 /// deep in facets while the surfaces just touch, where w is the warping height of a quadrilateral. Rotations of more
-/// than 40 degrees are edges, without sagitta.
+/// than 40 degrees are edges, without sagitta, and h theta_a/h_a and h theta_b/h_b count up to 40 degrees: a ball smaller than
+/// the facets it lies on is no arc over them.
 class SurfaceAudit {
 public:
     /// @param bodies  outer facets of each body, global nodes, normals outward

@@ -163,7 +163,9 @@ bool BodyForces::linearise(const Field& u) {
 void BodyForces::add_pressure_tangent(const mesh::SurfaceFace& face, const Field& x, double pressure) {
     const std::vector<Index> nodes(face.begin(), face.end());
     const Matrix tangent = fe::pressure_tangent(face, x, pressure);
-    if (dependence_ == nullptr || !dependence_->depends(nodes.front())) {
+    const Index first = nodes.front(); // a node that carries elements is folded with them
+    if (dependence_ == nullptr || !dependence_->depends(first) ||
+        tangent_.row_end(first) - tangent_.row_begin(first) > 1) {
         tangent_.add(nodes, tangent);
         return;
     }

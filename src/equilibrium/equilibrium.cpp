@@ -38,8 +38,11 @@ std::vector<Term*> Equilibrium::list_of_terms() {
     bodies_.bodies().add_to_tangent([this](linear::BlockMatrix& tangent) { rigid_->add_tangent(tangent); },
                                     rigid_->dependence());
     contact_.use(rigid_->dependence());
-    std::vector<Index> nodes = model::dependent_nodes(model_);
-    for (const model::RigidBody& body : model_.rigid) nodes.insert(nodes.end(), {body.reference, body.rotation()});
+    std::vector<Index> nodes;
+    for (const model::RigidBody& body : model_.rigid) {
+        if (!body.coupling) nodes.insert(nodes.end(), body.nodes.begin(), body.nodes.end());
+        nodes.insert(nodes.end(), {body.reference, body.rotation()});
+    }
     bodies_.set_without_elements(std::move(nodes));
     terms.push_back(rigid_.get());
     return terms;

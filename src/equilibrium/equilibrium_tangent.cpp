@@ -40,7 +40,11 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::C
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact),
       dependence_(dependence), at_(at), timings_(timings),
       may_buckle_(model.nonlinear != nullptr || dependence != nullptr), products_(choice.products) {
-    const linear::BlockMatrix& K = bodies_.bodies().tangent();
+    if (dependence != nullptr && linear::needs_folding(*dependence, bodies_.bodies().tangent())) {
+        folded_ = std::make_unique<linear::FoldedMatrix>(*dependence, bodies_.bodies().tangent());
+        fold_stiffness();
+    }
+    const linear::BlockMatrix& K = stiffness();
     for (Index j = 0; j < unknowns.couplings(); ++j) {
         couplings_.push_back({unknowns.slave(j), {}});
         if (dependence == nullptr) continue; // the force on a dependent node acts elsewhere, even if it is open
@@ -52,7 +56,10 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::C
         preconditioner_ = std::make_unique<linear::ContactPreconditioner>(
             constraints_, K,
             choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
-            [&model, threads] { return model::undeformed_stiffness(model, threads); });
+            [this, &model, threads] {
+                linear::BlockMatrix undeformed = model::undeformed_stiffness(model, threads);
+                return folded_ ? folded_->folded(undeformed) : undeformed;
+            });
     if (!choice.condensed) return;
     std::vector<linear::CondensedBody> condensed;
     for (const model::Body& body : model.bodies)
@@ -64,16 +71,26 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::C
                                                             std::move(slaves), threads);
 }
 
+const linear::BlockMatrix& EquilibriumTangent::stiffness() const {
+    return folded_ ? folded_->matrix() : bodies_.bodies().tangent();
+}
+
+void EquilibriumTangent::fold_stiffness() {
+    if (folded_) folded_->fold(bodies_.bodies().tangent());
+}
+
 void EquilibriumTangent::begin(double dt, bool changed) {
     const ScopedTimer timer(timings_, Part::assembly);
     if (condensed_) condensed_->begin(dt, changed);
     if (!changed) return;
+    fold_stiffness();
     if (matrix_) matrix_->stiffness_changed();
     if (preconditioner_) preconditioner_->stiffness_changed();
 }
 
 void EquilibriumTangent::stiffness_replaced() {
-    const linear::BlockMatrix& K = bodies_.bodies().tangent();
+    fold_stiffness();
+    const linear::BlockMatrix& K = stiffness();
     if (matrix_) matrix_->use(K);
     if (preconditioner_) preconditioner_->use(K);
 }
@@ -132,7 +149,10 @@ void EquilibriumTangent::precondition(const ConstVectorRef& r, VectorRef z) {
 }
 
 void EquilibriumTangent::update_stiffness() {
-    if (bodies_.update_stiffness(at_)) stale_preconditioner_ = stale_matrix_ = true;
+    if (!bodies_.update_stiffness(at_)) return;
+    const ScopedTimer timer(timings_, Part::assembly);
+    fold_stiffness();
+    stale_preconditioner_ = stale_matrix_ = true;
 }
 
 void EquilibriumTangent::linearise() {
@@ -195,7 +215,7 @@ const solve::SparseMatrix& EquilibriumTangent::jacobian() {
         const bool contact = unknowns_.couplings() > 0;
         if (contact) cover_patterns();
         if (!matrix_) {
-            matrix_ = std::make_unique<linear::SystemMatrix>(constraints_, bodies_.bodies().tangent(), couplings_);
+            matrix_ = std::make_unique<linear::SystemMatrix>(constraints_, stiffness(), couplings_);
             if (may_buckle_) matrix_->expect_buckling();
             if (!bodies_.bodies().symmetric()) matrix_->expect_unsymmetric();
         } else if (stale_matrix_) {

@@ -18,11 +18,15 @@ constexpr double tolerance = 1e-10; ///< of solve::friction_error()
 FrictionStep::FrictionStep(const linear::Constraints& constraints, const linear::Unknowns& unknowns, BodyTerm& bodies,
                            ContactTerm& contact, const linear::Dependence* dependence)
     : constraints_(constraints), unknowns_(unknowns), bodies_(bodies), contact_(contact), dependence_(dependence),
+      folded_(dependence != nullptr && linear::needs_folding(*dependence, bodies.bodies().tangent())
+                  ? std::make_unique<linear::FoldedMatrix>(*dependence, bodies.bodies().tangent())
+                  : nullptr),
       stiffness_(constraints, bodies.bodies().tangent()) {}
 
 bool FrictionStep::factorise(const Iterate& at) {
     (void)bodies_.update_stiffness(at);
-    stiffness_.use(bodies_.bodies().tangent());
+    if (folded_) folded_->fold(bodies_.bodies().tangent());
+    stiffness_.use(folded_ ? folded_->matrix() : bodies_.bodies().tangent());
     stiffness_.set_springs({});
     const auto done = [&](std::unique_ptr<solve::DirectSolver>& solver, auto&& make) {
         if (!solver) solver = make();

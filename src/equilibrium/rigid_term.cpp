@@ -20,8 +20,7 @@ RigidTerm::RigidTerm(const model::Model& model, const linear::Constraints& const
       bodies_(model.rigid.size()), dependence_(model.nodes()) {
     constexpr double apart = 1e-9; // of the radius
     for (const RigidBody& body : model.rigid) {
-        for (Index i = 0; i < body.nodes; ++i)
-            dependence_.set(body.first_node + i, {{body.reference}, {body.rotation()}});
+        for (const Index node : body.nodes) dependence_.set(node, {{body.reference}, {body.rotation()}});
         by_reference_.push_back((body.centre - model.X[place_of(body.reference)]).norm() > apart * body.radius &&
                                 constraints.free_components(body.reference) < 3);
     }
@@ -69,7 +68,9 @@ bool RigidTerm::move(std::size_t k, const Field& u, Moving& now) const {
     now.end.rotation = model::rotation_vector(now.end.orientation, now.start.rotation);
     now.R = now.end.orientation.toRotationMatrix();
     if (dynamics_ == nullptr) return true;
-    if (by_reference_[k] != 0)
+    if (body.coupling)
+        set_mean_velocity(now);
+    else if (by_reference_[k] != 0)
         set_inertia_of_reference(body, now);
     else
         set_inertia_of_centre(body, now);
@@ -86,15 +87,20 @@ bool RigidTerm::renew(const Field& u) {
             continue;
         }
         const Vec3& X_r = model_.X[place_of(body.reference)];
-        for (Index i = 0; i < body.nodes; ++i) {
-            const Vec3 arm = model_.X[place_of(body.first_node + i)] - X_r, rho = now.R * arm;
+        for (const Index node : body.nodes) {
+            const Vec3 arm = model_.X[place_of(node)] - X_r, rho = now.R * arm;
             const Vec3 acting = (1 - alpha_f_) * rho + alpha_f_ * (now.R_start * arm);
-            dependence_.set(body.first_node + i, {{body.reference},
-                                                  {body.rotation(), -cross_matrix(rho) * now.T / body.radius,
-                                                   cross_matrix(acting) / body.radius}});
+            dependence_.set(node, {{body.reference},
+                                   {body.rotation(), -cross_matrix(rho) * now.T / body.radius,
+                                    cross_matrix(acting) / body.radius}});
         }
     }
     return all;
+}
+
+void RigidTerm::set_mean_velocity(Moving& now) const {
+    now.end.velocity = now.Du / dt_;
+    now.end.angular_velocity = now.R_start.transpose() * now.theta / dt_;
 }
 
 void RigidTerm::set_inertia_of_centre(const RigidBody& body, Moving& now) const {
@@ -187,6 +193,7 @@ bool RigidTerm::evaluate(const Iterate& at) {
 void RigidTerm::add_forces(Field& f) const {
     if (dynamics_ == nullptr) return;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (model_.rigid[k].coupling) continue;
         f[place_of(model_.rigid[k].reference)] += bodies_[k].force;
         f[place_of(model_.rigid[k].rotation())] += bodies_[k].moment / model_.rigid[k].radius;
     }
@@ -197,6 +204,7 @@ void RigidTerm::add_magnitudes(const Iterate&, Field& sums) const {
     // inertia is a difference of momenta over the time
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const RigidBody& body = model_.rigid[k];
+        if (body.coupling) continue;
         const Moving& now = bodies_[k];
         const Vec3 p = body.mass / dt_ * (now.end.velocity.cwiseAbs() + now.start.velocity.cwiseAbs());
         sums[place_of(body.reference)] += p + body.mass * kinematics_.by_u_acceleration * now.Du.cwiseAbs();
@@ -215,8 +223,8 @@ void RigidTerm::fold(Field& f) {
         const RigidBody& body = model_.rigid[k];
         const Vec3& X_r = model_.X[place_of(body.reference)];
         Mat3 sum = Mat3::Zero();
-        for (Index i = 0; i < body.nodes; ++i) {
-            const std::size_t node = place_of(body.first_node + i);
+        for (const Index i : body.nodes) {
+            const std::size_t node = place_of(i);
             if (f[node].isZero(0)) continue;
             sum += cross_matrix(f[node]) * cross_matrix(bodies_[k].R * (model_.X[node] - X_r));
         }
@@ -232,7 +240,7 @@ void RigidTerm::add_tangent(linear::BlockMatrix& tangent) const {
         const Index r = body.reference, t = body.rotation();
         const double L = body.radius;
         Mat3 by_theta = now.turning;
-        if (dynamics_ != nullptr) {
+        if (dynamics_ != nullptr && !body.coupling) {
             by_theta += now.moment_by_theta;
             tangent.block(tangent.slot(r, r)) += now.force_by_r;
             tangent.block(tangent.slot(r, t)) += now.force_by_theta / L;
@@ -267,6 +275,7 @@ void start_rigid_motion(const model::Model& model, const linear::Constraints& co
                         model::State& state) {
     for (std::size_t k = 0; k < model.rigid.size(); ++k) {
         const RigidBody& body = model.rigid[k];
+        if (body.coupling) continue;
         model::RigidMotion& motion = state.rigid[k];
         const Mat3 R = motion.orientation.toRotationMatrix();
         const std::size_t r = place_of(body.reference);
@@ -289,7 +298,7 @@ void start_rigid_motion(const model::Model& model, const linear::Constraints& co
         // m (a_r + rate x arm + w x (w x arm)) = F, J rate + w x J w + arm x (m a_c) = M, held components without
         // acceleration
         Vec3 F = force[r], M = body.radius * force[r + 1];
-        for (Index i = body.first_node; i < body.first_node + body.nodes; ++i) {
+        for (const Index i : body.nodes) {
             F += force[place_of(i)];
             M += (R * (model.X[place_of(i)] - model.X[r])).cross(force[place_of(i)]);
         }

@@ -55,7 +55,8 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
                              bool dynamic, bool follows) {
     constexpr Index most = 100000; // nodes: LU takes some 7 GB
     const bool pays = !model.nonlinear && condensation_cost(model, pairs).pays();
-    const bool symmetric = !follows && (!dynamic || !model.nonlinear);
+    const bool couplings = std::ranges::any_of(model.rigid, &model::RigidBody::coupling);
+    const bool symmetric = !follows && !couplings && (!dynamic || !model.nonlinear);
     const bool contact = !pairs.empty();
     TangentChoice choice;
     choice.multigrid = model.rigid.empty() && goes_by_multigrid(model, asked, pays);

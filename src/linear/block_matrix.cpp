@@ -23,6 +23,18 @@ BlockMatrix::BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& ele
     block_.assign(column_.size(), Mat3::Zero());
 }
 
+BlockMatrix::BlockMatrix(const std::vector<std::vector<Index>>& columns) {
+    for (const std::vector<Index>& row : columns) {
+        column_.insert(column_.end(), row.begin(), row.end());
+        row_start_.push_back(static_cast<Index>(column_.size()));
+    }
+    set_zero();
+}
+
+void BlockMatrix::set_zero() {
+    block_.assign(column_.size(), Mat3::Zero());
+}
+
 Index BlockMatrix::slot(Index row, Index column) const {
     const auto begin = column_.begin() + row_start_[row];
     return static_cast<Index>(std::lower_bound(begin, column_.begin() + row_start_[row + 1], column) - column_.begin());

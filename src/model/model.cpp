@@ -33,17 +33,16 @@ template <class F> void for_each_element(const Body& body, F&& f) {
 namespace {
 linear::BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
     std::vector<std::vector<Index>> elements;
-    Index last = 0, rigid = 0;
+    Index last = 0;
     for (const Body& body : bodies) {
         last = body.first_node + body.nodes();
-        rigid += body.rigid ? 1 : 0;
         if (body.rigid) // its nodes have no equations
             for (Index node = body.first_node; node < last; ++node) elements.push_back({node});
         else
             for_each_element(body, [&](const fe::ElementKernel&, const std::vector<Index>& element,
                                        const Eigen::Matrix3Xd&) { elements.push_back(element); });
     }
-    for (Index k = 0; k < rigid; ++k) elements.push_back({last + 2 * k, last + 2 * k + 1});
+    for (Index r = last; r + 1 < nodes; r += 2) elements.push_back({r, r + 1}); // of rigid bodies and couplings
     return {nodes, elements};
 }
 } // namespace

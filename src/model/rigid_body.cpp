@@ -43,8 +43,8 @@ void spread_velocities(const Model& model, const RigidBody& body, const RigidMot
         state.v[node] = motion.velocity + w.cross(arm);
         state.a[node] = motion.acceleration + rate.cross(arm) + w.cross(w.cross(arm));
     };
-    for (Index i = body.first_node; i < body.first_node + body.nodes; ++i)
-        set(static_cast<std::size_t>(i), model.X[static_cast<std::size_t>(i)]);
+    if (!body.coupling) // whose nodes have mass, and velocities of their own
+        for (const Index i : body.nodes) set(static_cast<std::size_t>(i), model.X[static_cast<std::size_t>(i)]);
     set(r, model.X[r]);
     state.v[r + 1] = body.radius * w;
     state.a[r + 1] = body.radius * rate;
@@ -52,7 +52,7 @@ void spread_velocities(const Model& model, const RigidBody& body, const RigidMot
 
 void spread_displacements(const Model& model, const RigidBody& body, const Quaternion& orientation, Field& u) {
     const auto r = static_cast<std::size_t>(body.reference);
-    for (Index i = body.first_node; i < body.first_node + body.nodes; ++i) {
+    for (const Index i : body.nodes) {
         const auto node = static_cast<std::size_t>(i);
         u[node] = u[r] + turned_by(orientation, model.X[node] - model.X[r]);
     }
@@ -60,15 +60,13 @@ void spread_displacements(const Model& model, const RigidBody& body, const Quate
 
 std::vector<Index> dependent_nodes(const Model& model) {
     std::vector<Index> nodes;
-    for (const RigidBody& body : model.rigid)
-        for (Index i = 0; i < body.nodes; ++i) nodes.push_back(body.first_node + i);
+    for (const RigidBody& body : model.rigid) nodes.insert(nodes.end(), body.nodes.begin(), body.nodes.end());
     return nodes;
 }
 
 const RigidBody* rigid_body_of(const Model& model, Index node) {
     const auto owns = [&](const RigidBody& body) {
-        return (node >= body.first_node && node < body.first_node + body.nodes) ||
-               (node >= body.reference && node <= body.rotation());
+        return (node >= body.reference && node <= body.rotation()) || std::ranges::binary_search(body.nodes, node);
     };
     const auto at = std::ranges::find_if(model.rigid, owns);
     return at == model.rigid.end() ? nullptr : &*at;

@@ -72,7 +72,7 @@ std::vector<std::string> History::columns(const model::Model& model, bool pairs,
     }
     for (const Index set : sets) vector("set." + model.sets[set].name + ".reaction");
     for (const model::RigidBody& rigid : model.rigid) {
-        const std::string prefix = "body." + model.bodies[static_cast<std::size_t>(rigid.body)].name + ".ref_";
+        const std::string prefix = (rigid.coupling ? "coupling." : "body.") + rigid.name + ".ref_";
         for (const char* name : {"u", "rotation", "force", "moment"}) vector(prefix + name);
     }
     if (ledger) {

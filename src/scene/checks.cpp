@@ -222,31 +222,53 @@ public:
         }
     }
 
-    void check_motion(const std::string& name, const Stage& stage, const Named<Body>& bodies) {
-        const auto needs_rigid = [&](const char* key, const std::string& body) -> const Rigid* {
-            const Body* spec = find(bodies, body);
-            if (spec == nullptr) return nullptr;
-            if (!spec->rigid) fault({"stages", name, key, body}, "a rigid body", "'" + body + "', which deforms");
-            return spec->rigid ? &*spec->rigid : nullptr;
+    /// Sets that follow a reference point have no equations of their own.
+    void check_couplings(const Scene& scene) {
+        for (const auto& [name, coupling] : scene.couplings) {
+            if (find(scene.bodies, name) != nullptr)
+                fault({"couplings", name}, "another name than that of a body: stages name both", "'" + name + "'");
+            const SetSpec* set = find(scene.sets, coupling.set);
+            const Body* body = set != nullptr ? find(scene.bodies, set->body) : nullptr;
+            if (body != nullptr && body->rigid)
+                fault({"couplings", name, "set"},
+                      "a set of a body that deforms: bodies." + set->body +
+                          ".rigid has a reference point for the whole body",
+                      "a set of rigid body '" + set->body + "'");
+        }
+    }
+
+    void check_motion(const std::string& name, const Stage& stage, const Scene& scene) {
+        /// What holds components for the whole run, and where it is written.
+        struct Held {
+            const std::array<bool, 6>* fixed = nullptr; ///< null: nothing that moves as one
+            std::string key;
+        };
+        const auto needs_rigid = [&](const char* key, const std::string& body) -> Held {
+            if (const Coupling* coupling = find(scene.couplings, body))
+                return {&coupling->fixed, "couplings." + body + ".fix"};
+            const Body* spec = find(scene.bodies, body);
+            if (spec == nullptr) return {};
+            if (!spec->rigid)
+                fault({"stages", name, key, body}, "a rigid body or a coupling", "'" + body + "', which deforms");
+            return spec->rigid ? Held{&spec->rigid->fixed, "bodies." + body + ".rigid.fix"} : Held{};
         };
         for (const auto& [body, components] : stage.motion) {
-            const Rigid* rigid = needs_rigid("motion", body);
-            if (rigid == nullptr) continue;
+            const Held rigid = needs_rigid("motion", body);
+            if (rigid.fixed == nullptr) continue;
             bool any = false;
             for (std::size_t a = 0; a < components.size(); ++a) {
                 if (!components[a]) continue;
                 any = true;
-                if (rigid->fixed[a])
+                if ((*rigid.fixed)[a])
                     fault({"stages", name, "motion", body, motion_words[a]},
-                          "a component that bodies." + body + ".rigid.fix leaves free",
-                          motion_words[a] + ", which is held");
+                          "a component that " + rigid.key + " leaves free", motion_words[a] + ", which is held");
                 check_course({"stages", name, "motion", body, motion_words[a]}, *components[a], stage, range::position);
             }
             if (!any) fault({"stages", name, "motion", body}, "at least one of x, y, z, rx, ry, rz", "none");
         }
         for (const auto& [key, loads] : {std::pair{"force", &stage.force}, std::pair{"moment", &stage.moment}})
             for (const auto& [body, load] : *loads)
-                if (needs_rigid(key, body) != nullptr)
+                if (needs_rigid(key, body).fixed != nullptr)
                     for (std::size_t a = 0; a < 3; ++a)
                         check_course({"stages", name, key, body}, load[a], stage, {}, a);
     }
@@ -345,7 +367,8 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     for (const auto& [name, body] : scene.bodies) rules.check_formulation(name, body);
     for (const auto& [name, body] : scene.bodies) rules.check_rigid(name, body);
     rules.check_rigid_sets(scene);
-    for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene.bodies);
+    rules.check_couplings(scene);
+    for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene);
     for (const auto& [name, set] : scene.sets) rules.check_set(name, set);
     for (const auto& [stage_name, stage] : scene.stages)
         if (std::holds_alternative<DynamicAnalysis>(stage.analysis)) {

@@ -340,8 +340,8 @@ void describe(Visitor& v, Stage& stage) {
           });
     named(v,
           {.name = "motion",
-           .meaning = "Motion of rigid bodies reached at the end of the stage.",
-           .names = Names::body,
+           .meaning = "Motion of rigid bodies and couplings reached at the end of the stage.",
+           .names = Names::rigid,
            .item = "body"},
           stage.motion, [&](const std::string& body, std::array<std::optional<Course>, 6>& components) {
               v.group({.name = body,
@@ -361,14 +361,14 @@ void describe(Visitor& v, Stage& stage) {
           });
     const auto at_reference_point = [&](const char* name, const char* meaning, const char* component,
                                         const Dimension& unit, Named<std::array<Course, 3>>& values) {
-        named(v, {.name = name, .meaning = meaning, .names = Names::body, .item = "body"}, values,
+        named(v, {.name = name, .meaning = meaning, .names = Names::rigid, .item = "body"}, values,
               [&v, component, unit](const std::string& body, std::array<Course, 3>& value) {
                   v.courses({.name = body, .meaning = component, .unit = unit, .required = true}, value);
               });
     };
-    at_reference_point("force", "Force on rigid bodies, reached at the end of the stage.",
+    at_reference_point("force", "Force on rigid bodies and couplings, reached at the end of the stage.",
                        "At the reference point; it keeps its direction.", dimension::force, stage.force);
-    at_reference_point("moment", "Moment on rigid bodies, reached at the end of the stage.",
+    at_reference_point("moment", "Moment on rigid bodies and couplings, reached at the end of the stage.",
                        "About the reference point, in N m; it keeps its direction.", dimension::moment, stage.moment);
 }
 
@@ -430,6 +430,11 @@ void describe(Visitor& v, Scene& scene) {
         v,
         {.name = "supports", .meaning = "Constraints of sets, for the whole run.", .names = Names::set, .item = "set"},
         scene.supports, group);
+    named(v,
+          {.name = "couplings",
+           .meaning = "Sets of nodes that follow reference points; stages move and load these by the couplings' names.",
+           .item = "coupling"},
+          scene.couplings, group);
     Entries pairs = entries_of(scene.contact, group);
     bool general = scene.general.has_value();
     GeneralContact all = scene.general.value_or(GeneralContact{});

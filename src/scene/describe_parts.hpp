@@ -10,7 +10,8 @@
 namespace osculate::scene {
 
 inline const Words axis_words{"x", "y", "z"};
-inline const Words motion_words{"x", "y", "z", "rx", "ry", "rz"}; ///< components of a rigid body's motion
+inline const Words motion_words{"x",  "y",  "z",
+                                "rx", "ry", "rz"}; ///< components of the motion of a rigid body or coupling
 
 /// An enum whose enumerators stand in the order of the vocabulary.
 template <class E> void word(Visitor& v, const Key& key, const Words& vocabulary, E& value) {
@@ -59,6 +60,8 @@ void one_of(Visitor& v, const Words& tags, const std::vector<const char*>& meani
 }
 
 void describe(Visitor& v, Body& body);
+void describe(Visitor& v, Rigid& rigid);
+void describe(Visitor& v, Coupling& coupling);
 void describe(Visitor& v, SetSpec& set);
 void describe(Visitor& v, Support& support);
 void describe(Visitor& v, Pair& pair);

@@ -77,7 +77,8 @@ Scene build(Tree tree, const std::string& file, const fs::path& directory, const
     Scene scene;
     scene.name = name_from(file);
     scene.directory = directory.string();
-    KnownNames names{keys_under(tree, "bodies"), keys_under(tree, "sets"), keys_under(tree, "contact")};
+    KnownNames names{keys_under(tree, "bodies"), keys_under(tree, "sets"), keys_under(tree, "contact"),
+                     keys_under(tree, "couplings")};
     std::erase(names.pairs, "general"); // no pair
     const std::string template_name = read_template(tree, directory, names, scene.output, faults);
     TreeReader reader(names, faults);

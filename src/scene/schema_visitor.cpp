@@ -214,7 +214,7 @@ void SchemaVisitor::named(const Key& key, const Entries& entries) {
     for (const std::string& reserved : entries.reserved) schema["properties"][reserved] = level.properties.at(reserved);
     if (key.required) schema["minProperties"] = 1;
     schema["propertyNames"] = {{"pattern", identifier}};
-    const bool refers = key.names == Names::body || key.names == Names::set;
+    const bool refers = key.names == Names::body || key.names == Names::set || key.names == Names::rigid;
     add(key, schema,
         std::string("map of ") + (refers ? "a " : "names to a ") + key.item + (refers ? "'s name" : "") +
             (refers ? " to its value" : ""),

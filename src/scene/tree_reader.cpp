@@ -226,8 +226,12 @@ void TreeReader::flag(const Key& key, bool& value) {
         fault(*tree, key, expected);
 }
 
-const Words& TreeReader::referred(Names names) const {
-    return names == Names::body ? names_.bodies : names == Names::pair ? names_.pairs : names_.sets;
+Words TreeReader::referred(Names names) const {
+    if (names == Names::set) return names_.sets;
+    if (names == Names::pair) return names_.pairs;
+    Words known = names_.bodies;
+    if (names == Names::rigid) known.insert(known.end(), names_.couplings.begin(), names_.couplings.end());
+    return known;
 }
 
 bool TreeReader::check_name(const Tree& at, const Place& place, const Key& key, const std::string& name, Names names) {
@@ -237,10 +241,14 @@ bool TreeReader::check_name(const Tree& at, const Place& place, const Key& key, 
     };
     if (names == Names::any) return true;
     if (names == Names::identifier) return is_identifier(name) || reject("a name of letters, digits, _ and -", "");
-    const Words& known = referred(names);
+    const Words known = referred(names);
     if (std::ranges::count(known, name) > 0) return true;
-    if (names == Names::body && known.empty()) return true; // a scene without bodies is one fault, not many
-    const std::string what = names == Names::body ? "body" : names == Names::pair ? "pair" : "set";
+    if ((names == Names::body || names == Names::rigid) && known.empty())
+        return true; // a scene without bodies is one fault, not many
+    const std::string what = names == Names::body    ? "body"
+                             : names == Names::rigid ? "body or coupling"
+                             : names == Names::pair  ? "pair"
+                                                     : "set";
     return reject(known.empty() ? "the name of a " + what + " (there is none)"
                                 : "the name of a " + what + ": " + join(known),
                   nearest(name, known));
@@ -386,7 +394,7 @@ void TreeReader::named(const Key& key, const Entries& entries) {
             if (std::ranges::count(entries.reserved, child.key) > 0) continue;
             levels_.back().known.push_back(child.key);
             const Tree name{.kind = Tree::Kind::scalar, .scalar = child.key};
-            const bool refers = key.names == Names::body || key.names == Names::set;
+            const bool refers = key.names == Names::body || key.names == Names::set || key.names == Names::rigid;
             const Key entry{.name = child.key};
             if (!refers && child.implied) { // an override went inside something that the file does not have
                 faults_.push_back(fault_at(child.key_place, path_of(child.key),

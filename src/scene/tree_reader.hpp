@@ -11,7 +11,7 @@ namespace osculate::scene {
 
 /// Names that other keys may refer to.
 struct KnownNames {
-    Words bodies, sets, pairs;
+    Words bodies, sets, pairs, couplings;
 };
 
 /// "a pressure (Pa) > 0".
@@ -60,7 +60,7 @@ private:
     [[nodiscard]] std::string path_of(const std::string& name) const;
     void enter(const Tree& map, std::string path, const std::function<void()>& body);
     void leave(const Level& level);
-    [[nodiscard]] const Words& referred(Names names) const;
+    [[nodiscard]] Words referred(Names names) const;
 
     std::optional<double> read_number(const Tree& tree, const Key& key, const std::string& expected);
     std::optional<int> read_integer(const Tree& tree, const Key& key, const std::string& expected);

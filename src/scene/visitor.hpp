@@ -38,7 +38,7 @@ inline constexpr Range direction{.low = -1e9, .high = 1e9}; ///< a component of 
 } // namespace range
 
 /// Whose name a text or a map's key must be.
-enum class Names { any, identifier, body, set, pair };
+enum class Names { any, identifier, body, set, pair, rigid /* a body, which must be rigid, or a coupling */ };
 
 using Words = std::vector<std::string>;
 

@@ -33,12 +33,12 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
     }
     const Field outer = equilibrium.bodies().outer_forces(state);
     const Field &load = equilibrium.external_force(), &unbalanced = equilibrium.unbalanced();
-    std::vector<Vec3> reaction_of(model.bodies.size(), Vec3::Zero()); // at the nodes of rigid bodies
+    std::vector<Vec3> reaction_of(model.bodies.size(), Vec3::Zero()); // at reference points
     for (std::size_t k = 0; k < model.rigid.size(); ++k) {
         const auto r = static_cast<std::size_t>(model.rigid[k].reference);
         const Vec3 inertia = equilibrium.rigid()->inertia_force(k),
                    reaction = equilibrium.constraints().reaction(model.rigid[k].reference, unbalanced[r]);
-        reaction_of[static_cast<std::size_t>(model.rigid[k].body)] = reaction + load[r] - inertia;
+        reaction_of[static_cast<std::size_t>(model.rigid[k].body)] += reaction + load[r] - inertia;
         balance.acting += reaction.norm() + load[r].norm() + inertia.norm();
     }
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {

@@ -133,9 +133,10 @@ void name_node(const model::Model& model, Index node, Attempt& attempt) {
     if (const Body* const body = body_of(model, node); body != nullptr) {
         attempt.body = body->name;
         attempt.node = node - body->first_node;
-    } else if (const model::RigidBody* rigid = model::rigid_body_of(model, node)) { // of no mesh: the first of its body
+    } else if (const model::RigidBody* rigid =
+                   model::rigid_body_of(model, node)) { // of no mesh: the first that follows
         attempt.body = model.bodies[static_cast<std::size_t>(rigid->body)].name;
-        attempt.node = 0;
+        attempt.node = rigid->nodes.front() - model.bodies[static_cast<std::size_t>(rigid->body)].first_node;
     }
 }
 

@@ -23,7 +23,7 @@ CentreMasses::CentreMasses(const model::Model& model, const equilibrium::Dynamic
         }
     for (const model::RigidBody& body : model.rigid) {
         const auto b = static_cast<std::size_t>(body.body);
-        mass[b] = body.mass;
+        if (!body.coupling) mass[b] = body.mass;
         for (int k = 0; k < 3; ++k)
             if (constraints.constraint(body.reference, k) != nullptr)
                 free[b] = free[b] && constraints.frame(body.reference).col(k).array().abs() < across;
@@ -89,7 +89,7 @@ AtNode local_error(const model::Model& model, const equilibrium::Dynamics& dynam
     AtNode largest = largest_over(model.nodes(), error_of, nothing);
     for (std::size_t k = 0; k < model.rigid.size(); ++k) {
         const model::RigidBody& body = model.rigid[k];
-        if (constraints.free_components(body.reference) == 0) continue;
+        if (body.coupling || constraints.free_components(body.reference) == 0) continue;
         const Vec3 change = to.rigid[k].acceleration - from.rigid[k].acceleration;
         if (const double error = dynamics.integrator.local_error(change, Vec3::Zero(), dt); error > largest.value)
             largest = {error, body.reference};

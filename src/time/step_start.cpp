@@ -2,6 +2,8 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/rounded_sum.hpp"
+#include "osculate/equilibrium/coupling_start.hpp"
+#include "osculate/linear/folded_matrix.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 
@@ -167,7 +169,7 @@ Field initial_acceleration(RunContext& context, const Stage& stage, const linear
                            const model::State& state, const Field& force) {
     const model::Model& model = context.model;
     const equilibrium::Dynamics& dynamics = *stage.dynamics;
-    const linear::BlockMatrix& M = model.mass(dynamics.lumped_mass);
+    const linear::BlockMatrix& all_mass = model.mass(dynamics.lumped_mass);
     const auto n = static_cast<std::size_t>(model.nodes());
     const Field own = equilibrium::body_forces(model, dynamics, state, context.options.threads);
     const Field x = sum(model.X, state.u);
@@ -181,6 +183,18 @@ Field initial_acceleration(RunContext& context, const Stage& stage, const linear
             evaluation.for_each_force(j, state.contact[p].lambda[j],
                                       [&](Index node, const Vec3& own_force) { f[node] += own_force; });
     }
+    const linear::Dependence coupled = equilibrium::coupled_nodes(model, state);
+    const Field turning = equilibrium::centripetal(model, state);
+    std::optional<linear::FoldedMatrix> folded;
+    if (!coupled.empty()) {
+        Field for_turning(n);
+        all_mass.multiply_add(turning, for_turning, context.options.threads);
+        f.add(-1, for_turning);
+        coupled.fold(f);
+        folded.emplace(coupled, all_mass);
+        folded->fold(all_mass);
+    }
+    const linear::BlockMatrix& M = folded ? folded->matrix() : all_mass;
     linear::PenaltyStiffness free_mass(constraints, M);
     free_mass.set_springs({});
     const auto solver = solve::make_cholesky();
@@ -203,6 +217,10 @@ Field initial_acceleration(RunContext& context, const Stage& stage, const linear
     solver->solve(right.data(), a.data());
     Field result(n);
     constraints.scatter(a, Field(n), result);
+    if (!coupled.empty()) {
+        coupled.move(result);
+        result.add(1, turning);
+    }
     return result;
 }
 } // namespace
@@ -221,8 +239,10 @@ void start_motion(RunContext& context, const Stage& stage, const linear::Constra
             if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
         state.v[node] = constraints.to_global(node, v);
     }
+    equilibrium::start_couplings(model, constraints, state);
     equilibrium::add_follower_forces(load.pressures, model, state.u, load.force);
     state.a = initial_acceleration(context, stage, constraints, state, load.force);
+    equilibrium::take_accelerations(model, state);
     if (!model.rigid.empty()) {
         if (!moved)
             for (std::size_t k = 0; k < model.rigid.size(); ++k) {

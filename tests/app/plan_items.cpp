@@ -36,6 +36,7 @@ const std::string expected = R"(
 stiffness                    x x x x x x x x x x x x x x
 nonlinear elements           . . . x . . . . . . . . . .
 rigid bodies                 . . . . . . . . . . . . . .
+couplings                    . . . . . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .

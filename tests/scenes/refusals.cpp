@@ -105,8 +105,30 @@ INSTANTIATE_TEST_SUITE_P(
                  "found a set of rigid body 'cap'",
                  "27:16: stages.push.motion.cap.x: expected a component that bodies.cap.rigid.fix leaves free, found "
                  "x, which is held",
-                 "28:13: stages.push.motion.soft: expected a rigid body, found 'soft', which deforms",
-                 "29:20: stages.push.moment.soft: expected a rigid body, found 'soft', which deforms"}},
+                 "28:13: stages.push.motion.soft: expected a rigid body or a coupling, found 'soft', which deforms",
+                 "29:20: stages.push.moment.soft: expected a rigid body or a coupling, found 'soft', which deforms"}},
+        Refusal{"coupled_twice",
+                {"16:15: couplings.side.set: expected nodes that follow no other coupling: a node has one motion only, "
+                 "found a node at [0, 0, 1] m that follows couplings.head too",
+                 "17:16: couplings.hinge.set: expected nodes that are not all on one line, or `fix: [rx, ry, rz]`: "
+                 "nothing holds the turns about it, found 3 nodes on one line",
+                 "17:16: couplings.hinge.set: expected nodes that follow no other coupling: a node has one motion "
+                 "only, found a node at [1, 0, 1] m that follows couplings.head too",
+                 "13:3: supports.bed: expected nodes that follow no coupling: couplings.side.fix holds, "
+                 "stages.<stage>.motion.side drives them all, found a node at [0, 0, 0] m that follows couplings.side",
+                 "20:20: stages.push.displacement.top: expected nodes that follow no coupling: couplings.head.fix "
+                 "holds, stages.<stage>.motion.head drives them all, found a node at [0, 0, 1] m that follows "
+                 "couplings.head"}},
+        Refusal{"coupling_contradictions",
+                {"14:15: couplings.grip.set: expected a set of a body that deforms: bodies.tool.rigid has a reference "
+                 "point for the whole body, found a set of rigid body 'tool'",
+                 "15:9: couplings.soft: expected another name than that of a body: stages name both, found 'soft'",
+                 "20:17: stages.push.motion.head.x: expected a component that couplings.head.fix leaves free, found "
+                 "x, which is held",
+                 "21:7: stages.push.motion.haed: expected the name of a body or coupling: tool, soft, grip, soft, "
+                 "head, found 'haed' (did you mean 'head'?)",
+                 "22:14: stages.push.moment.top: expected the name of a body or coupling: tool, soft, grip, soft, "
+                 "head, found 'top'"}},
         Refusal{"rigid_without_mass",
                 {"6:12: bodies.tool.rigid: expected a density or a mass, which dynamic stage 'fall' needs, found "
                  "none"}}),

@@ -25,8 +25,9 @@ struct RunStep {
     int iterations = 0;
     std::vector<equilibrium::IterationRecord> records;
     std::vector<PairForces> pairs;
-    std::vector<Vec3> reactions; ///< per constrained set
-    Vec3 load = Vec3::Zero();    ///< sum of external forces
+    std::vector<Vec3> reactions;               ///< per constrained set
+    std::vector<Vec3> held_force, held_moment; ///< what fix and motion exert, per rigid body and coupling
+    Vec3 load = Vec3::Zero();                  ///< sum of external forces
     model::State state;
     time::Ledger ledger; ///< of a dynamic step
 };
@@ -100,6 +101,13 @@ public:
             for (const Index node : model.sets[s].nodes)
                 sum += step.equilibrium.constraints().reaction(node, step.equilibrium.unbalanced()[node]);
             kept.reactions.push_back(sum);
+        }
+        for (const model::RigidBody& body : model.rigid) {
+            const auto held = [&](Index node) {
+                return step.equilibrium.constraints().reaction(node, step.equilibrium.unbalanced()[node]);
+            };
+            kept.held_force.push_back(held(body.reference));
+            kept.held_moment.emplace_back(body.radius * held(body.rotation()));
         }
         for (const Vec3& f : step.stage.force_end) kept.load += f;
         run_.steps.push_back(std::move(kept));

@@ -201,7 +201,7 @@ stages:
     const auto check = [&](const support::RunStep& step, double angle) {
         EXPECT_NEAR(step.state.rigid[0].rotation.z(), angle, 1e-12);
         EXPECT_LT(step.state.rigid[0].rotation.head<2>().norm(), 1e-12);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(model.rigid[0].nodes); ++i) {
+        for (std::size_t i = 0; i < model.rigid[0].nodes.size(); ++i) {
             const Vec3 x = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * model.X[i] + Vec3(0, 2, 0);
             EXPECT_LT((model.X[i] + step.state.u[i] - x).norm(), 1e-12);
         }

@@ -7,7 +7,7 @@
 #include "osculate/equilibrium/tangent_choice.hpp"
 #include "osculate/linear/condensed_tangent.hpp"
 #include "osculate/linear/contact_preconditioner.hpp"
-#include "osculate/linear/dependence.hpp"
+#include "osculate/linear/folded_matrix.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 
 #include <functional>
@@ -54,6 +54,10 @@ public:
     [[nodiscard]] int factorisations() const override { return condensed_ ? condensed_->factorisations() : 0; }
 
 private:
+    /// Stiffness of the bodies over nodes that have equations.
+    [[nodiscard]] const linear::BlockMatrix& stiffness() const;
+    /// Takes over new values of the bodies' stiffness.
+    void fold_stiffness();
     void update_stiffness();
     void cover_patterns();
     /// Discards the matrix: it is rebuilt when needed, with the pattern of these couplings.
@@ -65,6 +69,7 @@ private:
     BodyTerm& bodies_;
     ContactTerm& contact_;
     const linear::Dependence* dependence_;
+    std::unique_ptr<linear::FoldedMatrix> folded_; ///< null: no dependent node carries elements
     const Iterate& at_;
     Timings& timings_;
     bool may_buckle_, products_;                               ///< products_: see TangentChoice

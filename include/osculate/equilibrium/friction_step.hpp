@@ -3,6 +3,7 @@
 
 #include "osculate/equilibrium/body_term.hpp"
 #include "osculate/equilibrium/contact_term.hpp"
+#include "osculate/linear/folded_matrix.hpp"
 #include "osculate/linear/penalty_stiffness.hpp"
 #include "osculate/solve/direct_solver.hpp"
 
@@ -42,7 +43,8 @@ private:
     const linear::Unknowns& unknowns_;
     BodyTerm& bodies_;
     ContactTerm& contact_;
-    const linear::Dependence* dependence_; ///< null: no node depends on others
+    const linear::Dependence* dependence_;         ///< null: no node depends on others
+    std::unique_ptr<linear::FoldedMatrix> folded_; ///< null: no dependent node carries elements
     linear::PenaltyStiffness stiffness_;
     std::unique_ptr<solve::DirectSolver> cholesky_, lu_; ///< null: not used yet
     solve::DirectSolver* solver_ = nullptr;              ///< the one with factors of K

@@ -1,5 +1,5 @@
 #pragma once
-/// Rigid bodies: what their meshes follow, and their inertia as a term of the residual.
+/// Rigid bodies and couplings: what their nodes follow, and the inertia of rigid bodies as a term of the residual.
 
 #include "osculate/equilibrium/term.hpp"
 #include "osculate/linear/dependence.hpp"
@@ -23,6 +23,7 @@ namespace osculate::equilibrium {
 ///     force (1-alpha_m) dq/dt + alpha_m (dq/dt)_n,
 ///     moment (1-alpha_m) dl/dt + alpha_m (dl/dt)_n + m/4 [(v_r,n + Q v_r,n) x b + (v_r + Q^T v_r) x b_n], Q = R R_n^T,
 /// whose work is exact in the same way; about a point at rest the angular momentum is, too.
+/// Couplings have no inertia here: that of their nodes is a force on these like any other, whose work is exact with it.
 class RigidTerm final : public Term {
 public:
     /// @param dynamics  null in statics; must outlive this object, like the model
@@ -71,6 +72,9 @@ private:
     };
     /// Takes body k to displacements of its two nodes. False, and nothing is done, if it turns by half a turn or more.
     [[nodiscard]] bool move(std::size_t k, const Field& u, Moving& now) const;
+    /// Gives a coupling its mean velocity over the step, for predictors: its unknowns have no mass, and velocities by
+    /// the integrator's kinematics would oscillate.
+    void set_mean_velocity(Moving& now) const;
     /// Sets velocities, accelerations and inertia of a moved body, in dynamics: in terms of its centre, or of its
     /// reference point.
     void set_inertia_of_centre(const model::RigidBody& body, Moving& now) const;

@@ -14,6 +14,9 @@ public:
     /// Pattern of all node pairs that share an element: `elements` lists the node numbers of each element. Cost
     /// O(nonzeros log(neighbours)).
     BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements);
+    /// Pattern of given rows.
+    /// @param columns  of each row, ascending
+    explicit BlockMatrix(const std::vector<std::vector<Index>>& columns);
 
     [[nodiscard]] Index rows() const { return static_cast<Index>(row_start_.size()) - 1; }
     [[nodiscard]] Index row_begin(Index row) const { return row_start_[row]; }
@@ -27,6 +30,7 @@ public:
     void add(const std::vector<Index>& nodes, const Matrix& element);
     /// *this = a A + b B, where B has the same pattern or is empty.
     void set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B);
+    void set_zero();
     [[nodiscard]] bool empty() const { return block_.empty(); }
     /// y += A x over 3-vectors per node.
     void multiply_add(const Field& x, Field& y, int threads) const;

@@ -40,8 +40,8 @@ struct Model {
     std::vector<Body> bodies;
     Vec3 origin = Vec3::Zero(); ///< position of X = 0 in the scene's coordinates, m; saves digits far from their zero
     Field X; ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m; at the end the two
-             ///< nodes of each rigid body, both at its reference point
-    std::vector<RigidBody> rigid; ///< what is special about the rigid ones of the bodies
+             ///< nodes of each rigid body and coupling, both at its reference point
+    std::vector<RigidBody> rigid; ///< what is special about the rigid ones of the bodies; then couplings
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
     std::shared_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none

@@ -1,9 +1,10 @@
 #pragma once
-/// Rigid bodies: what is fixed for a run, and how one moves.
+/// Rigid bodies and couplings: what is fixed for a run, and how one moves.
 
 #include "osculate/core/field.hpp"
 #include "osculate/model/rotation.hpp"
 
+#include <string>
 #include <vector>
 
 namespace osculate::model {
@@ -11,19 +12,23 @@ namespace osculate::model {
 struct Model;
 struct State;
 
-/// A body whose mesh moves as one,
+/// Nodes that move as one,
 ///     u_i = u_r + (R - I)(X_i - X_r),
 /// with the displacement u_r of its reference point and the rotation R. Both are carried by nodes of their own behind
 /// those of all meshes: node `reference` has the displacement u_r, the next one the sum of the rotation vectors of all
 /// steps, times `radius`. So every unknown is a length and every row a force: a moment is divided by `radius`.
+/// They are all nodes of a rigid body, or a coupling: some nodes of a body that deforms, which keep their elements and
+/// have the mass of these. A coupling has no inertia of its own; its centre is its reference point.
 struct RigidBody {
-    Index body = -1;                 ///< of the model
-    Index first_node = 0, nodes = 0; ///< of its mesh, global
-    Index reference = -1;            ///< node of the reference point; that of the rotation is the next
-    double radius = 1;               ///< distance of its farthest node from the reference point, m
-    double mass = 0;                 ///< kg; 0: none is needed, every stage is static
-    Vec3 centre = Vec3::Zero();      ///< of mass, in the reference configuration, m
-    Mat3 inertia = Mat3::Zero();     ///< about the centre, in the reference configuration, kg m^2
+    std::string name;            ///< of the rigid body, or of the coupling
+    bool coupling = false;       ///< some nodes of a body that deforms
+    Index body = -1;             ///< of the model, whose nodes these are
+    std::vector<Index> nodes;    ///< global, ascending
+    Index reference = -1;        ///< node of the reference point; that of the rotation is the next
+    double radius = 1;           ///< distance of its farthest node from the reference point, m
+    double mass = 0;             ///< kg; 0: none is needed, every stage is static
+    Vec3 centre = Vec3::Zero();  ///< of mass, in the reference configuration, m
+    Mat3 inertia = Mat3::Zero(); ///< about the centre, in the reference configuration, kg m^2
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero(); ///< of the centre at the start, m/s; rad/s
 
     [[nodiscard]] Index rotation() const { return reference + 1; }
@@ -52,14 +57,14 @@ struct RigidMomenta {
 };
 [[nodiscard]] RigidMomenta rigid_momenta(const Model& model, const State& state);
 
-/// Sets velocities and accelerations of the body's nodes from its motion. @pre state.v and state.a have all nodes
+/// Sets velocities and accelerations of the body's nodes from its motion; of a coupling, of its own two. @pre state.v and state.a have all nodes
 void spread_velocities(const Model& model, const RigidBody& body, const RigidMotion& motion, State& state);
 /// Displacements of the body's mesh from those of its two nodes, for an orientation.
 void spread_displacements(const Model& model, const RigidBody& body, const Quaternion& orientation, Field& u);
 
-/// (nodes) of the meshes of rigid bodies, ascending: they have no equations.
+/// Nodes of rigid bodies and couplings, in their order: they have no equations.
 [[nodiscard]] std::vector<Index> dependent_nodes(const Model& model);
-/// The rigid body that a node belongs to, be it of its mesh or one of its own two; null: none.
+/// The rigid body or coupling that a node belongs to, be it one that follows or one of its own two; null: none.
 [[nodiscard]] const RigidBody* rigid_body_of(const Model& model, Index node);
 
 /// Weights of the nodes of a mesh with a given sum whose centre is a given point: those nearest to equal ones. A force

@@ -340,9 +340,10 @@ struct Stage {
     Named<std::array<std::optional<Course>, 3>> displacement; ///< set -> components along the support's axes, m
     Named<Course> follower_pressure; ///< set -> pressure on the current area, along the current normal, Pa
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
-    Named<std::array<Course, 3>> body_force;            ///< body -> N/m^3
-    Named<std::array<std::optional<Course>, 6>> motion; ///< rigid body -> displacement and rotation components, m, rad
-    Named<std::array<Course, 3>> force, moment;         ///< rigid body -> at its reference point, N, N m
+    Named<std::array<Course, 3>> body_force; ///< body -> N/m^3
+    Named<std::array<std::optional<Course>, 6>>
+        motion; ///< rigid body or coupling -> displacement and rotation components, m, rad
+    Named<std::array<Course, 3>> force, moment; ///< rigid body or coupling -> at its reference point, N, N m
     bool operator==(const Stage&) const = default;
 };
 
@@ -381,6 +382,14 @@ struct Expectation {
     bool operator==(const Expectation&) const = default;
 };
 
+/// Nodes of a body that deforms which follow a reference point as one.
+struct Coupling {
+    std::string set;
+    std::optional<Vec3> reference_point; ///< m; none: the mean of the nodes
+    std::array<bool, 6> fixed{};         ///< displacement and rotation components held at zero
+    bool operator==(const Coupling&) const = default;
+};
+
 struct Scene {
     std::string name;            ///< valid as file name: letters, digits, _ and -
     std::string description;     ///< free text
@@ -388,7 +397,8 @@ struct Scene {
     Vec3 gravity = Vec3::Zero(); ///< m/s^2, on every body with a density, in every stage
     Named<Body> bodies;
     Named<SetSpec> sets;
-    Named<Support> supports;               ///< keyed by set
+    Named<Support> supports; ///< keyed by set
+    Named<Coupling> couplings;
     std::optional<GeneralContact> general; ///< contact.general
     Named<Pair> contact;                   ///< the other keys of contact
     Named<Stage> stages;

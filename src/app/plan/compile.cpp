@@ -50,6 +50,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft); // nothing below can be trusted on a broken mesh
     add_sets(draft);
     throw_faults(draft);
+    add_couplings(draft);
+    throw_faults(draft);
     settle_pairs(draft);
     add_stages(draft);
     add_pairs(draft);

@@ -20,7 +20,7 @@ struct Draft {
     std::vector<Fault> faults{};
 
     [[nodiscard]] Index body_index(const std::string& name) const;
-    /// Of the name of a rigid body.
+    /// Of the name of a rigid body or a coupling.
     [[nodiscard]] const model::RigidBody& rigid(const std::string& name) const;
     [[nodiscard]] const model::Set& set(const std::string& name) const;
     /// Faces of a set, global nodes.
@@ -37,6 +37,8 @@ struct Draft {
 /// Bodies with their kernels, far from the scene's origin moved near to zero.
 void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes);
 void add_sets(Draft& draft);
+/// Couplings, with the two nodes of each behind those of all bodies.
+void add_couplings(Draft& draft);
 /// Held directions of every stage, and external forces at its ends but for gravity.
 void add_stages(Draft& draft);
 /// Contact pairs of the scene.

@@ -10,6 +10,7 @@
 #include "osculate/scene/nearest.hpp"
 
 #include <fmt/format.h>
+#include <numeric>
 
 namespace osculate::app {
 
@@ -68,8 +69,9 @@ void add_rigid_bodies(Draft& draft) {
         if (!spec.rigid) continue;
         model::RigidBody& rigid = m.rigid.emplace_back();
         rigid.body = static_cast<Index>(b);
-        rigid.first_node = m.bodies[b].first_node;
-        rigid.nodes = m.bodies[b].nodes();
+        rigid.name = name;
+        rigid.nodes.resize(static_cast<std::size_t>(m.bodies[b].nodes()));
+        std::iota(rigid.nodes.begin(), rigid.nodes.end(), m.bodies[b].first_node);
         set_mass(draft, name, spec, rigid);
         rigid.velocity = spec.initial_velocity;
         rigid.spin = spec.initial_spin;
@@ -147,10 +149,9 @@ Index Draft::body_index(const std::string& name) const {
 }
 
 const model::RigidBody& Draft::rigid(const std::string& name) const {
-    const Index body = body_index(name);
     for (const model::RigidBody& one : plan.model.rigid)
-        if (one.body == body) return one;
-    throw InternalError("the scene asks for the motion of a body that deforms");
+        if (one.name == name) return one;
+    throw InternalError("the scene asks for the motion of what does not move as one");
 }
 
 const model::Set& Draft::set(const std::string& name) const {

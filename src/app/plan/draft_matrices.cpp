@@ -81,7 +81,7 @@ void add_weight(Draft& draft, const model::RigidBody& rigid, Field& weight) {
         draft.faults.push_back(fault("bodies." + body.name + ".rigid.centre",
                                      "a centre of mass in the plane of a flat mesh, for gravity", "one outside it"));
     for (std::size_t i = 0; i < share.size(); ++i)
-        weight[static_cast<std::size_t>(rigid.first_node) + i] += share[i] * rigid.mass * draft.scene.gravity;
+        weight[static_cast<std::size_t>(rigid.nodes[i])] += share[i] * rigid.mass * draft.scene.gravity;
 }
 
 /// In full from the start. It acts on mass where the mass is, so that bodies fall without strain, and in statics on the

@@ -91,16 +91,17 @@ void add_course_forces(const Draft& draft, const Driving& driving, CourseList& c
     add_at_point("moment", driving.moment, true);
 }
 
-/// Held and driven components of rigid bodies, at their own nodes.
+/// Held and driven components of rigid bodies and couplings, at their own nodes.
 void add_rigid_constraints(const Draft& draft, const Driving& driving, CourseList& courses,
                            std::vector<linear::NodeConstraint>& constraints) {
-    for (const auto& [name, spec] : draft.scene.bodies) {
-        if (!spec.rigid) continue;
-        const model::RigidBody& rigid = draft.rigid(name);
+    for (const model::RigidBody& rigid : draft.plan.model.rigid) {
+        const std::string& name = rigid.name;
+        const std::array<bool, 6>& fixed = rigid.coupling ? scene::find(draft.scene.couplings, name)->fixed
+                                                          : scene::find(draft.scene.bodies, name)->rigid->fixed;
         const auto motion = driving.motion.find(name);
         for (std::size_t k = 0; k < 6; ++k) {
             const bool moved = motion != driving.motion.end() && motion->second[k];
-            if (!moved && !spec.rigid->fixed[k]) continue;
+            if (!moved && !fixed[k]) continue;
             const double unit = k < 3 ? 1 : rigid.radius; // a rotation is the path of a point at the radius
             linear::NodeConstraint held;
             held.node = k < 3 ? rigid.reference : rigid.rotation();

@@ -41,7 +41,7 @@ bool move_as_one(const linear::Constraints& constraints, const std::vector<Index
 
 bool stays_flat(const Plan& plan, const model::ContactPair& pair) {
     if (!in_one_plane(pair.vertices(plan.model.X))) return false;
-    if (model::rigid_body_of(plan.model, pair.master_nodes().front()) != nullptr) return true;
+    if (model::body_of(plan.model, pair.master_nodes().front())->rigid) return true;
     return std::ranges::all_of(plan.stages, [&](const time::Stage& stage) {
         return move_as_one(linear::Constraints(plan.model.nodes(), stage.constraints), pair.master_nodes());
     });

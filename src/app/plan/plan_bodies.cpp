@@ -55,14 +55,23 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
              nonlinear ? "forces and tangent anew at every iterate" : "every body is linear",
              nonlinear ? nonlinear_cost(model) : PlanCost{});
 
-    double followers = 0;
-    for (const model::RigidBody& rigid : model.rigid) followers += rigid.nodes;
-    list.say("rigid bodies", !model.rigid.empty(),
-             model.rigid.empty()
-                 ? "every body deforms"
-                 : fmt::format("{} of {} bodies, six unknowns each", model.rigid.size(), model.bodies.size()),
-             {followers * (sizeof(std::vector<int>) + 2 * sizeof(linear::Dependence::Carrier)), followers,
-              "nodes an iteration"});
+    const auto following = [&](bool couplings) {
+        double followers = 0;
+        for (const model::RigidBody& one : model.rigid)
+            if (one.coupling == couplings) followers += static_cast<double>(one.nodes.size());
+        return PlanCost{followers * (sizeof(std::vector<int>) + 2 * sizeof(linear::Dependence::Carrier)), followers,
+                        "nodes an iteration"};
+    };
+    const auto couplings = std::ranges::count_if(model.rigid, &model::RigidBody::coupling),
+               rigid = static_cast<std::ptrdiff_t>(model.rigid.size()) - couplings;
+    list.say("rigid bodies", rigid > 0,
+             rigid == 0 ? "every body deforms"
+                        : fmt::format("{} of {} bodies, six unknowns each", rigid, model.bodies.size()),
+             following(false));
+    list.say("couplings", couplings > 0,
+             couplings == 0 ? "no nodes follow a reference point"
+                            : fmt::format("{} of {:.0f} nodes, six unknowns each", couplings, following(true).count),
+             following(true));
 
     const std::size_t dynamic = dynamic_stages(plan);
     constexpr double states = 10; // u, v, a: of the state, of the start of the step and after it; force at the start

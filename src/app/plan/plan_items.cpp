@@ -38,13 +38,14 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     const bool contact = !plan.model.pairs.empty() || plan.model.general, nonlinear = plan.model.nonlinear != nullptr;
     const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
                                      [](const time::Stage& s) { return !s.follower_pressures.empty(); });
-    const bool rigid = !plan.model.rigid.empty();
-    const bool unsymmetric = contact || follows || (nonlinear && dynamic_stages(plan) > 0);
+    const bool rigid = !plan.model.rigid.empty(),
+               couplings = std::ranges::any_of(plan.model.rigid, &model::RigidBody::coupling);
+    const bool unsymmetric = couplings || contact || follows || (nonlinear && dynamic_stages(plan) > 0);
     const LinearSolver asked = scene.solver.linear_solver;
     const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start());
     const bool condensed = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
-    const bool direct = (unsymmetric && asked == LinearSolver::direct) || (rigid && !contact && !follows);
+    const bool direct = (unsymmetric && asked == LinearSolver::direct) || (rigid && !couplings && !contact && !follows);
     say("multigrid", multigrid,
         multigrid ? fmt::format("multigrid cycles over {} nodes instead of factors", plan.model.nodes())
                   : "too few nodes for multigrid to pay off, or the scene asks for another solver");
@@ -76,6 +77,7 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         : condensed   ? "on contact nodes and forces alone"
         : contact     ? "unsymmetric tangent with contact"
         : follows     ? "unsymmetric tangent of follower pressures"
+        : couplings   ? "unsymmetric tangent of couplings under moments"
         : unsymmetric ? "unsymmetric tangent of finite strain in dynamics"
                       : "the tangent is symmetric");
     constexpr double copies = 5; // of the stiffness: with springs and without, PETSc's, coarser ones

@@ -1,0 +1,82 @@
+#include "osculate/equilibrium/coupling_start.hpp"
+
+#include <Eigen/QR>
+
+namespace osculate::equilibrium {
+
+using model::cross_matrix;
+using model::RigidBody;
+
+namespace {
+std::size_t place_of(Index node) {
+    return static_cast<std::size_t>(node);
+}
+
+/// Calls f(coupling, its motion) for every coupling of a state.
+template <class State, class F> void for_each_coupling(const model::Model& model, State& state, F&& f) {
+    for (std::size_t k = 0; k < model.rigid.size(); ++k)
+        if (model.rigid[k].coupling) f(model.rigid[k], state.rigid[k]);
+}
+
+/// Arm of a node now, from the reference point.
+Vec3 arm(const model::Model& model, const RigidBody& body, const model::RigidMotion& motion, Index node) {
+    return motion.orientation * (model.X[place_of(node)] - model.X[place_of(body.reference)]);
+}
+} // namespace
+
+linear::Dependence coupled_nodes(const model::Model& model, const model::State& state) {
+    linear::Dependence dependence(model.nodes());
+    for_each_coupling(model, state, [&](const RigidBody& body, const model::RigidMotion& motion) {
+        for (const Index node : body.nodes) {
+            const Mat3 rho = cross_matrix(arm(model, body, motion, node)) / body.radius;
+            dependence.set(node, {{body.reference}, {body.rotation(), -rho, rho}});
+        }
+    });
+    return dependence;
+}
+
+void start_couplings(const model::Model& model, const linear::Constraints& constraints, model::State& state) {
+    for_each_coupling(model, state, [&](const RigidBody& body, model::RigidMotion& motion) {
+        // v_i = v_r + w x rho_i, w in units of 1/radius
+        Matrix rows(3 * static_cast<Index>(body.nodes.size()), 6);
+        Vector v(rows.rows());
+        for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+            const auto at = 3 * static_cast<Index>(i);
+            rows.middleRows<3>(at) << Mat3::Identity(),
+                -cross_matrix(arm(model, body, motion, body.nodes[i])) / body.radius;
+            v.segment<3>(at) = state.v[place_of(body.nodes[i])];
+        }
+        const Vector fit = rows.completeOrthogonalDecomposition().solve(v); // the smallest
+        const auto less_held = [&](Index node, const Vec3& free) {
+            Vec3 local = constraints.to_local(node, free);
+            for (int k = 0; k < 3; ++k)
+                if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) local(k) = 0;
+            return constraints.to_global(node, local);
+        };
+        motion.velocity = less_held(body.reference, fit.head<3>());
+        const Vec3 spin = less_held(body.rotation(), fit.tail<3>()) / body.radius;
+        motion.angular_velocity = motion.orientation.inverse() * spin;
+        for (const Index node : body.nodes)
+            state.v[place_of(node)] = motion.velocity + spin.cross(arm(model, body, motion, node));
+        state.v[place_of(body.reference)] = motion.velocity;
+        state.v[place_of(body.rotation())] = body.radius * spin;
+    });
+}
+
+Field centripetal(const model::Model& model, const model::State& state) {
+    Field a(model.X.size());
+    for_each_coupling(model, state, [&](const RigidBody& body, const model::RigidMotion& motion) {
+        const Vec3 w = model::spin(motion);
+        for (const Index node : body.nodes) a[place_of(node)] = w.cross(w.cross(arm(model, body, motion, node)));
+    });
+    return a;
+}
+
+void take_accelerations(const model::Model& model, model::State& state) {
+    for_each_coupling(model, state, [&](const RigidBody& body, model::RigidMotion& motion) {
+        motion.acceleration = state.a[place_of(body.reference)];
+        motion.angular_rate = motion.orientation.inverse() * Vec3(state.a[place_of(body.rotation())] / body.radius);
+    });
+}
+
+} // namespace osculate::equilibrium

@@ -223,11 +223,15 @@ void RigidTerm::fold(Field& f) {
         const RigidBody& body = model_.rigid[k];
         const Vec3& X_r = model_.X[place_of(body.reference)];
         Mat3 sum = Mat3::Zero();
+        Vec3 swept = Vec3::Zero();
         for (const Index i : body.nodes) {
             const std::size_t node = place_of(i);
             if (f[node].isZero(0)) continue;
-            sum += cross_matrix(f[node]) * cross_matrix(bodies_[k].R * (model_.X[node] - X_r));
+            const Vec3 arm = model_.X[node] - X_r, rho = bodies_[k].R * arm;
+            sum += cross_matrix(f[node]) * cross_matrix(rho);
+            swept += (rho - bodies_[k].R_start * arm).cross(f[node]);
         }
+        bodies_[k].swept = swept;
         bodies_[k].turning = (1 - alpha_f_) * sum * bodies_[k].T;
     }
     dependence_.fold(f);
@@ -253,6 +257,13 @@ void RigidTerm::add_tangent(linear::BlockMatrix& tangent) const {
 double RigidTerm::work_of_inertia() const {
     double work = 0;
     for (const Moving& now : bodies_) work += now.force.dot(now.Du) + now.moment.dot(now.c);
+    return work;
+}
+
+double RigidTerm::work_of_weights() const {
+    // f_i . [c x (rho_i + rho_i,n)/2 - c x ((1-alpha_f) rho_i + alpha_f rho_i,n)]
+    double work = 0;
+    for (const Moving& now : bodies_) work += (alpha_f_ - 0.5) * now.c.dot(now.swept);
     return work;
 }
 

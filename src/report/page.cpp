@@ -172,6 +172,8 @@ void name_bodies(MovingSurfaces& surfaces, const RunFiles& files) {
     for (MovingPart& part : surfaces.parts) {
         const scene::Pair* pair = part.kind == PartKind::body ? nullptr : scene::find(files.scene->contact, part.name);
         if (pair == nullptr) continue;
+        if (part.kind == PartKind::master && !pair->master.rigid_surface.empty())
+            part.body = pair->master.rigid_surface;
         const scene::SetSpec* set =
             scene::find(files.scene->sets, part.kind == PartKind::slave ? pair->slave : pair->master.set);
         if (set != nullptr) part.body = set->body;

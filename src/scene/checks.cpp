@@ -85,10 +85,21 @@ public:
                 if (node = node->find(part); node == nullptr) return false;
             return true;
         };
-        const bool slave = written({"slave"}), master = written({"master", "set"});
+        const bool slave = written({"slave"}), exact = written({"master", "rigid_surface"}),
+                   master = written({"master", "set"}) || exact;
+        if (exact && written({"master", "set"}))
+            fault({"contact", name, "master", "set"}, "set or rigid_surface", "both");
+        if (exact && written({"master", "surface"}))
+            fault({"contact", name, "master", "surface"}, "none: a rigid surface is exact", "one");
+        if (exact && pair.discretisation && *pair.discretisation != Discretisation::node)
+            fault({"contact", name, "discretisation"},
+                  "node: gaps to a rigid surface are exact at the slave nodes, and its pressure needs no averaging",
+                  "another one");
         if (written({"between"})) {
             if (slave) fault({"contact", name, "slave"}, "between, or slave and master.set", "both");
-            if (master) fault({"contact", name, "master", "set"}, "between, or slave and master.set", "both");
+            if (master)
+                fault({"contact", name, "master", exact ? "rigid_surface" : "set"}, "between, or slave and master",
+                      "both");
             if (!pair.between[0].empty() && pair.between[0] == pair.between[1])
                 fault({"contact", name, "between"}, "two sets", "'" + pair.between[0] + "' twice");
             return;
@@ -113,7 +124,8 @@ public:
                 }
         for (std::size_t a = 0; a < bodies.size(); ++a)
             for (std::size_t b = a + 1; b < bodies.size(); ++b)
-                if (bodies[a].second.rigid && bodies[b].second.rigid && may_meet(general, bodies[a], bodies[b]))
+                if (bodies[a].second.rigid && bodies[b].second.rigid && !bodies[a].second.rigid_surface &&
+                    !bodies[b].second.rigid_surface && may_meet(general, bodies[a], bodies[b]))
                     fault({"contact", "general"},
                           "a rule of contact.general.pairs with `contact: false` for every two rigid bodies: they have "
                           "no "
@@ -165,6 +177,7 @@ public:
     }
 
     void check_density(const std::string& name, const Body& body, const std::string& reason) {
+        if (body.rigid_surface) return; // see check_held()
         if (body.rigid && (body.rigid->mass || body.rigid->density > 0)) return;
         if (elastic(body.material).density == 0)
             fault({"bodies", name, body.has_material ? "material" : "rigid"},
@@ -172,6 +185,15 @@ public:
     }
 
     void check_rigid(const std::string& name, const Body& body) {
+        if (!body.has_mesh && !body.rigid_surface) fault({"bodies", name}, "a mesh, or a rigid_surface", "neither");
+        if (body.rigid_surface) {
+            if (body.has_mesh) fault({"bodies", name, "mesh"}, "a mesh, or a rigid_surface", "both");
+            if (body.has_material)
+                fault({"bodies", name, "material"}, "none: a rigid_surface does not deform", "a material");
+            if (body.rigid->density > 0)
+                fault({"bodies", name, "rigid", "density"}, "mass and inertia: a rigid_surface has no volume",
+                      "a density");
+        }
         if (!body.has_material && !body.rigid) fault({"bodies", name}, "a material, or rigid: true", "neither");
         if (!body.rigid) return;
         const Rigid& rigid = *body.rigid;
@@ -215,7 +237,9 @@ public:
         for (const auto& [name, pair] : scene.contact) {
             const bool between = !pair.between[0].empty();
             const std::string *slave = rigid(between ? pair.between[0] : pair.slave),
-                              *master = rigid(between ? pair.between[1] : pair.master.set);
+                              *master = !pair.master.rigid_surface.empty()
+                                            ? &pair.master.rigid_surface
+                                            : rigid(between ? pair.between[1] : pair.master.set);
             if (slave != nullptr && master != nullptr)
                 fault({"contact", name}, "a side that deforms: two rigid bodies have no contact pressure of their own",
                       "two rigid bodies, '" + *slave + "' and '" + *master + "'");
@@ -271,6 +295,43 @@ public:
                 if (needs_rigid(key, body).fixed != nullptr)
                     for (std::size_t a = 0; a < 3; ++a)
                         check_course({"stages", name, key, body}, load[a], stage, {}, a);
+    }
+
+    /// A surface has no volume: where inertia may move it, it needs a mass.
+    void check_held(const Scene& scene) {
+        for (const auto& [name, body] : scene.bodies) {
+            if (!body.rigid_surface || body.rigid->mass) continue;
+            std::array<bool, 6> held = body.rigid->fixed;
+            for (const auto& [stage_name, stage] : scene.stages) {
+                if (const auto* motion = find(stage.motion, name))
+                    for (std::size_t a = 0; a < held.size(); ++a) held[a] = held[a] || (*motion)[a].has_value();
+                if (!std::holds_alternative<DynamicAnalysis>(stage.analysis)) continue;
+                for (std::size_t a = 0; a < held.size(); ++a)
+                    if (!held[a])
+                        return fault({"bodies", name, "rigid_surface"},
+                                     "rigid.mass and rigid.inertia, or `fix` or `motion` for " + motion_words[a] +
+                                         ", in dynamic stage '" + stage_name + "'",
+                                     "neither");
+            }
+        }
+    }
+
+    /// Masters that are exact surfaces.
+    void check_exact_masters(const Scene& scene) {
+        for (const auto& [name, pair] : scene.contact) {
+            if (pair.master.rigid_surface.empty()) continue;
+            const Body* body = find(scene.bodies, pair.master.rigid_surface);
+            if (body != nullptr && !body->rigid_surface)
+                fault({"contact", name, "master", "rigid_surface"}, "a body with a rigid_surface",
+                      "'" + pair.master.rigid_surface + "', which has a mesh: name a set of it as master.set");
+        }
+        for (const auto& [name, set] : scene.sets)
+            if (const Body* body = find(scene.bodies, set.body); body != nullptr && body->rigid_surface)
+                fault({"sets", name, "body"},
+                      "a body with a mesh: contact.<pair>.master.rigid_surface names the whole "
+                      "surface of '" +
+                          set.body + "'",
+                      "a body with a rigid_surface");
     }
 
     void check_formulation(const std::string& name, const Body& body) {
@@ -368,6 +429,8 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     for (const auto& [name, body] : scene.bodies) rules.check_rigid(name, body);
     rules.check_rigid_sets(scene);
     rules.check_couplings(scene);
+    rules.check_held(scene);
+    rules.check_exact_masters(scene);
     for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene);
     for (const auto& [name, set] : scene.sets) rules.check_set(name, set);
     for (const auto& [stage_name, stage] : scene.stages)

@@ -58,8 +58,12 @@ void describe(Visitor& v, MasterSpec& master) {
             .meaning = "Master surface.",
             .required = true,
             .names = Names::set,
-            .instead = "contact.<pair>.between"},
+            .instead = "contact.<pair>.between or rigid_surface"},
            master.set);
+    v.text({.name = "rigid_surface",
+            .meaning = "Body with a rigid_surface, whose exact surface is the master, in place of set.",
+            .names = Names::body},
+           master.rigid_surface);
     v.group({.name = "surface",
              .meaning = "Geometry of the master; contact.<pair>.surface is short for it.",
              .bare_word = true},

@@ -315,8 +315,18 @@ void describe(Visitor& v, MeshSpec& mesh) {
 } // namespace
 
 void describe(Visitor& v, Body& body) {
-    v.group({.name = "mesh", .meaning = "A generator or a file, and its placement.", .required = true},
-            [&] { describe(v, body.mesh); });
+    v.optional_group({.name = "mesh",
+                      .meaning = "A generator or a file, and its placement.",
+                      .required = true,
+                      .instead = "rigid_surface"},
+                     body.has_mesh, [&] { describe(v, body.mesh); });
+    bool is_exact = body.rigid_surface.has_value();
+    RigidSurface exact = body.rigid_surface.value_or(RigidSurface{});
+    v.optional_group({.name = "rigid_surface",
+                      .meaning = "The exact surface of a rigid body without a mesh, which pairs name as "
+                                 "master.rigid_surface."},
+                     is_exact, [&] { describe(v, exact); });
+    body.rigid_surface = is_exact ? std::optional(std::move(exact)) : std::nullopt;
     bool is_rigid = body.rigid.has_value();
     Rigid rigid = body.rigid.value_or(Rigid{});
     v.optional_group({.name = "rigid",
@@ -324,7 +334,7 @@ void describe(Visitor& v, Body& body) {
                                  "and density.",
                       .bare_flag = true},
                      is_rigid, [&] { describe(v, rigid); });
-    body.rigid = is_rigid ? std::optional(rigid) : std::nullopt;
+    body.rigid = is_rigid || is_exact ? std::optional(rigid) : std::nullopt;
     const auto material = [&] {
         static const Words tags{"linear_elastic", "saint_venant_kirchhoff", "neo_hookean"};
         one_of(v, tags,

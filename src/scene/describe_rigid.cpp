@@ -59,6 +59,79 @@ void describe(Visitor& v, Rigid& rigid) {
                    rigid.fixed);
 }
 
+namespace {
+
+void point_of_surface(Visitor& v, const char* name, const char* meaning, Vec3& value) {
+    v.vector({.name = name, .meaning = meaning, .unit = dimension::length, .range = range::position, .required = true},
+             value);
+}
+
+void direction_of_surface(Visitor& v, const char* name, const char* meaning, Vec3& value) {
+    v.vector({.name = name, .meaning = meaning, .range = range::direction, .required = true, .direction = true}, value);
+}
+
+void radius_of_surface(Visitor& v, double& value) {
+    v.number(
+        {.name = "radius", .meaning = "Radius.", .unit = dimension::length, .range = range::size, .required = true},
+        value);
+}
+
+void describe(Visitor& v, PlaneSurface& s) {
+    point_of_surface(v, "point", "A point of it.", s.point);
+    direction_of_surface(v, "normal", "Out of the solid, to the side on which slaves are.", s.normal);
+}
+void describe(Visitor& v, CylinderSurface& s) {
+    point_of_surface(v, "axis_point", "A point of its axis.", s.axis_point);
+    direction_of_surface(v, "axis_direction", "Direction of its axis.", s.axis_direction);
+    radius_of_surface(v, s.radius);
+    v.flag({.name = "inside", .meaning = "It is a bore, and slaves are in it."}, s.inside);
+}
+void describe(Visitor& v, SphereSurface& s) {
+    point_of_surface(v, "centre", "Its centre.", s.centre);
+    radius_of_surface(v, s.radius);
+    v.flag({.name = "inside", .meaning = "It is a hollow, and slaves are in it."}, s.inside);
+}
+void describe(Visitor& v, ConeSurface& s) {
+    point_of_surface(v, "apex", "Its tip.", s.apex);
+    direction_of_surface(v, "axis_direction", "From the apex into the cone.", s.axis_direction);
+    v.number({.name = "half_angle",
+              .meaning = "Between axis and surface.",
+              .unit = dimension::angle,
+              .range = {.low = 0.001, .high = 1.57},
+              .required = true},
+             s.half_angle);
+    v.flag({.name = "inside", .meaning = "It is a hollow, and slaves are in it."}, s.inside);
+}
+void describe(Visitor& v, ExtrudedSurface& s) {
+    v.points({.name = "points",
+              .meaning = "Profile, point by point; the first point again at the end closes it. Beyond the ends of an "
+                         "open one nothing is met.",
+              .unit = dimension::length,
+              .range = range::position,
+              .required = true},
+             s.points);
+    direction_of_surface(v, "direction", "Along which the profile is extruded, without end; points are taken along it.",
+                         s.direction);
+    direction_of_surface(v, "outward", "To the side of the profile's beginning on which slaves are.", s.outward);
+    v.number({.name = "fillet",
+              .meaning = "Radius that rounds the corners between lines; 0: they are sharp.",
+              .unit = dimension::length,
+              .range = range::not_negative},
+             s.fillet);
+    v.flag({.name = "smooth", .meaning = "A smooth curve of circular arcs through the points instead of lines."},
+           s.smooth);
+}
+
+} // namespace
+
+void describe(Visitor& v, RigidSurface& surface) {
+    static const Words tags{"plane", "cylinder", "sphere", "cone", "extruded"};
+    one_of(v, tags,
+           {"A half-space.", "A circular cylinder without ends.", "A sphere.", "A circular cone without an end.",
+            "A plane curve moved along a direction."},
+           true, surface, [&v](auto& alternative) { describe(v, alternative); });
+}
+
 void describe(Visitor& v, Coupling& coupling) {
     v.text({.name = "set",
             .meaning = "Nodes that follow the reference point as one: displacement and rotation, however large.",

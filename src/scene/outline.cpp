@@ -64,6 +64,11 @@ public:
         for (const std::string& one : value) list += (list.empty() ? "" : ", ") + one;
         add(key, value.empty() ? "none" : list);
     }
+    void points(const Key& key, std::vector<Vec3>& value) override {
+        std::string all;
+        for (const Vec3& p : value) all += (all.empty() ? "" : ", ") + components(key, {p.x(), p.y(), p.z()});
+        add(key, all);
+    }
     void axes(const Key& key, Mat3& value) override {
         const auto column = [](const Vec3& v) {
             return "(" + digits(v.x()) + ", " + digits(v.y()) + ", " + digits(v.z()) + ")";

@@ -310,6 +310,11 @@ void SchemaVisitor::words(const Key& key, const Words& vocabulary, std::vector<s
     add(key, schema, "list of " + join(vocabulary), value);
 }
 
+void SchemaVisitor::points(const Key& key, std::vector<Vec3>& /*value*/) {
+    add(key, {{"type", "array"}, {"minItems", 2}, {"items", list_of(quantity(key), 3)}},
+        "a list of [x, y, z], each a " + in_words(key), nullptr);
+}
+
 void SchemaVisitor::axes(const Key& key, Mat3& /*value*/) {
     Key component = key;
     component.range = range::direction;

@@ -33,6 +33,7 @@ public:
     void word(const Key& key, const Words& vocabulary, std::size_t& index) override;
     void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) override;
     void axes(const Key& key, Mat3& value) override;
+    void points(const Key& key, std::vector<Vec3>& value) override;
     void group(const Key& key, const std::function<void()>& body) override;
     void optional_group(const Key& key, bool& present, const std::function<void()>& body) override;
     void one_of(const Choice& choice) override;

@@ -307,6 +307,17 @@ void TreeReader::words(const Key& key, const Words& vocabulary, std::vector<std:
     }
 }
 
+void TreeReader::points(const Key& key, std::vector<Vec3>& value) {
+    const std::string expected = "a list of two points or more, each " + expected_vector(key);
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind != Tree::Kind::list || tree->children.size() < 2) return fault(*tree, key, expected);
+    std::vector<Vec3> read;
+    for (const Tree& child : tree->children)
+        if (const auto point = read_vector(child, key)) read.push_back(*point);
+    if (read.size() == tree->children.size()) value = std::move(read);
+}
+
 void TreeReader::axes(const Key& key, Mat3& value) {
     const std::string expected = "a list of two directions that are not parallel";
     const Tree* tree = take(key, expected);

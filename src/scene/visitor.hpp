@@ -102,6 +102,7 @@ public:
     virtual void word(const Key& key, const Words& vocabulary, std::size_t& index) = 0;
     virtual void words(const Key& key, const Words& vocabulary, std::vector<std::string>& value) = 0;
     virtual void axes(const Key& key, Mat3& value) = 0; ///< columns; the first two are written
+    virtual void points(const Key& key, std::vector<Vec3>& value) = 0;
     virtual void group(const Key& key, const std::function<void()>& body) = 0;
     virtual void optional_group(const Key& key, bool& present, const std::function<void()>& body) = 0;
     virtual void one_of(const Choice& choice) = 0;

@@ -81,6 +81,11 @@ public:
     void words(const Key& key, const Words& /*vocabulary*/, std::vector<std::string>& value) override {
         line(key, "[" + join(value) + "]");
     }
+    void points(const Key& key, std::vector<Vec3>& value) override {
+        std::string all;
+        for (const Vec3& p : value) all += (all.empty() ? "" : ", ") + list(p);
+        line(key, "[" + all + "]");
+    }
     void axes(const Key& key, Mat3& value) override {
         line(key, "[" + list(value.col(0)) + ", " + list(value.col(1)) + "]");
     }

@@ -19,13 +19,22 @@ std::vector<std::vector<mesh::Facet>> outer_facets(const model::Model& model) {
     return bodies;
 }
 
+/// Without those of exact surfaces, whose facets stand for them only.
+std::vector<std::vector<mesh::Facet>> facets_to_audit(const model::Model& model) {
+    std::vector<std::vector<mesh::Facet>> bodies = outer_facets(model);
+    for (const model::RigidBody& rigid : model.rigid)
+        if (rigid.shape) bodies[static_cast<std::size_t>(rigid.body)].clear();
+    return bodies;
+}
+
 std::pair<Index, Index> ordered(Index a, Index b) {
     return {std::min(a, b), std::max(a, b)};
 }
 
 } // namespace
 
-Audit::Audit(const model::Model& model) : model_(model), surfaces_(outer_facets(model), model.X) {
+Audit::Audit(const model::Model& model)
+    : model_(model), surfaces_(facets_to_audit(model), model.X), exact_(model, outer_facets(model)) {
     const contact::AuditResult first = surfaces_.examine(model.X);
     for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
     if (model.general)
@@ -38,6 +47,7 @@ Audit::Audit(const model::Model& model) : model_(model), surfaces_(outer_facets(
 const contact::AuditResult& Audit::examine(const Field& u) {
     x_ = sum(model_.X, u);
     result_ = surfaces_.examine(x_);
+    if (!exact_.empty()) exact_.examine(x_, result_);
     return result_;
 }
 

@@ -65,7 +65,8 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibri
         }
     }
     const double change = next.kinetic - ledger.kinetic + next.strain - ledger.strain;
-    const double algorithmic = work.inertia + work.internal - change;
+    const double of_weights = equilibrium.rigid() != nullptr ? equilibrium.rigid()->work_of_weights() : 0;
+    const double algorithmic = work.inertia + work.internal - of_weights - change;
     next.external += external;
     next.friction += friction;
     next.damping += work.damping;

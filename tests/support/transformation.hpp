@@ -88,6 +88,9 @@ public:
     void word(const scene::Key& /*key*/, const scene::Words& /*all*/, std::size_t& /*index*/) override {}
     void words(const scene::Key& /*key*/, const scene::Words& /*all*/, std::vector<std::string>& /*value*/) override {}
     void axes(const scene::Key& /*key*/, Mat3& /*value*/) override {}
+    void points(const scene::Key& key, std::vector<Vec3>& value) override {
+        for (Vec3& point : value) vector(key, point);
+    }
     void group(const scene::Key& /*key*/, const std::function<void()>& body) override { body(); }
     void optional_group(const scene::Key& /*key*/, bool& present, const std::function<void()>& body) override {
         if (present) body();

@@ -242,8 +242,8 @@ stages:
         const double period = 4 * std::sqrt((1.01 / 12 + 0.25) / (9.81 * 0.5)) * std::comp_ellint_1(std::sqrt(0.5));
         EXPECT_NEAR(2 * (passed[1] - passed[0]), period, 0.01 * period);
         const time::Ledger& last = bar.steps.back().ledger;
-        EXPECT_NEAR(last.kinetic + last.strain + last.algorithmic, last.external, 3e-3 * last.external);
-        EXPECT_LT(std::abs(last.balance), 3e-3 * last.external);
+        EXPECT_NEAR(last.kinetic + last.strain + last.algorithmic, last.external, 1e-3 * last.external);
+        EXPECT_LT(std::abs(last.balance), 1e-8 * last.external);
     }
 }
 

@@ -66,6 +66,8 @@ public:
         (void)from, (void)to;
         return true;
     }
+    /// Whether it is the surface itself, with facets that only stand for it.
+    [[nodiscard]] virtual bool exact() const { return false; }
     /// Whether refitted() can return another surface.
     [[nodiscard]] virtual bool refits() const { return false; }
     /// This surface with some patches refitted at converged positions x: those that have been bent by more than 60

@@ -43,6 +43,9 @@ public:
 
     /// Work of inertia over the step that ended at the last evaluate(), J.
     [[nodiscard]] double work_of_inertia() const;
+    /// Work of the forces of the last fold() as their nodes move, less that of what acts on the bodies: forces that are
+    /// means over a step act on means of their arms, whose weights are others than those of the motion.
+    [[nodiscard]] double work_of_weights() const;
     /// Force of inertia on the left of the equilibrium of a body, in dynamics, N.
     [[nodiscard]] Vec3 inertia_force(std::size_t body) const { return bodies_[body].force; }
     /// Replaces the increment of each body's rotation node by the one whose product with the moment is the work.
@@ -68,6 +71,7 @@ private:
         model::RigidMotion end;
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero(); ///< of inertia; the moment about the reference point
         Mat3 force_by_r, force_by_theta, moment_by_r, moment_by_theta; ///< its derivatives, in dynamics
+        Vec3 swept = Vec3::Zero();                                     ///< sum of (rho_i - rho_i,n) x f_i
         Mat3 turning = Mat3::Zero(); ///< change of the moment of all forces on the mesh by dtheta
     };
     /// Takes body k to displacements of its two nodes. False, and nothing is done, if it turns by half a turn or more.

@@ -72,6 +72,11 @@ public:
     /// Reference size of a facet: the square root of its area, metres.
     [[nodiscard]] double facet_size(Index facet) const { return facet_size_[facet]; }
     [[nodiscard]] double mean_facet_size() const { return mean_facet_size_; }
+    /// Gives all facets one size, where others than these tell how finely lengths are to be judged.
+    void use_facet_size(double size) {
+        facet_size_.assign(facet_size_.size(), size);
+        mean_facet_size_ = size;
+    }
 
 private:
     [[nodiscard]] Index previous(Index half_edge) const;

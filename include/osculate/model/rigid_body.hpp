@@ -1,9 +1,11 @@
 #pragma once
 /// Rigid bodies and couplings: what is fixed for a run, and how one moves.
 
+#include "osculate/contact/exact_shape.hpp"
 #include "osculate/core/field.hpp"
 #include "osculate/model/rotation.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,15 +22,16 @@ struct State;
 /// They are all nodes of a rigid body, or a coupling: some nodes of a body that deforms, which keep their elements and
 /// have the mass of these. A coupling has no inertia of its own; its centre is its reference point.
 struct RigidBody {
-    std::string name;            ///< of the rigid body, or of the coupling
-    bool coupling = false;       ///< some nodes of a body that deforms
-    Index body = -1;             ///< of the model, whose nodes these are
-    std::vector<Index> nodes;    ///< global, ascending
-    Index reference = -1;        ///< node of the reference point; that of the rotation is the next
-    double radius = 1;           ///< distance of its farthest node from the reference point, m
-    double mass = 0;             ///< kg; 0: none is needed, every stage is static
-    Vec3 centre = Vec3::Zero();  ///< of mass, in the reference configuration, m
-    Mat3 inertia = Mat3::Zero(); ///< about the centre, in the reference configuration, kg m^2
+    std::string name;                           ///< of the rigid body, or of the coupling
+    bool coupling = false;                      ///< some nodes of a body that deforms
+    Index body = -1;                            ///< of the model, whose nodes these are
+    std::vector<Index> nodes;                   ///< global, ascending
+    Index reference = -1;                       ///< node of the reference point; that of the rotation is the next
+    double radius = 1;                          ///< distance of its farthest node from the reference point, m
+    double mass = 0;                            ///< kg; 0: none is needed, every stage is static
+    Vec3 centre = Vec3::Zero();                 ///< of mass, in the reference configuration, m
+    Mat3 inertia = Mat3::Zero();                ///< about the centre, in the reference configuration, kg m^2
+    std::optional<contact::ExactShape> shape{}; ///< in the reference configuration; none: it is the surface of its mesh
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero(); ///< of the centre at the start, m/s; rad/s
 
     [[nodiscard]] Index rotation() const { return reference + 1; }

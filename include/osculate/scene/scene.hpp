@@ -10,6 +10,7 @@
 #include "osculate/scene/course.hpp"
 #include "osculate/scene/named.hpp"
 #include "osculate/scene/output.hpp"
+#include "osculate/scene/rigid_surface.hpp"
 
 #include <array>
 #include <map>
@@ -153,6 +154,8 @@ struct Rigid {
 
 struct Body {
     MeshSpec mesh;
+    std::optional<RigidSurface> rigid_surface; ///< in place of the mesh
+    bool has_mesh = true;                      ///< as a scene is written
     Material material;
     std::optional<Rigid> rigid;
     bool has_material = true; ///< a rigid body needs none
@@ -234,6 +237,7 @@ struct BlendSurface {
 
 struct MasterSpec {
     std::string set;
+    std::string rigid_surface; ///< a body with an exact surface, in place of the set; empty: not given
     std::variant<FacetsSurface, RpimSurface, BlendSurface> surface = BlendSurface{};
     bool operator==(const MasterSpec&) const = default;
 };

@@ -3,6 +3,7 @@
 
 #include "osculate/contact/surface_audit.hpp"
 #include "osculate/model/model.hpp"
+#include "osculate/time/exact_audit.hpp"
 
 #include <map>
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace osculate::time {
 
-/// Audits displacements with contact::SurfaceAudit. Bodies without a common pair may overlap as deeply as they do in
+/// Audits displacements with contact::SurfaceAudit, and with ExactAudit where surfaces are exact. Bodies without a common pair may overlap as deeply as they do in
 /// the reference configuration, because the user placed them so.
 class Audit {
 public:
@@ -26,6 +27,7 @@ public:
 private:
     const model::Model& model_;
     contact::SurfaceAudit surfaces_;
+    ExactAudit exact_;
     Field x_;
     contact::AuditResult result_;
     std::map<std::pair<Index, Index>, double> drawn_; ///< excess in the reference configuration, m

@@ -18,6 +18,7 @@ public:
         : model_(model), examined_(examined), key_("contact." + examined.evaluation.pair().name()) {}
 
     std::vector<Warning> all() {
+        if (examined_.evaluation.pair().master()->exact()) return {}; // its facets stand for it, and have no say
         facing();
         stiffness();
         sharp_edges();

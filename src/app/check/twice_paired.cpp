@@ -1,5 +1,7 @@
 #include "app/check/twice_paired.hpp"
 
+#include "app/plan/rigid_surface.hpp"
+
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
@@ -45,7 +47,7 @@ std::vector<Warning> twice_paired(const scene::Scene& scene, const Plan& plan) {
     };
     std::vector<Sides> sides;
     for (const auto& [name, pair] : scene.contact)
-        sides.push_back({surface(plan.model, pair.slave), surface(plan.model, pair.master.set)});
+        sides.push_back({surface(plan.model, pair.slave), surface(plan.model, master_set(pair.master))});
     std::vector<Warning> found;
     for (std::size_t later = 0; later < sides.size(); ++later)
         for (std::size_t i = 0; i < later; ++i) {

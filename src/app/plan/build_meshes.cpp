@@ -1,6 +1,7 @@
 #include "app/fault.hpp"
 #include "app/overloaded.hpp"
 #include "app/plan/mesh_share.hpp"
+#include "app/plan/rigid_surface.hpp"
 #include "osculate/app/compile.hpp"
 #include "osculate/mesh/generators.hpp"
 #include "osculate/mesh/gmsh.hpp"
@@ -68,6 +69,25 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, S
     return m;
 }
 
+/// Shells of exact surfaces, near all other bodies.
+void add_shells(const scene::Scene& scene, std::vector<mesh::Mesh>& meshes, std::vector<Fault>& faults) {
+    Eigen::AlignedBox3d near;
+    for (const mesh::Mesh& m : meshes)
+        for (const Vec3& X : m.nodes) near.extend(X);
+    if (near.isEmpty()) near.extend(Vec3::Zero());
+    if (!(near.diagonal().norm() > 0)) near.extend(near.center() + Vec3::Ones());
+    for (std::size_t b = 0; b < meshes.size(); ++b) {
+        const auto& [name, body] = scene.bodies[b];
+        if (!body.rigid_surface) continue;
+        try {
+            meshes[b] = shell_of(exact_shape(*body.rigid_surface, Vec3::Zero()), near);
+        } catch (const std::exception& error) {
+            faults.push_back(fault("bodies." + name + ".rigid_surface.extruded", "a profile without cusps and overlaps",
+                                   error.what()));
+        }
+    }
+}
+
 } // namespace
 
 std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene, std::vector<std::string>* notes) {
@@ -75,6 +95,10 @@ std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene, std::vector<std:
     std::vector<Fault> faults;
     Sources sources;
     for (const auto& [name, body] : scene.bodies) try {
+            if (body.rigid_surface) {
+                meshes.emplace_back();
+                continue;
+            }
             std::vector<std::string> of_body;
             meshes.push_back(generate(body.mesh, scene.directory, sources, of_body));
             for (const std::string& note : of_body)
@@ -85,6 +109,7 @@ std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene, std::vector<std:
         } catch (const std::exception& error) {
             faults.push_back(fault("bodies." + name + ".mesh", "a mesh that can be made", error.what()));
         }
+    if (faults.empty()) add_shells(scene, meshes, faults);
     if (!faults.empty()) throw SceneError(std::move(faults));
     return meshes;
 }

@@ -1,6 +1,8 @@
 #include "app/plan/contact_pairs.hpp"
 
 #include "app/overloaded.hpp"
+#include "app/plan/rigid_surface.hpp"
+#include "osculate/contact/exact_surface.hpp"
 #include "osculate/contact/mirror.hpp"
 #include "osculate/contact/mortar.hpp"
 #include "osculate/contact/path_crossing.hpp"
@@ -162,6 +164,36 @@ std::shared_ptr<const model::MasterSide> make_side(const scene::Scene& scene, co
     return std::make_shared<const model::MasterSide>(std::move(surface), std::move(nodes), std::move(shape));
 }
 
+/// An exact surface as the master, with the facets of its shell for what looks at these.
+/// @param size  by which gaps are judged: that of slave facets, m
+std::shared_ptr<const model::MasterSide> make_exact_side(const model::Model& model, const model::Set& master,
+                                                         const contact::ExactShape& shape, double size,
+                                                         model::ContactOptions& options) {
+    auto surface = std::make_unique<mesh::HalfEdgeSurface>(master.facets, model.X);
+    surface->use_facet_size(size);
+    model::MasterNodes nodes;
+    nodes.node = surface->vertex_nodes();
+    std::vector<Vec3> vertices;
+    for (const Index node : nodes.node) vertices.push_back(model.X[static_cast<std::size_t>(node)]);
+    options.hysteresis = 0; // it does not depend on facets
+    auto exact = contact::make_exact_surface(shape, contact::rigid_frame(vertices));
+    return std::make_shared<const model::MasterSide>(std::move(surface), std::move(nodes), std::move(exact));
+}
+
+/// The exact shape of the body of a set, if it is the whole surface of such a body.
+const contact::ExactShape* shape_of(const model::Model& model, const model::Set& set) {
+    for (const model::RigidBody& rigid : model.rigid)
+        if (rigid.body == set.body && !rigid.coupling && rigid.shape) return &*rigid.shape;
+    return nullptr;
+}
+
+double mean_size(const std::vector<mesh::Facet>& facets, const std::vector<Vec3>& X) {
+    double sum = 0;
+    for (const mesh::Facet& facet : facets)
+        sum += std::sqrt(mesh::facet_area_vector(facet, X).norm()) / static_cast<double>(facets.size());
+    return sum;
+}
+
 } // namespace
 
 std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& scene, const std::string& name,
@@ -173,8 +205,10 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     options.discretisation = spec.discretisation.value();
     options.friction = spec.friction;
     options.closing_tolerance = spec.closing_tolerance;
+    const contact::ExactShape* shape = shape_of(model, master);
     std::shared_ptr<const model::MasterSide> side =
-        make_side(scene, spec.master, options.discretisation, model, master, exterior, options);
+        shape != nullptr ? make_exact_side(model, master, *shape, mean_size(slave.facets, X), options)
+                         : make_side(scene, spec.master, options.discretisation, model, master, exterior, options);
 
     model::SlaveNodes slaves;
     slaves.facets = slave.facets;
@@ -297,7 +331,7 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
         return nodes;
     };
     for (const auto& [name, pair] : scene.contact)
-        options.treated_elsewhere.emplace_back(nodes_of(pair.slave), nodes_of(pair.master.set));
+        options.treated_elsewhere.emplace_back(nodes_of(pair.slave), nodes_of(master_set(pair.master)));
     return options;
 }
 
@@ -310,6 +344,7 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
     std::vector<model::OuterSurface> surfaces;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const model::Body& body = model.bodies[b];
+        if (scene.bodies[b].second.rigid_surface) continue; // for pairs alone
         model::OuterSurface& one = surfaces.emplace_back();
         one.body = static_cast<Index>(b);
         one.name = body.name;

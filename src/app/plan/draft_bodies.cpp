@@ -3,6 +3,7 @@
 #include "app/fault.hpp"
 #include "app/overloaded.hpp"
 #include "app/plan/draft.hpp"
+#include "app/plan/rigid_surface.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/fe/bad_jacobians.hpp"
 #include "osculate/mesh/quality.hpp"
@@ -48,14 +49,20 @@ void give_rigid_bodies_materials(scene::Scene& scene) {
 void set_mass(Draft& draft, const std::string& name, const scene::Body& spec, model::RigidBody& rigid) {
     const model::Body& body = draft.plan.model.bodies[static_cast<std::size_t>(rigid.body)];
     const scene::Rigid& given = *spec.rigid;
-    const model::MassProperties volume = model::mass_properties(body, 1);
-    const bool solid = volume.mass > 0;
-    if (!solid && !given.mass)
-        draft.faults.push_back(fault("bodies." + name + ".rigid", "a volume, or mass, centre and inertia",
-                                     fmt::format("a volume of {:.3g} m^3", volume.mass)));
-    rigid.centre = given.centre ? *given.centre - draft.plan.model.origin : volume.centre;
-    rigid.mass = given.mass ? *given.mass : body.density * volume.mass;
-    rigid.inertia = body.density * volume.inertia;
+    const Vec3& origin = draft.plan.model.origin;
+    model::MassProperties own; // a shell on an exact surface is there to be seen
+    if (spec.rigid_surface) {
+        rigid.shape = exact_shape(*spec.rigid_surface, origin);
+        own.centre = given.reference_point.value_or(usual_reference_point(*spec.rigid_surface)) - origin;
+    } else {
+        own = model::mass_properties(body, 1);
+        if (!(own.mass > 0) && !given.mass)
+            draft.faults.push_back(fault("bodies." + name + ".rigid", "a volume, or mass, centre and inertia",
+                                         fmt::format("a volume of {:.3g} m^3", own.mass)));
+    }
+    rigid.centre = given.centre ? *given.centre - origin : own.centre;
+    rigid.mass = given.mass ? *given.mass : body.density * own.mass;
+    rigid.inertia = body.density * own.inertia;
     if (!given.inertia) return;
     const Vec3 &J = *given.inertia, P = given.products.value_or(Vec3::Zero());
     rigid.inertia << J.x(), P.x(), P.z(), P.x(), J.y(), P.y(), P.z(), P.y(), J.z();
@@ -192,6 +199,21 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
     if (draft.faults.empty()) add_rigid_bodies(draft);
 }
 
+namespace {
+/// The whole surface of each body with an exact one.
+void add_surface_sets(Draft& draft) {
+    model::Model& m = draft.plan.model;
+    for (const model::RigidBody& rigid : m.rigid) {
+        if (!rigid.shape) continue;
+        model::Set all{surface_set(rigid.name), rigid.body, rigid.nodes,
+                       draft.exterior[static_cast<std::size_t>(rigid.body)]};
+        for (mesh::Facet& facet : all.facets)
+            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += rigid.nodes.front();
+        m.sets.push_back(std::move(all));
+    }
+}
+} // namespace
+
 void add_sets(Draft& draft) {
     for (const auto& [name, spec] : draft.scene.sets) {
         const Index b = draft.body_index(spec.body);
@@ -220,6 +242,7 @@ void add_sets(Draft& draft) {
             for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += shift;
         draft.plan.model.sets.push_back(std::move(global));
     }
+    add_surface_sets(draft);
 }
 
 } // namespace osculate::app

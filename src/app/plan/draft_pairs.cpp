@@ -4,6 +4,7 @@
 #include "app/plan/contact_pairs.hpp"
 #include "app/plan/draft.hpp"
 #include "app/plan/gaps.hpp"
+#include "app/plan/rigid_surface.hpp"
 #include "osculate/model/general_contact.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ void add_pairs(Draft& draft) {
     const bool paths = std::ranges::any_of(draft.plan.stages, &time::Stage::follow_paths);
     for (const auto& [name, spec] : draft.plan.contact) {
         const model::Set& slave = draft.set(spec.slave);
-        const model::Set& master = draft.set(spec.master.set);
+        const model::Set& master = draft.set(master_set(spec.master));
         const std::string key = "contact." + name;
         bool broken = false;
         for (const auto& [part, group] : {std::pair{".slave", &slave}, std::pair{".master.set", &master}})

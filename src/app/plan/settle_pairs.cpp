@@ -79,8 +79,10 @@ void settle_pairs(Draft& draft) {
         if (!pair.between[0].empty()) choice.roles = choose_slave(draft, pair);
         if (pair.discretisation) continue;
         // forces that are not the work conjugates of the gaps add energy, or take it, in every impact
-        pair.discretisation = dynamic ? Discretisation::node : Discretisation::petrov_galerkin;
-        choice.discretisation = why_discretisation(dynamic);
+        const bool exact = !pair.master.rigid_surface.empty();
+        pair.discretisation = dynamic || exact ? Discretisation::node : Discretisation::petrov_galerkin;
+        choice.discretisation =
+            exact ? "node: the master is a rigid surface, exact at every node" : why_discretisation(dynamic);
     }
     draft.plan.contact = draft.scene.contact;
     if (draft.scene.general && !draft.scene.general->discretisation) {

@@ -1,0 +1,154 @@
+#include "osculate/time/exact_audit.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+namespace osculate::time {
+
+namespace {
+
+constexpr double nowhere = std::numeric_limits<double>::infinity();
+
+double distance(const contact::PlaneShape& s, const Vec3& p) {
+    return p.dot(s.normal) - s.point.dot(s.normal);
+}
+
+double distance(const contact::CylinderShape& s, const Vec3& p) {
+    const double d = (p - s.point).cross(s.axis).norm() - s.radius;
+    return s.inside ? -d : d;
+}
+
+double distance(const contact::SphereShape& s, const Vec3& p) {
+    const double d = (p - s.centre).norm() - s.radius;
+    return s.inside ? -d : d;
+}
+
+double distance(const contact::ConeShape& s, const Vec3& p) {
+    const Vec3 arm = p - s.apex;
+    const double from = std::atan2(arm.cross(s.axis).norm(), arm.dot(s.axis)) - s.half_angle; // from the surface, rad
+    const double d = from < std::numbers::pi / 2 ? arm.norm() * std::sin(from) : arm.norm();
+    return s.inside ? -d : d;
+}
+
+double distance(const contact::ExtrudedShape& s, const Vec3& p) {
+    constexpr int chords = 64; // of an arc
+    std::vector<Vec2> line;
+    double sagitta = 0;
+    for (const contact::ProfilePiece& piece : s.pieces) {
+        line.push_back(piece.begin);
+        if (piece.bend == 0) continue;
+        const Vec2 a = piece.begin - piece.centre, b = piece.end - piece.centre;
+        const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+        for (int k = 1; k < chords; ++k) line.emplace_back(piece.centre + Eigen::Rotation2Dd(turn * k / chords) * a);
+        sagitta = std::max(sagitta, (1 - std::cos(turn / (2 * chords))) / std::abs(piece.bend));
+    }
+    line.push_back(s.pieces.back().end);
+    const Vec2 q((p - s.origin).dot(s.u), (p - s.origin).dot(s.v));
+    const std::size_t n = line.size() - 1;
+    const auto left = [&](std::size_t k) {
+        const Vec2 t = (line[k + 1] - line[k]).normalized();
+        return Vec2(-t.y(), t.x());
+    };
+    double nearest = nowhere, side = 0;
+    bool past = false;
+    for (std::size_t k = 0; k < n; ++k) {
+        const Vec2 along = line[k + 1] - line[k];
+        const double share = along.dot(q - line[k]) / along.squaredNorm();
+        const Vec2 foot = line[k] + std::clamp(share, 0.0, 1.0) * along;
+        const double d = (q - foot).norm();
+        if (!(d < nearest)) continue;
+        nearest = d;
+        // at a corner both lines have a say
+        Vec2 out = left(k);
+        if (share <= 0 && (k > 0 || s.closed)) out += left(k > 0 ? k - 1 : n - 1);
+        if (share >= 1 && (k + 1 < n || s.closed)) out += left(k + 1 < n ? k + 1 : 0);
+        side = out.dot(q - foot);
+        past = !s.closed && ((k == 0 && share < 0) || (k + 1 == n && share > 1));
+    }
+    if (past) return nowhere;
+    return side >= 0 ? nearest : -std::max(0.0, nearest - sagitta);
+}
+
+/// Rotation that takes drawn positions to current ones best, and where the mean of the nodes goes.       [Kabsch 1976]
+Eigen::Isometry3d placement(const model::Model& model, const model::RigidBody& rigid, const Field& x) {
+    Vec3 drawn = Vec3::Zero(), now = Vec3::Zero();
+    const auto count = static_cast<double>(rigid.nodes.size());
+    for (const Index node : rigid.nodes) {
+        drawn += model.X[static_cast<std::size_t>(node)] / count;
+        now += x[static_cast<std::size_t>(node)] / count;
+    }
+    Mat3 A = Mat3::Zero();
+    for (const Index node : rigid.nodes)
+        A += (x[static_cast<std::size_t>(node)] - now) * (model.X[static_cast<std::size_t>(node)] - drawn).transpose();
+    const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 U = svd.matrixU();
+    if (U.determinant() * svd.matrixV().determinant() < 0) U.col(2) *= -1;
+    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+    place.linear() = U * svd.matrixV().transpose();
+    place.translation() = now - place.linear() * drawn;
+    return place;
+}
+
+} // namespace
+
+double audited_distance(const contact::ExactShape& shape, const Vec3& point) {
+    return std::visit([&](const auto& one) { return distance(one, point); }, shape);
+}
+
+ExactAudit::ExactAudit(const model::Model& model, const std::vector<std::vector<mesh::Facet>>& outer) : model_(model) {
+    for (const model::RigidBody& rigid : model.rigid) {
+        if (!rigid.shape) continue;
+        std::map<Index, std::set<Index>> slaves; // body -> nodes
+        for (const auto& pair : model.pairs)
+            if (model::body_index(model, pair->master_nodes().front()) == rigid.body)
+                slaves[model::body_index(model, pair->slaves().node.front())].insert(pair->slaves().node.begin(),
+                                                                                     pair->slaves().node.end());
+        Host host{&rigid, {}};
+        for (auto& [body, nodes] : slaves) {
+            Guest& guest = host.guests.emplace_back();
+            guest.body = body;
+            double sum = 0;
+            for (const mesh::Facet& facet : outer[static_cast<std::size_t>(body)]) {
+                sum += std::sqrt(mesh::facet_area_vector(facet, model.X).norm());
+                for (const Index node : facet)
+                    if (audited_distance(*rigid.shape, model.X[static_cast<std::size_t>(node)]) >= 0)
+                        nodes.insert(node);
+            }
+            guest.nodes.assign(nodes.begin(), nodes.end());
+            guest.length = sum / static_cast<double>(outer[static_cast<std::size_t>(body)].size());
+        }
+        if (!host.guests.empty()) hosts_.push_back(std::move(host));
+    }
+}
+
+void ExactAudit::examine(const Field& x, contact::AuditResult& result) const {
+    std::map<Index, double> inside(result.nodes.begin(), result.nodes.end());
+    for (const Host& host : hosts_) {
+        const Eigen::Isometry3d back = placement(model_, *host.rigid, x).inverse();
+        for (const Guest& guest : host.guests) {
+            contact::Intrusion deepest;
+            for (const Index node : guest.nodes) {
+                const Vec3& at = x[static_cast<std::size_t>(node)];
+                const double depth = -audited_distance(*host.rigid->shape, back * at);
+                if (!(depth > 0)) continue;
+                double& excess = inside[node];
+                excess = std::max(excess, depth);
+                if (depth <= deepest.depth) continue;
+                deepest = {guest.body, host.rigid->body, node, false, false, at, depth, depth, guest.length};
+            }
+            if (deepest.body >= 0) result.intrusions.push_back(deepest);
+        }
+    }
+    result.nodes.assign(inside.begin(), inside.end());
+    std::ranges::sort(result.intrusions, {}, [](const contact::Intrusion& one) {
+        return std::pair(std::min(one.body, one.other), std::max(one.body, one.other));
+    });
+}
+
+} // namespace osculate::time

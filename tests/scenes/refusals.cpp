@@ -129,6 +129,22 @@ INSTANTIATE_TEST_SUITE_P(
                  "head, found 'haed' (did you mean 'head'?)",
                  "22:14: stages.push.moment.top: expected the name of a body or coupling: tool, soft, grip, soft, "
                  "head, found 'top'"}},
+        Refusal{"rigid_surfaces",
+                {"8:11: bodies.both.mesh: expected a mesh, or a rigid_surface, found both",
+                 "10:22: bodies.both.rigid.density: expected mass and inertia: a rigid_surface has no volume, found a "
+                 "density",
+                 "12:20: bodies.loose.rigid_surface: expected rigid.mass and rigid.inertia, or `fix` or `motion` for "
+                 "rz, in dynamic stage 'fall', found neither",
+                 "15:5: bodies.bare: expected a mesh, or a rigid_surface, found neither",
+                 "15:12: bodies.bare.rigid: expected a density or a mass, which dynamic stage 'fall' needs, found none",
+                 "18:16: sets.part.body: expected a body with a mesh: contact.<pair>.master.rigid_surface names the "
+                 "whole surface of 'loose', found a body with a rigid_surface",
+                 "20:18: contact.touch.slave: expected another set than the master's, found 'under' for both",
+                 "20:61: contact.touch.master.set: expected set or rigid_surface, found both",
+                 "20:85: contact.touch.discretisation: expected node: gaps to a rigid surface are exact at the slave "
+                 "nodes, and its pressure needs no averaging, found another one",
+                 "21:49: contact.wrong.master.rigid_surface: expected a body with a rigid_surface, found 'soft', which "
+                 "has a mesh: name a set of it as master.set"}},
         Refusal{"rigid_without_mass",
                 {"6:12: bodies.tool.rigid: expected a density or a mass, which dynamic stage 'fall' needs, found "
                  "none"}}),

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -75,6 +76,35 @@ double distance(const contact::ExtrudedShape& s, const Vec3& p) {
     return side >= 0 ? nearest : -std::max(0.0, nearest - sagitta);
 }
 
+/// Largest curvature with which a shape bulges out of its solid near a point, 1/m; corners have an infinite one.
+double bulge(const contact::PlaneShape&, const Vec3&) {
+    return 0;
+}
+double bulge(const contact::CylinderShape& s, const Vec3&) {
+    return s.inside ? 0 : 1 / s.radius;
+}
+double bulge(const contact::SphereShape& s, const Vec3&) {
+    return s.inside ? 0 : 1 / s.radius;
+}
+double bulge(const contact::ConeShape& s, const Vec3& p) {
+    return s.inside ? 0 : std::cos(s.half_angle) / (p - s.apex).cross(s.axis).norm();
+}
+double bulge(const contact::ExtrudedShape& s, const Vec3&) {
+    double most = 0;
+    for (const contact::ProfilePiece& piece : s.pieces) most = std::max(most, -piece.bend);
+    for (std::size_t k = s.closed ? 0 : 1; k < s.pieces.size(); ++k) {
+        const auto end = [](const contact::ProfilePiece& piece, bool last) {
+            if (piece.bend == 0) return Vec2((piece.end - piece.begin).normalized());
+            const Vec2 arm = (last ? piece.end : piece.begin) - piece.centre;
+            return Vec2(Vec2(-arm.y(), arm.x()) * piece.bend);
+        };
+        const Vec2 a = end(s.pieces[k > 0 ? k - 1 : s.pieces.size() - 1], true), b = end(s.pieces[k], false);
+        constexpr double smooth = 1e-9; // rad
+        if (a.x() * b.y() - a.y() * b.x() < -smooth) most = nowhere;
+    }
+    return most;
+}
+
 /// Rotation that takes drawn positions to current ones best, and where the mean of the nodes goes.       [Kabsch 1976]
 Eigen::Isometry3d placement(const model::Model& model, const model::RigidBody& rigid, const Field& x) {
     Vec3 drawn = Vec3::Zero(), now = Vec3::Zero();
@@ -121,9 +151,41 @@ ExactAudit::ExactAudit(const model::Model& model, const std::vector<std::vector<
                         nodes.insert(node);
             }
             guest.nodes.assign(nodes.begin(), nodes.end());
+            for (const mesh::Facet& facet : outer[static_cast<std::size_t>(body)])
+                if (std::ranges::all_of(facet, [&, &all = nodes](Index node) { return all.contains(node); }))
+                    guest.facets.push_back(facet);
             guest.length = sum / static_cast<double>(outer[static_cast<std::size_t>(body)].size());
         }
         if (!host.guests.empty()) hosts_.push_back(std::move(host));
+    }
+}
+
+void ExactAudit::cut_facets(const contact::ExactShape& shape, const Guest& guest, const Field& x,
+                            const Eigen::Isometry3d& back, contact::Intrusion& deepest) const {
+    constexpr int parts = 6;                                  // of an edge
+    constexpr double most_turn = 40 * std::numbers::pi / 180; // over a facet
+    for (const mesh::Facet& facet : guest.facets) {
+        std::array<Vec3, 4> corner;
+        for (std::size_t c = 0; c < 4; ++c) // a triangle has its last corner twice
+            corner[c] =
+                back * x[static_cast<std::size_t>(facet.nodes[std::min(c, static_cast<std::size_t>(facet.count) - 1)])];
+        const double across = std::max((corner[2] - corner[0]).norm(), (corner[3] - corner[1]).norm());
+        const Vec3 middle = (corner[0] + corner[1] + corner[2] + corner[3]) / 4;
+        if (audited_distance(shape, middle) > across) continue;
+        const double curvature = std::visit([&](const auto& one) { return bulge(one, middle); }, shape);
+        // what is finer than the facet is judged by its own size
+        const double length = curvature * guest.length > 1 && std::isfinite(curvature) ? 1 / curvature : guest.length;
+        const double sagitta = across / 8 * std::min(across * curvature, most_turn);
+        for (int i = 0; i <= parts; ++i)
+            for (int j = 0; j <= parts; ++j) {
+                const double a = static_cast<double>(i) / parts, b = static_cast<double>(j) / parts;
+                const Vec3 at =
+                    (1 - b) * ((1 - a) * corner[0] + a * corner[1]) + b * ((1 - a) * corner[3] + a * corner[2]);
+                const double depth = -audited_distance(shape, at), excess = depth - sagitta;
+                if (!(excess * deepest.length > deepest.excess * length)) continue;
+                const Vec3 place = back.inverse() * at;
+                deepest = {guest.body, deepest.other, facet.nodes[0], false, true, place, depth, excess, length};
+            }
     }
 }
 
@@ -142,6 +204,8 @@ void ExactAudit::examine(const Field& x, contact::AuditResult& result) const {
                 if (depth <= deepest.depth) continue;
                 deepest = {guest.body, host.rigid->body, node, false, false, at, depth, depth, guest.length};
             }
+            deepest.other = host.rigid->body;
+            cut_facets(*host.rigid->shape, guest, x, back, deepest);
             if (deepest.body >= 0) result.intrusions.push_back(deepest);
         }
     }

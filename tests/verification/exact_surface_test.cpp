@@ -330,5 +330,33 @@ stages:
     EXPECT_LT(error[1], error[0]);
 }
 
+/// A ball much smaller than the facets, pressed between their nodes: no node meets it, and the run must not go on.
+TEST(ExactTool, ThatSlipsBetweenNodesIsSeenByTheAudit) {
+    const std::string text = R"(
+bodies:
+  layer:
+    mesh: {block: {origin: [-0.5, -0.5, -0.2], size: [1, 1, 0.2], divisions: [5, 5, 1]}}
+    material: {neo_hookean: {E: 1 MPa, nu: 0.3}}
+  pin:
+    rigid_surface: {sphere: {centre: [0, 0, 0.051], radius: 0.05}}
+    rigid: {fix: [x, y, rx, ry, rz]}
+sets:
+  bed: {body: layer, surface: z_min}
+  top: {body: layer, surface: z_max}
+supports:
+  bed: {fix: [x, y, z]}
+contact:
+  touch: {slave: top, master: {rigid_surface: pin}}
+stages:
+  press: {steps: 10, motion: {pin: {z: -0.15}}}
+)";
+    try {
+        (void)run(text);
+        FAIL() << "the pin goes through the layer";
+    } catch (const std::exception& error) {
+        EXPECT_NE(std::string(error.what()).find("deep in body 'pin'"), std::string::npos) << error.what();
+    }
+}
+
 } // namespace
 } // namespace osculate

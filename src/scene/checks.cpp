@@ -89,8 +89,6 @@ public:
                    master = written({"master", "set"}) || exact;
         if (exact && written({"master", "set"}))
             fault({"contact", name, "master", "set"}, "set or rigid_surface", "both");
-        if (exact && written({"master", "surface"}))
-            fault({"contact", name, "master", "surface"}, "none: a rigid surface is exact", "one");
         if (exact && pair.discretisation && *pair.discretisation != Discretisation::node)
             fault({"contact", name, "discretisation"},
                   "node: gaps to a rigid surface are exact at the slave nodes, and its pressure needs no averaging",

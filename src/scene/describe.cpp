@@ -64,6 +64,7 @@ void describe(Visitor& v, MasterSpec& master) {
             .meaning = "Body with a rigid_surface, whose exact surface is the master, in place of set.",
             .names = Names::body},
            master.rigid_surface);
+    if (!master.rigid_surface.empty()) return; // it is exact
     v.group({.name = "surface",
              .meaning = "Geometry of the master; contact.<pair>.surface is short for it.",
              .bare_word = true},

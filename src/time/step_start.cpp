@@ -316,6 +316,13 @@ double reference_force(const RunContext& context, const Stage& stage, const line
             if (constraints.constraint(i, k) != nullptr) moved(k) += part * (load.prescribed[i](k) - now(k));
         u[i] = constraints.to_global(i, moved);
     }
+    for (std::size_t k = 0; k < model.rigid.size(); ++k) { // coupled nodes go with their reference points
+        const model::RigidBody& body = model.rigid[k];
+        if (!body.coupling) continue;
+        const auto t = static_cast<std::size_t>(body.rotation());
+        const Vec3 theta = (u[t] - state.u[t]) / body.radius;
+        model::spread_displacements(model, body, model::turned(state.rigid[k].orientation, theta), u);
+    }
     const double driven = norm(model::internal_force(model, {state.u, u, state.material}, options.threads)) / part;
     return std::max(driven, round_off);
 }

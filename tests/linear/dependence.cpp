@@ -1,5 +1,7 @@
 #include "osculate/linear/dependence.hpp"
 
+#include "osculate/linear/folded_matrix.hpp"
+
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
@@ -86,6 +88,29 @@ TEST(FoldedContact, IsTheContactBetweenSpreadingAndFolding) {
     expect_same(7, {0, 4, 1}, 2);       // whose carrier is a master, too
     expect_same(6, {8, 0, 2}, 2);       // both
     expect_same(3, {0, 1}, 2);          // neither
+}
+
+/// Of nodes that carry elements together with others: the folded matrix does what spreading, multiplying and folding do.
+TEST(FoldedMatrix, IsTheMatrixBetweenSpreadMotionsAndFoldedForces) {
+    const Dependence dependence = some();
+    BlockMatrix A(9, {{0, 1, 6, 7}, {1, 2, 6, 8}, {2, 3}, {4, 5}});
+    for (Index k = 0; k < A.row_end(8); ++k) A.block(k) = random(3, 3);
+    EXPECT_TRUE(needs_folding(dependence, A));
+    EXPECT_FALSE(needs_folding(dependence, BlockMatrix(9, {{0, 1}, {4, 5}, {6}, {7}, {8}})));
+    FoldedMatrix folded(dependence, A);
+    for (int again = 0; again < 2; ++again) {
+        folded.fold(A);
+        Field u = random_field(), f(9), direct(9);
+        dependence.move(u);
+        A.multiply_add(u, f, 1);
+        dependence.fold(f);
+        folded.matrix().multiply_add(u, direct, 1);
+        for (std::size_t i = 0; i < f.size(); ++i) EXPECT_LT((f[i] - direct[i]).norm(), 1e-14) << i;
+    }
+    for (const Index node : {6, 7, 8}) {
+        EXPECT_EQ(folded.matrix().row_end(node) - folded.matrix().row_begin(node), 1);
+        EXPECT_TRUE(folded.matrix().block(folded.matrix().row_begin(node)).isZero(0));
+    }
 }
 
 } // namespace

@@ -266,8 +266,8 @@ stages:
 )";
 
 struct Part final : time::StepObserver {
-    Part() {
-        const scene::Scene scene = scene::read_scene(support::scene_file("swung.yaml", swung));
+    explicit Part(std::string path = support::scene_file("swung.yaml", swung)) : file(std::move(path)) {
+        const scene::Scene scene = scene::read_scene(file);
         plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     }
     Part& go(const std::string* from = nullptr) {
@@ -286,11 +286,23 @@ struct Part final : time::StepObserver {
         file.run = checkpoint();
         files.push_back(output::encode(file));
     }
+    std::string file; ///< of the scene
     Timings timings;
     app::Plan plan;
     support::Diary diary;
     std::vector<std::string> files;
 };
+
+TEST(ExactSurfaces, AndCouplingsGoOnFromACheckpointToTheBit) {
+    const std::string scene = support::source_tree() + "/tests/scenes/exact_tools.yaml";
+    const Part straight = std::move(Part(scene).go());
+    ASSERT_GE(straight.files.size(), 1U);
+    for (const std::string& checkpoint : straight.files) {
+        Part rest(scene);
+        rest.go(&checkpoint);
+        support::expect_same_end(straight.diary, rest.diary);
+    }
+}
 
 TEST(Coupling, GoesOnFromACheckpointToTheBit) {
     const Part straight = std::move(Part().go());

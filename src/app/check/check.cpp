@@ -99,7 +99,7 @@ Check examine(const LoadedScene& loaded, int threads) {
         const scene::Pair* const spec = scene::find(loaded.scene.contact, pair.name());
         if (spec == nullptr) continue; // the program's own choice
         const Pairing found = pairing(evaluation, plan.model.X);
-        p.advice = advice(found);
+        if (!evaluation.pair().master()->exact()) p.advice = advice(found);
         const double ratio = stiffness_ratio(loaded, pair);
         advise_on_stiffness(ratio, found, p);
         p.facing = facing(evaluation, plan.model.X);

@@ -64,9 +64,9 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::C
                                                             std::move(slaves), threads);
 }
 
-void EquilibriumTangent::begin(double dt, bool changed) {
+void EquilibriumTangent::begin(double mass_factor, bool changed) {
     const ScopedTimer timer(timings_, Part::assembly);
-    if (condensed_) condensed_->begin(dt, changed);
+    if (condensed_) condensed_->begin(mass_factor, changed);
     if (!changed) return;
     if (matrix_) matrix_->stiffness_changed();
     if (preconditioner_) preconditioner_->stiffness_changed();

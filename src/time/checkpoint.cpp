@@ -65,7 +65,7 @@ std::string misfit(const equilibrium::EquilibriumMemory& memory, const model::Mo
     if (!memory.laws) return {};
     const linear::ContactLaws& laws = *memory.laws;
     const std::size_t count = laws.terms.size();
-    if (!std::isfinite(laws.dt) || !within(laws.couplings, static_cast<Index>(slaves.size())) ||
+    if (!std::isfinite(laws.mass_factor) || !within(laws.couplings, static_cast<Index>(slaves.size())) ||
         laws.couplings.size() > count || laws.B.size() != count || laws.D.size() != count || !finite(laws.B) ||
         !finite(laws.D))
         return "contact laws";

@@ -29,7 +29,7 @@ struct IterationRecord {
 class Equilibrium final : public solve::NonlinearProblem {
 public:
     /// @param pairs     in force during its attempts
-    /// @param dynamics  null in statics; must outlive this object
+    /// @param dynamics  null in statics; must outlive this object; its integrator may change between attempts
     Equilibrium(const model::Model& model, model::ContactPairs pairs, const linear::Constraints& constraints,
                 const Dynamics* dynamics, const TangentChoice& choice, Timings& timings, int threads,
                 bool follower_pressure = false);

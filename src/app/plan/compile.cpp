@@ -5,6 +5,7 @@
 #include "app/plan/plan_items.hpp"
 #include "app/plan/planned_probe.hpp"
 #include "app/plan/settle_pairs.hpp"
+#include "app/plan/settling.hpp"
 #include "app/plan/supports.hpp"
 #include "app/report/plots.hpp"
 #include "osculate/core/error.hpp"
@@ -50,6 +51,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft); // nothing below can be trusted on a broken mesh
     add_sets(draft);
     throw_faults(draft);
+    settle_dynamics(draft.scene);
     settle_pairs(draft);
     add_stages(draft);
     add_pairs(draft);
@@ -82,6 +84,7 @@ Plan compile(scene::Scene& scene, int threads, Timings& timings) {
     plan.mesh_notes = std::move(notes);
     scene.contact = plan.contact;
     scene.general = plan.general;
+    settle_dynamics(scene);
     return plan;
 }
 

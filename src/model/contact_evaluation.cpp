@@ -96,7 +96,13 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
             if (tracking_.facet[j] < 0 || !contact::is_closed(history.status[j]))
                 tracking_.facet[j] = search_.global(now_.slaves[j], vertices_, reach, choice(j)).facet;
     });
+    facet_start_ = tracking_.facet;
     discretisation_->begin(positions(), tracking_, threads);
+}
+
+void ContactEvaluation::forget_path() {
+    tracking_.facet = facet_start_;
+    std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
 }
 
 void ContactEvaluation::place_facets(const std::vector<Vec3>& x) {

@@ -127,6 +127,7 @@ StepAttempt StageRun::prepare() {
     ladder.reference_force = reference;
     ladder.round_off = context_.round_off_force();
     ladder.farthest = context_.characteristic_length + largest_component(state.u);
+    ladder.settles = stage_.limits.inelastic_impacts;
     ladder.last_chance = cannot_be_cut(stage_.limits, attempt.dt, repeats_);
     if (context_.model.nonlinear) {
         ladder.predicted = u;

@@ -58,6 +58,10 @@ public:
     [[nodiscard]] model::ContactEvaluations& evaluations() { return evaluations_; }
     /// Smallest gap, m; infinite if no slave node faces a master.
     [[nodiscard]] double least_gap() const;
+    /// See model::ContactEvaluation::forget_path().
+    void forget_paths() {
+        for (model::ContactEvaluation& evaluation : evaluations_) evaluation.forget_path();
+    }
     /// Writes the contact forces of a state into z.
     void pack(const std::vector<model::ContactHistory>& contact, VectorRef z) const;
     /// At the last linearise(): slave nodes in contact with a master, by coupling; and, for the others, derivatives of

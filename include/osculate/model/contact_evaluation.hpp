@@ -29,6 +29,8 @@ public:
     /// @param tails  (nodes) rounding errors of x, the digits that x lacks, m; empty: none
     void begin_step(const std::vector<Vec3>& x, const ContactHistory& history, Timings& timings, int threads,
                     const std::vector<Vec3>& tails = {});
+    /// Facets as at the start of the step again, none latched: what a solve that failed went through does not count.
+    void forget_path();
     /// Evaluates every slave node at positions x, starting each search from the node's last facet.
     void evaluate(const std::vector<Vec3>& x, Timings& timings, int threads, const std::vector<Vec3>& tails = {});
 
@@ -136,6 +138,7 @@ private:
     std::vector<double> inertia_; ///< (slaves) N/m
     std::vector<char> held_;      ///< (slaves) in the current stage
     std::vector<Vec3> lambda_start_;
+    std::vector<Index> facet_start_;
     Places start_, now_;                        ///< positions, m
     Places tails_start_, tails_;                ///< their rounding errors, m; empty: none
     std::vector<Vec3> vertices_, vertex_tails_; ///< current, of the master surface

@@ -55,13 +55,13 @@ TEST(Settling, AStackOfSteelBlocksComesToRestUnderItsWeights) {
     const model::State& end = diary.states.back();
     EXPECT_DOUBLE_EQ(end.time, 0.1);
     // every joint carries the blocks above it
-    ASSERT_EQ(end.contact.size(), static_cast<std::size_t>(blocks));
     std::vector<double> carried;
     for (const model::ContactHistory& pair : end.contact) {
         double sum = 0;
         for (const Vec3& lambda : pair.lambda) sum += std::abs(lambda.z());
-        carried.push_back(sum);
+        if (sum > 0) carried.push_back(sum);
     }
+    ASSERT_EQ(carried.size(), static_cast<std::size_t>(blocks));
     std::ranges::sort(carried);
     const double weight = density * side * side * side * gravity;
     constexpr double allowed = 1e-4;
@@ -83,7 +83,8 @@ TEST(Settling, AllEnergyOfTheFallIsDampedAndTheLedgerCloses) {
     const time::Ledger& end = diary.ledgers.back();
     const double fallen = density * side * side * side * gravity * gap * (1 + 2);
     EXPECT_NEAR(end.external, fallen, 1e-3 * fallen) << "and a little of the floor's strain";
-    EXPECT_NEAR(end.damping, fallen, 2e-3 * fallen);
+    EXPECT_NEAR(end.damping + end.algorithmic, fallen, 1e-3 * fallen);
+    EXPECT_LT(end.algorithmic, 0.01 * fallen) << "where gravity sets in";
     EXPECT_LT(std::abs(end.contact), 1e-6 * fallen);
     const double change = end.kinetic + end.strain; // both are 0 at the start
     EXPECT_NEAR(change, end.external + end.contact - end.friction - end.damping - end.algorithmic + end.balance,

@@ -246,6 +246,8 @@ void each_value(Pair& pair, const Visit& visit) requires std::is_same_v<std::rem
     visit("master", pair.master);
     visit("nodes", pair.nodes);
     visit("facets", pair.facets);
+    visit("yielding", pair.yielding);
+    visit("edges", pair.edges);
 }
 
 template <class Run, class Visit>

@@ -120,6 +120,13 @@ private:
     void place_facets(const std::vector<Vec3>& x);
     /// Whether slave j may touch a facet in this attempt, see SlaveNodes::around and OwnSurface.
     [[nodiscard]] bool may_touch(Index j, Index facet) const;
+    /// See SlaveNodes::yields.
+    [[nodiscard]] bool yields(Index j) const {
+        const SlaveNodes& slaves = pair_->slaves();
+        return slaves.edges || (!slaves.yields.empty() && slaves.yields[static_cast<std::size_t>(j)] != 0);
+    }
+    /// Whether a node that yields is where slaves of the pair in the other direction have the contact.
+    [[nodiscard]] bool is_left_to_slaves(Index j) const;
     /// Whether the closest facet, of those that may be touched, is not below the node but beside it.
     [[nodiscard]] bool looks_past(const contact::FacetHit& hit) const;
     /// Facets to look for slave j on.

@@ -150,21 +150,6 @@ private:
                               : at.slave_tails[static_cast<std::size_t>(vertex - count)];
     }
 
-    [[nodiscard]] SharpEdge slave_edge(const EdgesThatMeet& edge, const std::array<Vec3, 4>& at,
-                                       const PairPositions& positions) const {
-        std::array<Vec3, 2> centres{Vec3::Zero(), Vec3::Zero()};
-        for (std::size_t k = 0; k < 2; ++k) {
-            int count = 0;
-            for (const Index number : edge.wings[k])
-                if (number >= 0) {
-                    centres[k] += positions.slaves[static_cast<std::size_t>(number)];
-                    ++count;
-                }
-            centres[k] /= count;
-        }
-        return sharp_edge({at[0], at[1]}, centres);
-    }
-
     /// Whether item j has the crossing and not the one from the other end.
     [[nodiscard]] bool begins_here(Index j, double s, const FacetTracking& tracking) const {
         const Index reverse = edges_[static_cast<std::size_t>(j)].reverse;
@@ -185,7 +170,10 @@ private:
             crossing.across *= -1;
         }
         if (!(crossing.sine > least_sine) || !begins_here(j, crossing.s, tracking)) return {};
-        const SharpEdge own = slave_edge(edge, at, positions),
+        const SharpEdge own = slave_edge(j, edge,
+                                         [&](Index number) -> const Vec3& {
+                                             return positions.slaves[static_cast<std::size_t>(number)];
+                                         }),
                         other = sharp_edge(surface_, edge.half_edge, positions.vertices);
         const auto leaves = [&](double side) { return out_of_cones(side * crossing.across, own, other); };
         const double side = leaves(1) < leaves(-1) ? 1 : -1;

@@ -63,17 +63,7 @@ std::pair<contact::SharpEdge, contact::SharpEdge> ContactPair::edges(Index j, co
                                                                      const std::vector<Vec3>& vertices) const {
     const contact::EdgesThatMeet& edge = slaves_.edges->meet[static_cast<std::size_t>(j)];
     const Index first = surface().vertex_count(); // of the numbers of the slave's nodes
-    std::array<Vec3, 2> centres{Vec3::Zero(), Vec3::Zero()};
-    for (std::size_t k = 0; k < 2; ++k) {
-        int count = 0;
-        for (const Index number : edge.wings[k])
-            if (number >= 0) {
-                centres[k] += x[node(first + number)];
-                ++count;
-            }
-        centres[k] /= count;
-    }
-    return {contact::sharp_edge({x[node(first + j)], x[node(first + edge.end)]}, centres),
+    return {contact::slave_edge(j, edge, [&](Index number) -> const Vec3& { return x[node(first + number)]; }),
             contact::sharp_edge(surface(), edge.half_edge, vertices)};
 }
 

@@ -47,6 +47,13 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
       node_facets_(X.size()), along_(X.size()), left_out_(surfaces_.size() * surfaces_.size(), 0) {
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         first_.push_back(static_cast<Index>(facets_.size()));
+        Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+        for (const mesh::Facet& facet : surfaces_[s].facets)
+            for (const Index node : facet) {
+                low = low.cwiseMin(X[node]);
+                high = high.cwiseMax(X[node]);
+            }
+        diagonal_.push_back((high - low).norm());
         for (const mesh::Facet& facet : surfaces_[s].facets) {
             const auto number = static_cast<Index>(facets_.size());
             facets_.push_back(facet);
@@ -125,14 +132,8 @@ bool GeneralContact::is_slave(Index f, Index g) const {
 ContactScope GeneralContact::scope_at(const Field& x, double expected) const {
     ContactScope scope{x, {}, {}};
     for (const OuterSurface& surface : surfaces_) {
-        Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
-        for (const mesh::Facet& facet : surface.facets)
-            for (const Index node : facet) {
-                low = low.cwiseMin(X_[node]);
-                high = high.cwiseMax(X_[node]);
-            }
-        const double size = surface.side->surface().mean_facet_size();
-        scope.margin.push_back(std::max({sizes * size, diagonals * (high - low).norm(), 2 * expected}));
+        const double size = surface.side->surface().mean_facet_size(), diagonal = diagonal_[scope.margin.size()];
+        scope.margin.push_back(std::max({sizes * size, diagonals * diagonal, 2 * expected}));
         scope.own.push_back(std::max(own_sizes * size, 2 * expected));
     }
     return scope;
@@ -219,9 +220,9 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
         const Vec3& n = normal[g];
         double facets = 0;
         for (const Index f : node_facets_[node]) facets += normal[f].dot(n);
-        const Index own = node_facets_[node][0];
-        const double moved = data_[own].surface == data_[g].surface ? 0 : margin[own] + margin[g];
-        return facets < 0 && n.dot(x[node] - centre[g]) > -behind * std::min(data_[own].size, data_[g].size) - moved &&
+        const Index its = node_facets_[node][0];
+        const double moved = data_[its].surface == data_[g].surface ? 0 : margin[its] + margin[g];
+        return facets < 0 && n.dot(x[node] - centre[g]) > -behind * std::min(data_[its].size, data_[g].size) - moved &&
                !is_treated(std::array{node}, facets_[g]) && std::ranges::all_of(along_[node], [&](Index end) {
                    return (x[end] - x[node]).normalized().dot(n) >= pointing;
                });

@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 namespace osculate::model {
 
 namespace {
-/// By how much bodies may turn, as a sine, before pairs are looked for anew.
-constexpr double turn = 0.5;
+/// Angle by which a body may turn before pairs are looked for anew, rad: its nodes move no farther than the margin then.
+double turn(double margin, double diagonal) {
+    return 2 * std::asin(std::min(1.0, margin / diagonal));
+}
 } // namespace
 
 void GeneralContact::find_sharp_edges() {
@@ -48,7 +51,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
     std::vector<mesh::Facet> ends;
     std::vector<double> margin;
     std::vector<Vec3> x;
-    for (const SharpEdge& edge : sharp_edges_) {
+    for (const FeatureEdge& edge : sharp_edges_) {
         const auto s = static_cast<std::size_t>(edge.surface);
         at.push_back(contact::sharp_edge(surfaces_[s].side->surface(), edge.half_edge, vertices[s]));
         mesh::Facet& both = ends.emplace_back();
@@ -60,19 +63,21 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         margin.push_back(scope.margin[s]);
     }
     const auto may_cross = [&](Index e, Index f) {
-        const SharpEdge &one = sharp_edges_[static_cast<std::size_t>(e)],
-                        &other = sharp_edges_[static_cast<std::size_t>(f)];
+        const FeatureEdge &one = sharp_edges_[static_cast<std::size_t>(e)],
+                          &other = sharp_edges_[static_cast<std::size_t>(f)];
         if (one.surface == other.surface || !(one.own || other.own)) return false;
         const auto a = static_cast<std::size_t>(one.surface), b = static_cast<std::size_t>(other.surface);
         if (left_out_[a * surfaces_.size() + b] != 0) return false;
         const contact::SharpEdge &p = at[static_cast<std::size_t>(e)], &q = at[static_cast<std::size_t>(f)];
         const contact::LineCrossing crossing = contact::cross_lines(p.end[0], p.end[1], q.end[0], q.end[1]);
         if (!(crossing.sine > contact::least_sine)) return false;
-        return std::min(contact::out_of_cones(crossing.across, p, q), contact::out_of_cones(-crossing.across, p, q)) <
-               turn;
+        const double turned = turn(scope.margin[a], diagonal_[a]) + turn(scope.margin[b], diagonal_[b]),
+                     allowed = std::sin(std::min(0.5 * std::numbers::pi, turned + contact::cone_tolerance));
+        return std::min(contact::out_of_cones(crossing.across, p, q), contact::out_of_cones(-crossing.across, p, q)) <=
+               allowed;
     };
     std::map<std::pair<Index, Index>, std::vector<std::array<Index, 2>>> found;
-    const auto add = [&](const SharpEdge& slave, const SharpEdge& master) {
+    const auto add = [&](const FeatureEdge& slave, const FeatureEdge& master) {
         if (!slave.own) return;
         const mesh::HalfEdgeSurface &own = surfaces_[static_cast<std::size_t>(slave.surface)].side->surface(),
                                     &other = surfaces_[static_cast<std::size_t>(master.surface)].side->surface();
@@ -87,12 +92,12 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         list.push_back({own.half_edges()[static_cast<std::size_t>(slave.half_edge)].twin, master.half_edge});
     };
     for (const auto& [e, f] : contact::near_facets(ends, margin, x, may_cross)) {
-        const SharpEdge &one = sharp_edges_[static_cast<std::size_t>(e)],
-                        &other = sharp_edges_[static_cast<std::size_t>(f)];
+        const FeatureEdge &one = sharp_edges_[static_cast<std::size_t>(e)],
+                          &other = sharp_edges_[static_cast<std::size_t>(f)];
         const double E = surfaces_[static_cast<std::size_t>(one.surface)].E,
                      E_other = surfaces_[static_cast<std::size_t>(other.surface)].E;
         const bool first = E != E_other ? E < E_other : one.surface < other.surface; // the softer is the slave
-        first ? add(one, other) : add(other, one);
+        add(first ? one : other, first ? other : one);
     }
     for (auto& [sides, edges] : found) {
         std::ranges::sort(edges);

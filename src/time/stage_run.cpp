@@ -227,8 +227,8 @@ void StageRun::gather_dynamic_evidence(StepAttempt& attempt) {
     }
     if (std::isfinite(limits.velocity_error) && finite)
         evidence.velocity_error =
-            velocity_error(context_.model, *stage_.dynamics, *centres_, progress_.state, attempt.next, attempt.dt,
-                           std::max(energy_so_far(before), energy_so_far(after)));
+            velocity_error(context_.model, *stage_.dynamics, *centres_, equilibrium().contact(), progress_.state,
+                           attempt.next, attempt.dt, std::max(energy_so_far(before), energy_so_far(after)));
     if (std::isfinite(limits.closing_energy) && finite) evidence.closing_energy = closing_energy(before, after);
     // a node with mass loses the same however short the step in which it lands
     evidence.closes_anyhow = lost_per_second_ > 0 && evidence.closing_energy > lost_per_second_ * attempt.dt;

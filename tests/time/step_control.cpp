@@ -234,8 +234,10 @@ TEST(StepControl, AnImpactMayLoseEnergyButNotGainIt) {
         const bool objects = std::ranges::find(cut, what) != cut.end();
         const Decision decision = judge(evidence, settling(), 0.5, 0);
         EXPECT_EQ(decision.verdict, objects ? Verdict::retry : Verdict::accept) << what;
-        if (objects) EXPECT_EQ(decision.dt, 0.25) << what;
-        if (objects) EXPECT_TRUE(decision.impact) << what;
+        if (objects) {
+            EXPECT_EQ(decision.dt, 0.25) << what;
+            EXPECT_TRUE(decision.impact) << what;
+        }
     }
 }
 

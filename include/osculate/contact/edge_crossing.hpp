@@ -4,6 +4,7 @@
 #include "osculate/contact/discretisation.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -59,12 +60,24 @@ struct EdgesThatMeet {
     Index reverse = -1;                          ///< number of the item that begins where this one ends
 };
 
+/// The slave's edge of item j. @param at  position of a number, m
+template <class At> [[nodiscard]] SharpEdge slave_edge(Index j, const EdgesThatMeet& item, const At& at) {
+    std::array<Vec3, 2> centres{Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto count = std::ranges::count_if(item.wings[k], [](Index number) { return number >= 0; });
+        for (const Index number : item.wings[k])
+            if (number >= 0) centres[k] += at(number) / static_cast<double>(count);
+    }
+    return sharp_edge({at(j), at(item.end)}, centres);
+}
+
 /// With the crossing at s of the slave's edge a and t of the master's edge b, the unit normal n = +-(a1 - a0) x (b1 - b0)/|..|
 /// on the side where it is in the cone of normals of b and -n in that of a:
 ///     g = n . ((1 - s) a0 + s a1 - (1 - t) b0 - t b1)
 /// The force lambda is that on a0. So a1 carries s/(1 - s) of it, and b0, b1 carry -(1 - t)/(1 - s) and -t/(1 - s): all that
-/// ContactPoint asks for, with Phi = (-s, 1 - t, t)/(1 - s). An edge has one item from each end: that of the nearer end at
-/// the start of the attempt is in force, and remains so until the other is clearly nearer. The side and whether the cones meet are those of the start, too.
+/// ContactPoint asks for, with Phi = (-s, 1 - t, t)/(1 - s). What presses on the edge is lambda/(1 - s), and drifts are those of
+/// the crossing over 1 - s. An edge has one item from each end: that of the nearer end at the start of the attempt is in force,
+/// and remains so until the other is clearly nearer. The side and whether the cones meet are those of the start, too.
 /// @param surface  topology of the master; the discretisation refers to it
 [[nodiscard]] std::unique_ptr<Discretisation> make_edge_discretisation(const mesh::HalfEdgeSurface& surface,
                                                                        std::vector<EdgesThatMeet> edges);

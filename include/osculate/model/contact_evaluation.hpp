@@ -40,6 +40,11 @@ public:
     [[nodiscard]] double area(Index j) const { return discretisation_->loaded_area(j, pair_->slaves().area[j]); }
     /// Smallest gap of all slave nodes with a contact partner, m; infinite if none has one.
     [[nodiscard]] double least_gap() const;
+    /// What presses on the slave side over the force on slave j: 1, and for an edge, whose two ends share it, 1/(1 - s), see
+    /// contact::make_edge_discretisation(). Drifts are those of the contact point times this.
+    [[nodiscard]] double whole(Index j) const {
+        return pair_->slaves().edges && points_[j].found ? 1 - points_[j].weights(0) : 1;
+    }
     /// Closest point of slave j on its facet, whether or not there is contact.
     [[nodiscard]] const contact::FacetHit& hit(Index j) const { return tracking_.hits[j]; }
     /// Gap of slave node j itself, m, if the discretisation averages gaps and may overlook it, and it has no contact
@@ -145,7 +150,7 @@ private:
     std::vector<double> inertia_; ///< (slaves) N/m
     std::vector<char> held_;      ///< (slaves) in the current stage
     std::vector<Vec3> lambda_start_;
-    std::vector<Index> facet_start_;
+    std::vector<Index> facet_start_;            ///< (slaves) at the start of the step, see forget_path()
     Places start_, now_;                        ///< positions, m
     Places tails_start_, tails_;                ///< their rounding errors, m; empty: none
     std::vector<Vec3> vertices_, vertex_tails_; ///< current, of the master surface

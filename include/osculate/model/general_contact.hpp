@@ -86,7 +86,7 @@ public:
 
 private:
     /// A convex feature edge of a surface.
-    struct SharpEdge {
+    struct FeatureEdge {
         Index surface = -1, half_edge = -1;
         bool own = true; ///< not the image of one
     };
@@ -131,9 +131,10 @@ private:
     std::vector<std::vector<Index>> node_facets_,
         along_;                  ///< (nodes) facets that meet there; nodes at other ends of edges
     std::vector<char> left_out_; ///< (surfaces x surfaces)
-    std::vector<SharpEdge> sharp_edges_;
-    std::vector<char> sharp_;  ///< (nodes) on such an edge
-    std::vector<Index> first_; ///< (surfaces) number of the first facet
+    std::vector<FeatureEdge> sharp_edges_;
+    std::vector<char> sharp_;      ///< (nodes) on such an edge
+    std::vector<double> diagonal_; ///< (surfaces) of the box of the reference configuration, m
+    std::vector<Index> first_;     ///< (surfaces) number of the first facet
     /// (nodes) facets of the own surface that are near along it, numbers within the surface, ascending
     std::vector<std::vector<Index>> around_;
     std::vector<std::vector<char>>

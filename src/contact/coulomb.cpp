@@ -4,7 +4,7 @@ namespace osculate::contact {
 
 Status Coulomb::status(const ContactState& state) const {
     const Vec3& n = state.normal;
-    const double L_N = state.lambda.dot(n) - c_ * state.gap;
+    const double L_N = (1 - yield_) * state.lambda.dot(n) - c_ * state.gap;
     if (!(L_N > 0)) return Status::open;
     if (mu_ == 0) return Status::glide;
     const Vec3 v = trial(state);
@@ -15,7 +15,7 @@ Status Coulomb::status(const ContactState& state) const {
 ContactResidual Coulomb::residual(const ContactState& state, Status status) const {
     const Vec3& n = state.normal;
     const Vec3& lambda = state.lambda;
-    const double c = c_, g = state.gap;
+    const double c = c_, L = lambda.dot(n), q = yield_ * L + c * state.gap;
     ContactResidual R;
     if (status == Status::open) {
         R.value = lambda;
@@ -27,11 +27,11 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
     const auto by_normal_of_Tv = [&](const Vec3& v) -> Mat3 {
         return -n.dot(v) * Mat3::Identity() - n * v.transpose();
     };
-    // lambda - L_N n = T lambda + c g n
-    R.value = T * lambda + c * g * n;
-    R.by_lambda = T;
+    // lambda - L_N n = T lambda + q n,  q = yield L + c g
+    R.value = T * lambda + q * n;
+    R.by_lambda = T + yield_ * n * n.transpose();
     R.by_gap = c * n;
-    R.by_normal = by_normal_of_Tv(lambda) + c * g * Mat3::Identity();
+    R.by_normal = by_normal_of_Tv(lambda) + yield_ * n * lambda.transpose() + q * Mat3::Identity();
     if (status == Status::glide) return R;
 
     const Vec3 v = trial(state);
@@ -43,15 +43,15 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
         R.by_drift = spring_ * T;
         return R;
     }
-    const double L_N = lambda.dot(n) - c * g;
+    const double L_N = L - q;
     const double length = L_T.norm();
     if (!(length > 0)) return R; // no direction to slip in yet
     const Vec3 e = L_T / length;
     const Mat3 turn = mu_ * L_N / length * (Mat3::Identity() - e * e.transpose()); // mu L_N de/dL_T
     R.value -= mu_ * L_N * e;
-    R.by_lambda -= mu_ * e * n.transpose() + follow_ * turn * T;
+    R.by_lambda -= mu_ * (1 - yield_) * e * n.transpose() + follow_ * turn * T;
     R.by_gap += mu_ * c * e;
-    R.by_normal -= mu_ * e * lambda.transpose() + turn * by_normal_of_Tv(v);
+    R.by_normal -= mu_ * (1 - yield_) * e * lambda.transpose() + turn * by_normal_of_Tv(v);
     R.by_drift = spring_ * turn * T;
     return R;
 }

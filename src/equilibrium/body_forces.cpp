@@ -58,9 +58,10 @@ bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pres
     const Integrator& w = dynamics_->integrator;
     v_start_ = state.v;
     a_start_ = state.a;
-    const bool changed = dt != dt_;
+    const bool changed = dt != dt_ || w != rule_;
     if (changed) {
         dt_ = dt;
+        rule_ = w;
         kinematics_ = kinematics(w, dt);
         mean_ = fe::StepMean{1 - w.alpha_f, dynamics_->stiffness_damping / dt};
         const double inertia = (1 - w.alpha_m) * kinematics_.by_u_acceleration, rest = 1 - w.alpha_f,
@@ -193,7 +194,7 @@ double BodyForces::inertia(Index node) const {
     if (dynamics_ == nullptr) return 0;
     double sum = 0;
     for (Index k = mass().row_begin(node); k < mass().row_end(node); ++k) sum += mass().block(k)(0, 0);
-    return (1 - dynamics_->integrator.alpha_m) * kinematics_.by_u_acceleration * sum;
+    return mass_factor() * sum;
 }
 
 BodyWork BodyForces::work(const model::State& state) const {

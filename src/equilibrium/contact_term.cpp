@@ -183,9 +183,12 @@ bool ContactTerm::rows_within(const Iterate& at, const ConstVectorRef& F, double
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
             const contact::ContactPoint& point = evaluations_[p].point(j);
-            if (point.found && contact::is_closed(statuses_[p][j]) &&
-                !(std::abs(point.gap) <= no_gap * evaluations_[p].pair().surface().facet_size(point.facet)))
-                return false;
+            if (point.found && contact::is_closed(statuses_[p][j])) {
+                const double yielded = evaluations_[p].law(j).normal_compliance() * lambda_[p][j].dot(point.normal);
+                if (!(std::abs(point.gap + yielded) <=
+                      no_gap * evaluations_[p].pair().surface().facet_size(point.facet)))
+                    return false;
+            }
             const Vec3 sums = law_magnitudes(at, p, j);
             for (int k = 0; k < 3; ++k)
                 if (!(std::abs(F[unknowns_.contact_row(first_[p] + j, k)]) <= share * sums(k))) return false;

@@ -87,6 +87,7 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
             one.w(0) = state.gap;
             const contact::Coulomb law = evaluation.law(j);
             one.compliance = law.compliance();
+            one.normal_compliance = law.normal_compliance();
             one.anchor = one.axes.transpose() * law.anchor();
         }
     }

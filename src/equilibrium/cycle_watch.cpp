@@ -24,7 +24,7 @@ void CycleWatch::note(const Statuses& statuses, double residual) {
         recent_.push_back(statuses);
     }
     // in the slip branch Newton can also alternate with all statuses at rest
-    constexpr int patience = 8;
+    const int patience = impatient_ ? 4 : 8;
     idle_ = residual < 0.99 * best_ ? 0 : idle_ + 1;
     best_ = std::min(best_, residual);
     round_ = idle_ >= patience || comes_back(statuses, residual);
@@ -40,7 +40,7 @@ bool CycleWatch::comes_back(const Statuses& statuses, double residual) {
     auto& [times, least] = visits_.try_emplace(configuration, 0, residual).first->second;
     bool round = false;
     if (configuration != last_configuration_ && times > 0) {
-        round = times > 1 && residual > 0.5 * least;
+        round = (times > 1 || impatient_) && residual > 0.5 * least;
         ++times;
     } else if (times == 0) {
         times = 1;

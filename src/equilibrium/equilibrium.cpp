@@ -56,7 +56,7 @@ void Equilibrium::begin_attempt(const model::State& state, StepLoad load, double
     for (Term* term : terms_) {
         changed = term->begin(state, at_, load, dt) || changed;
         if (term != &bodies_) continue;
-        tangent_.begin(bodies().dynamic() ? dt : 0, changed);
+        tangent_.begin(bodies().mass_factor(), changed);
         if (changed) contact_.set_inertia(bodies());
     }
     prescribed_ = std::move(load.prescribed);

@@ -79,9 +79,9 @@ void EquilibriumTangent::fold_stiffness() {
     if (folded_) folded_->fold(bodies_.bodies().tangent());
 }
 
-void EquilibriumTangent::begin(double dt, bool changed) {
+void EquilibriumTangent::begin(double mass_factor, bool changed) {
     const ScopedTimer timer(timings_, Part::assembly);
-    if (condensed_) condensed_->begin(dt, changed);
+    if (condensed_) condensed_->begin(mass_factor, changed);
     if (!changed) return;
     fold_stiffness();
     if (matrix_) matrix_->stiffness_changed();

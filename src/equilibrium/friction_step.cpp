@@ -108,6 +108,7 @@ bool FrictionStep::advance(const Iterate& at, const Field& unbalanced, Vector& z
         const LinearisedContact& contact = contacts[static_cast<std::size_t>(j)];
         problem.mu(j) = contact.friction;
         problem.q.segment<3>(3 * j) = contact.w + relative(contact, du);
+        problem.W(3 * j, 3 * j) += contact.normal_compliance;
         for (int k = 1; k < 3; ++k) {
             problem.W(3 * j + k, 3 * j + k) += contact.compliance;
             problem.q(3 * j + k) -= contact.compliance * contact.anchor(k);

@@ -28,7 +28,10 @@ RigidTerm::RigidTerm(const model::Model& model, const linear::Constraints& const
 
 bool RigidTerm::begin(const model::State& state, const Iterate& at, const StepLoad&, double dt) {
     dt_ = dt;
-    if (dynamics_ != nullptr) kinematics_ = kinematics(dynamics_->integrator, dt);
+    if (dynamics_ != nullptr) {
+        kinematics_ = kinematics(dynamics_->integrator, dt);
+        alpha_f_ = dynamics_->integrator.alpha_f;
+    }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const RigidBody& body = model_.rigid[k];
         Moving& moving = bodies_[k];

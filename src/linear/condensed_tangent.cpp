@@ -134,8 +134,8 @@ void CondensedTangent::apply_compliance(const double* f, double* u) const {
 
 std::shared_ptr<CondensedTangent::SchurComplement> CondensedTangent::schur_complement() const {
     auto schur = std::make_shared<SchurComplement>();
-    auto& [dt, couplings, terms, B, D] = static_cast<ContactLaws&>(*schur);
-    dt = dt_;
+    auto& [mass_factor, couplings, terms, B, D] = static_cast<ContactLaws&>(*schur);
+    mass_factor = mass_factor_;
     for (const BearingContact& c : *contacts_) {
         couplings.push_back(c.law.coupling);
         auto& list = terms.emplace_back();

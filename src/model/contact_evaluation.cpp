@@ -13,13 +13,18 @@ namespace osculate::model {
 namespace {
 /// Stick stiffness of held slave nodes over c: elastic slip far below the elastic displacements of the bodies.
 constexpr double held_stick_stiffness = 100;
+/// Part of its own compliance by which a contact yields that may hold the same place as others.
+constexpr double shared_yield = 0.01;
 /// How deep a node may be behind such a facet at the start of an attempt, in sizes of it and in thicknesses of the body behind:
 /// a node that is deeper is on the body's other side.
 constexpr double behind_at_start = 0.3;
 /// A node that lies beside a facet rather than above it, by this sine, is above nothing; unless it is this near, in facet sizes.
 constexpr double beside = 0.8, at_edge = 0.05;
-/// Cosine between the normal and an edge of the slave that goes into the master at 45 degrees.
-constexpr double deepest_edge = -0.71;
+/// A node that yields leaves a place to the slaves there if it is this near to a vertex or a sharp edge of theirs, in facet
+/// sizes, and a face of its own lies on the facet, by this cosine.
+constexpr double end = 0.04, flat = 0.98;
+/// Cosine between the normal and an edge of the slave that goes into the master at 25 degrees.
+constexpr double deepest_edge = -0.42;
 } // namespace
 
 ContactEvaluation::ContactEvaluation(const ContactPair& pair)
@@ -49,6 +54,8 @@ void ContactEvaluation::gather(const std::vector<Vec3>& field, Places& into) con
     into.masters.clear();
     if (field.empty()) return;
     for (const Index node : pair_->slaves().node) into.slaves.push_back(field[node]);
+    if (const auto& edges = pair_->slaves().edges)
+        for (const Index node : edges->others) into.slaves.push_back(field[node]);
     for (const Index node : pair_->master_nodes()) into.masters.push_back(field[node]);
 }
 
@@ -87,6 +94,11 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
     lambda_start_ = history.lambda;
     std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
     const ScopedTimer timer(timings, Part::search);
+    if (pair_->slaves().edges) {
+        facet_start_ = tracking_.facet;
+        discretisation_->begin(positions(), tracking_, threads);
+        return;
+    }
     search_.build(vertices_);
     const std::optional<OwnSurface>& own = pair_->slaves().own;
     const double reach = own ? own->reach : std::numeric_limits<double>::max();
@@ -96,7 +108,13 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
             if (tracking_.facet[j] < 0 || !contact::is_closed(history.status[j]))
                 tracking_.facet[j] = search_.global(now_.slaves[j], vertices_, reach, choice(j)).facet;
     });
+    facet_start_ = tracking_.facet;
     discretisation_->begin(positions(), tracking_, threads);
+}
+
+void ContactEvaluation::forget_path() {
+    tracking_.facet = facet_start_;
+    std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
 }
 
 void ContactEvaluation::place_facets(const std::vector<Vec3>& x) {
@@ -122,6 +140,26 @@ void ContactEvaluation::place_facets(const std::vector<Vec3>& x) {
     }
 }
 
+bool ContactEvaluation::is_left_to_slaves(Index j) const {
+    const Index facet = tracking_.facet[j];
+    if (facet < 0) return false;
+    const Vec3& n = facets_.normal[static_cast<std::size_t>(facet)];
+    if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)], [&](const Vec3& m) { return m.dot(n) < -flat; }))
+        return false;
+    const mesh::HalfEdgeSurface& surface = pair_->surface();
+    const double near = end * surface.facet_size(facet);
+    const auto around = surface.facet_vertices(facet);
+    const Vec3& x = now_.slaves[j];
+    for (std::size_t c = 0; c < around.size(); ++c) {
+        const Vec3 &a = vertices_[around[c]], b = vertices_[around[(c + 1) % around.size()]];
+        if ((x - a).norm() < near) return true;
+        const Index edge = surface.first_half_edge(facet) + static_cast<Index>(c);
+        if (!surface.is_feature_edge(edge) && !surface.is_boundary_edge(edge)) continue;
+        if ((x - a).cross(b - a).norm() < near * (b - a).norm()) return true;
+    }
+    return false;
+}
+
 bool ContactEvaluation::looks_past(const contact::FacetHit& hit) const {
     return hit.facet >= 0 && hit.overhang > beside * hit.distance &&
            hit.overhang > at_edge * pair_->surface().facet_size(hit.facet);
@@ -134,7 +172,14 @@ bool ContactEvaluation::may_touch(Index j, Index facet) const {
         return false;
     const double depth = behind_at_start * std::min(pair_->surface().facet_size(facet), pair_->thickness(facet));
     if (!((start_.slaves[j] - facets_.centre[static_cast<std::size_t>(facet)]).dot(n) > -depth)) return false;
-    const std::optional<OwnSurface>& own = pair_->slaves().own;
+    const SlaveNodes& slaves = pair_->slaves();
+    if (!slaves.treated.empty()) {
+        const std::vector<Index>& there = slaves.facet_treated[static_cast<std::size_t>(facet)];
+        if (std::ranges::any_of(slaves.treated[static_cast<std::size_t>(j)],
+                                [&](Index side) { return std::ranges::find(there, side) != there.end(); }))
+            return false;
+    }
+    const std::optional<OwnSurface>& own = slaves.own;
     return !own || !std::ranges::binary_search(own->around[static_cast<std::size_t>(j)], facet);
 }
 
@@ -147,7 +192,10 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
                                  const std::vector<Vec3>& tails) {
     std::vector<Index>& facet = tracking_.facet;
     std::vector<contact::FacetHit>& hits = tracking_.hits;
-    {
+    facet_changes_ = 0;
+    if (pair_->slaves().edges) {
+        place(x, tails);
+    } else {
         const ScopedTimer timer(timings, Part::search);
         place(x, tails);
         const int latch = tracking_.changes_before_latch;
@@ -161,7 +209,6 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
                 if (!pair_->slaves().around.empty() && looks_past(hits[j])) hits[j].beyond = hits[j].overhang;
             }
         });
-        facet_changes_ = 0;
         for (Index j = 0; j < pair_->size(); ++j)
             if (hits[j].facet != facet[j]) {
                 tracking_.changes[j] +=
@@ -173,6 +220,9 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     const ScopedTimer timer(timings, Part::contact);
     facet_changes_ += discretisation_->evaluate(positions(), tracking_, points_, threads);
     if (!pair_->slaves().along.empty()) drop_what_is_not_pointed_at(x);
+    for (Index j = 0; j < pair_->size(); ++j) // averages look past edges
+        if (!pair_->slaves().around.empty() && (looks_past(hits[j]) || (yields(j) && is_left_to_slaves(j))))
+            points_[j].found = points_[j].behind = false;
     for (Index j = 0; j < pair_->size(); ++j) {
         point_nodes_[j].clear();
         if (!points_[j].found) continue;
@@ -223,8 +273,11 @@ double ContactEvaluation::unseen_gap(Index j) const {
 
 contact::Coulomb ContactEvaluation::law(Index j) const {
     const double c = stiffness(j), friction = pair_->options().friction;
-    if (held_[j] == 0) return {friction, c};
-    return contact::Coulomb::elastic(friction, c, held_stick_stiffness * c, lambda_start_[j]);
+    const bool yields = this->yields(j);
+    if (!yields && held_[j] == 0) return {friction, c};
+    contact::Coulomb law = contact::Coulomb::elastic(friction, c, held_stick_stiffness * c, lambda_start_[j]);
+    if (yields) law.yield(shared_yield);
+    return law;
 }
 
 std::vector<Index> ContactEvaluation::patch_nodes(Index facet) const {

@@ -17,6 +17,7 @@ Vec3 centre(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
 
 std::unique_ptr<const contact::Discretisation> make_discretisation(const ContactPair& pair, const std::vector<Vec3>& X,
                                                                    const contact::SmoothSlave* smooth) {
+    if (pair.slaves().edges) return contact::make_edge_discretisation(pair.surface(), pair.slaves().edges->meet);
     if (pair.options().discretisation == Discretisation::node) return contact::make_node_discretisation(pair.surface());
     std::map<Index, Index> number;
     std::vector<Vec3> positions;
@@ -56,6 +57,14 @@ ContactHistory ContactPair::initial_history() const {
     const std::size_t n = slaves_.node.size();
     return {nullptr, std::vector<Vec3>(n, Vec3::Zero()), std::vector<contact::Status>(n, contact::Status::open),
             std::vector<Index>(n, -1), master()};
+}
+
+std::pair<contact::SharpEdge, contact::SharpEdge> ContactPair::edges(Index j, const std::vector<Vec3>& x,
+                                                                     const std::vector<Vec3>& vertices) const {
+    const contact::EdgesThatMeet& edge = slaves_.edges->meet[static_cast<std::size_t>(j)];
+    const Index first = surface().vertex_count(); // of the numbers of the slave's nodes
+    return {contact::slave_edge(j, edge, [&](Index number) -> const Vec3& { return x[node(first + number)]; }),
+            contact::sharp_edge(surface(), edge.half_edge, vertices)};
 }
 
 ContactHistory opened(std::shared_ptr<const ContactPair> pair) {

@@ -47,6 +47,13 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
       node_facets_(X.size()), along_(X.size()), left_out_(surfaces_.size() * surfaces_.size(), 0) {
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         first_.push_back(static_cast<Index>(facets_.size()));
+        Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+        for (const mesh::Facet& facet : surfaces_[s].facets)
+            for (const Index node : facet) {
+                low = low.cwiseMin(X[node]);
+                high = high.cwiseMax(X[node]);
+            }
+        diagonal_.push_back((high - low).norm());
         for (const mesh::Facet& facet : surfaces_[s].facets) {
             const auto number = static_cast<Index>(facets_.size());
             facets_.push_back(facet);
@@ -68,6 +75,7 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
     for (const auto& [a, b] : options_.left_out)
         left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] =
             left_out_[static_cast<std::size_t>(b) * surfaces_.size() + static_cast<std::size_t>(a)] = 1;
+    find_sharp_edges();
     around_.resize(X.size());
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         if (left_out_[s * surfaces_.size() + s] != 0) continue;
@@ -124,14 +132,8 @@ bool GeneralContact::is_slave(Index f, Index g) const {
 ContactScope GeneralContact::scope_at(const Field& x, double expected) const {
     ContactScope scope{x, {}, {}};
     for (const OuterSurface& surface : surfaces_) {
-        Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
-        for (const mesh::Facet& facet : surface.facets)
-            for (const Index node : facet) {
-                low = low.cwiseMin(X_[node]);
-                high = high.cwiseMax(X_[node]);
-            }
-        const double size = surface.side->surface().mean_facet_size();
-        scope.margin.push_back(std::max({sizes * size, diagonals * (high - low).norm(), 2 * expected}));
+        const double size = surface.side->surface().mean_facet_size(), diagonal = diagonal_[scope.margin.size()];
+        scope.margin.push_back(std::max({sizes * size, diagonals * diagonal, 2 * expected}));
         scope.own.push_back(std::max(own_sizes * size, 2 * expected));
     }
     return scope;
@@ -156,8 +158,7 @@ bool GeneralContact::covers(const ContactScope& scope, const Field& x, double ah
     return true;
 }
 
-std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
-                                                 const std::vector<ContactHistory>& before) const {
+std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std::vector<ContactHistory>& before) const {
     const std::vector<Vec3>& x = scope.x;
     std::vector<double> margin;
     for (const Facet& facet : data_) margin.push_back(scope.margin[static_cast<std::size_t>(facet.surface)]);
@@ -193,8 +194,15 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
         if (!fresh && distance < at->second.first) at->second = {distance, g};
     };
     // faces that look away from each other are back to back
-    const auto in_front = [&](Index f, Index g) {
-        return in_front_of(f, g, behind * std::min(data_[f].size, data_[g].size));
+    const auto missing = [&](Index f, Index g) { // how far f is from being in front of g, m
+        double farthest = -std::numeric_limits<double>::max();
+        for (const Index node : facets_[f]) farthest = std::max(farthest, normal[g].dot(x[node] - centre[g]));
+        return -farthest - behind * std::min(data_[f].size, data_[g].size);
+    };
+    // a facet that goes round an edge comes in front of the face there; pairs are looked for again before it touches
+    const auto limit = [&](Index f, double way) {
+        double& own = scope.margin[static_cast<std::size_t>(data_[f].surface)];
+        own = std::min(own, std::max(0.5 * behind * data_[f].size, 0.5 * way));
     };
     FacetPairs own;
     for (const auto& [f, g] : near)
@@ -212,15 +220,29 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
         const Vec3& n = normal[g];
         double facets = 0;
         for (const Index f : node_facets_[node]) facets += normal[f].dot(n);
-        return facets < 0 &&
-               n.dot(x[node] - centre[g]) > -behind * std::min(data_[node_facets_[node][0]].size, data_[g].size) &&
+        const Index its = node_facets_[node][0];
+        const double moved = data_[its].surface == data_[g].surface ? 0 : margin[its] + margin[g];
+        return facets < 0 && n.dot(x[node] - centre[g]) > -behind * std::min(data_[its].size, data_[g].size) - moved &&
                !is_treated(std::array{node}, facets_[g]) && std::ranges::all_of(along_[node], [&](Index end) {
                    return (x[end] - x[node]).normalized().dot(n) >= pointing;
                });
     };
     for (const auto& [f, g] : near) {
+        if (data_[f].surface != data_[g].surface)
+            for (const auto& [one, other] : {std::pair{f, g}, std::pair{g, f}})
+                if (!leads(one, other))
+                    for (const Index node : facets_[one])
+                        if (sharp_[node] != 0 && points_at(node, other))
+                            found[{data_[one].surface, data_[other].surface}].yielding.push_back(node);
         if (normal[f].dot(normal[g]) < contact::facing) {
-            if (!in_front(f, g) || !in_front(g, f)) continue;
+            if (const double way = std::max(missing(f, g), missing(g, f)); way > 0) {
+                const double between = (centre[f] - centre[g]).norm() - radius[f] - radius[g];
+                if (data_[f].surface != data_[g].surface && std::max(way, between) < margin[f] + margin[g]) {
+                    limit(f, std::max(way, between));
+                    limit(g, std::max(way, between));
+                }
+                continue;
+            }
             consider(f, g);
             consider(g, f);
         } else { // corners and edges whose facets look past the other
@@ -233,10 +255,18 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
     }
     for (const auto& [who, what] : nearest)
         if (leads(who.first, what.second)) found[{data_[who.first].surface, who.second}].facets.push_back(who.first);
-    for (const ContactHistory& history : before)
-        for (std::size_t j = 0; j < history.status.size(); ++j)
-            if (contact::is_closed(history.status[j]))
-                found[sides_of(*history.pair)].nodes.push_back(history.pair->slaves().node[j]);
+    for (const ContactHistory& history : before) {
+        const SlaveNodes& slaves = history.pair->slaves();
+        for (std::size_t j = 0; j < history.status.size() && !slaves.edges; ++j)
+            if (contact::is_closed(history.status[j])) {
+                Found& part = found[sides_of(*history.pair)];
+                (slaves.yields.empty() || slaves.yields[j] == 0 ? part.nodes : part.yielding).push_back(slaves.node[j]);
+            }
+    }
+    const auto in_order = [](std::vector<Index>& nodes) {
+        std::ranges::sort(nodes);
+        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    };
 
     std::vector<ContactHistory> histories;
     for (auto& [sides, part] : found) {
@@ -245,12 +275,16 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
             facets.push_back(facets_[f]);
             part.nodes.insert(part.nodes.end(), facets_[f].begin(), facets_[f].end());
         }
+        in_order(part.nodes);
+        in_order(part.yielding);
+        std::erase_if(part.yielding, [&](Index node) { return std::ranges::binary_search(part.nodes, node); });
+        part.nodes.insert(part.nodes.end(), part.yielding.begin(), part.yielding.end());
         std::ranges::sort(part.nodes);
-        part.nodes.erase(std::unique(part.nodes.begin(), part.nodes.end()), part.nodes.end());
-        const auto old = std::ranges::find_if(
-            before, [&](const ContactHistory& history) { return sides_of(*history.pair) == sides; });
-        ContactHistory& history =
-            histories.emplace_back(opened(make_pair(scope, sides.first, sides.second, part.nodes, std::move(facets))));
+        const auto old = std::ranges::find_if(before, [&](const ContactHistory& history) {
+            return !history.pair->slaves().edges && sides_of(*history.pair) == sides;
+        });
+        ContactHistory& history = histories.emplace_back(
+            opened(make_pair(scope, sides.first, sides.second, part.nodes, std::move(facets), part.yielding)));
         if (old == before.end()) continue;
         history.master = old->master;
         const std::vector<Index>& known = old->pair->slaves().node;
@@ -263,12 +297,14 @@ std::vector<ContactHistory> GeneralContact::near(const ContactScope& scope,
             history.facet[j] = old->facet[k];
         }
     }
+    add_edges(scope, before, histories);
     return histories;
 }
 
 std::shared_ptr<const ContactPair> GeneralContact::make_pair(const ContactScope& scope, Index slave, Index master,
                                                              const std::vector<Index>& nodes,
-                                                             std::vector<mesh::Facet> facets) const {
+                                                             std::vector<mesh::Facet> facets,
+                                                             const std::vector<Index>& yielding) const {
     const OuterSurface &own = surfaces_[static_cast<std::size_t>(slave)],
                        &other = surfaces_[static_cast<std::size_t>(master)];
     SlaveNodes slaves;
@@ -304,6 +340,26 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(const ContactScope&
             slaves.in_plane.push_back(plane != own.in_plane.end() ? plane->second : Mat3(Mat3::Identity()));
         }
     slaves.facets = std::move(facets);
+    if (!yielding.empty()) {
+        slaves.yields.assign(nodes.size(), 0);
+        for (const Index node : yielding) slaves.yields[static_cast<std::size_t>(number(node))] = 1;
+    }
+    if (!treated_.empty()) {
+        const mesh::HalfEdgeSurface& surface = other.side->surface();
+        slaves.treated.resize(nodes.size());
+        slaves.facet_treated.resize(static_cast<std::size_t>(surface.facet_count()));
+        for (std::size_t k = 0; k < treated_.size(); ++k)
+            for (const int side : {1, 2}) {
+                const Index number_of_side = 2 * static_cast<Index>(k) + side - 1;
+                for (std::size_t j = 0; j < nodes.size(); ++j)
+                    if ((treated_[k][nodes[j]] & side) != 0) slaves.treated[j].push_back(number_of_side);
+                for (Index f = 0; f < surface.facet_count(); ++f)
+                    if (std::ranges::all_of(surface.facet_vertices(f), [&](Index v) {
+                            return (treated_[k][other.side->nodes()[v]] & (3 - side)) != 0;
+                        }))
+                        slaves.facet_treated[static_cast<std::size_t>(f)].push_back(number_of_side);
+            }
+    }
     if (slave == master) {
         OwnSurface& within = slaves.own.emplace();
         for (const Index node : nodes) {

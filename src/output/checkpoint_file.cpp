@@ -141,18 +141,14 @@ Json to_json(const linear::ContactLaws& laws) {
             by.push_back(term.by);
         }
     }
-    return {{"dt", laws.dt},
-            {"couplings", packed(laws.couplings)},
-            {"count", packed(nodes.length)},
-            {"node", packed(nodes.value)},
-            {"by", packed_matrices(by)},
-            {"B", packed_matrices(laws.B)},
+    return {{"mass_factor", laws.mass_factor}, {"couplings", packed(laws.couplings)}, {"count", packed(nodes.length)},
+            {"node", packed(nodes.value)},     {"by", packed_matrices(by)},           {"B", packed_matrices(laws.B)},
             {"D", packed_matrices(laws.D)}};
 }
 
 linear::ContactLaws contact_laws(const Json& json) {
     linear::ContactLaws laws;
-    laws.dt = number<double>(json, "dt");
+    laws.mass_factor = number<double>(json, "mass_factor");
     laws.couplings = unpacked<Index>(json, "couplings");
     const auto nodes = Ragged<Index>{unpacked<Index>(json, "count"), unpacked<Index>(json, "node")}.lists("laws");
     const auto by = unpacked_matrices<Mat3>(json, "by");
@@ -250,6 +246,8 @@ void each_value(Pair& pair, const Visit& visit) requires std::is_same_v<std::rem
     visit("master", pair.master);
     visit("nodes", pair.nodes);
     visit("facets", pair.facets);
+    visit("yielding", pair.yielding);
+    visit("edges", pair.edges);
 }
 
 template <class Run, class Visit>
@@ -259,6 +257,7 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
     visit("displacement_start", run.displacement_start);
     visit("reached", run.reached);
     visit("dt", run.dt);
+    visit("impact", run.impact);
     visit("time", run.state.time);
     visit("u", run.state.u);
     visit("v", run.state.v);

@@ -23,12 +23,17 @@ ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
             continue;
         }
         ++(status[j] == contact::Status::stick ? sum.stick : sum.slip);
-        const double p_N = contact.lambda.dot(contact.normal);
-        sum.force += contact.lambda;
-        sum.moment += snapshot.x()[term.slaves().node[j]].cross(contact.lambda);
+        const model::ContactEvaluation& evaluation = snapshot.evaluation(pair);
+        const Vec3 whole = evaluation.whole(j) * contact.lambda;
+        const double p_N = whole.dot(contact.normal);
+        sum.force += whole;
+        // at the contact point of an edge; elsewhere at the node
+        const Vec3 at = term.slaves().edges ? Vec3(evaluation.point(j).foot + contact.gap * contact.normal)
+                                            : snapshot.x()[term.slaves().node[j]];
+        sum.moment += at.cross(whole);
         sum.normal += p_N;
-        sum.friction += (contact.lambda - p_N * contact.normal).norm();
-        sum.area += snapshot.evaluation(pair).area(j);
+        sum.friction += (whole - p_N * contact.normal).norm();
+        sum.area += evaluation.area(j);
     }
     sum.moment += snapshot.model().origin.cross(sum.force);
     return sum;
@@ -60,10 +65,9 @@ std::vector<BodyResultants> body_resultants(const Snapshot& snapshot) {
         const auto [slave, master] = model.general->sides_of(evaluation.pair());
         const std::vector<Vec3>& lambda = snapshot.state().contact[p].lambda;
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
-            bool own = true; // the first node is the slave
             evaluation.for_each_force(j, lambda[static_cast<std::size_t>(j)], [&](Index node, const Vec3& force) {
+                const bool own = model::body_index(model, node) == surfaces[static_cast<std::size_t>(slave)].body;
                 BodyResultants& sum = sums[static_cast<std::size_t>(own ? slave : master)];
-                own = false;
                 sum.force += force;
                 sum.moment += snapshot.x()[static_cast<std::size_t>(node)].cross(force);
             });

@@ -28,7 +28,7 @@ NodalContact nodal_contact(const model::Model& model, const model::State& state,
             if (!contact::is_closed(history.status[k])) continue;
             const bool sticks = history.status[k] == contact::Status::stick;
             all.status[node] = sticks || all.status[node] == 1 ? 1 : 2;
-            const Vec3 d = evaluation.drift(j);
+            const Vec3 d = evaluation.drift(j) / evaluation.whole(j);
             all.slip[node] = d - point.normal * point.normal.dot(d);
         }
     }

@@ -11,6 +11,8 @@ namespace {
 constexpr const char* hysteresis_meaning = "A facet is left only for one closer by this fraction of its size.";
 constexpr Range hysteresis_range{.low = 0, .high = 1, .open_high = true};
 
+void describe(Visitor& /*v*/, AutomaticSurface& /*s*/) {}
+
 void describe(Visitor& v, FacetsSurface& s) {
     v.number({.name = "hysteresis", .meaning = hysteresis_meaning, .range = hysteresis_range}, s.hysteresis);
 }
@@ -69,9 +71,11 @@ void describe(Visitor& v, MasterSpec& master) {
              .meaning = "Geometry of the master; contact.<pair>.surface is short for it.",
              .bare_word = true},
             [&] {
-                static const Words tags{"facets", "rpim", "blend"};
+                static const Words tags{"automatic", "facets", "rpim", "blend"};
                 one_of(v, tags,
-                       {"The finite element surface as it is.",
+                       {"Facets where every face of the master is plane, forces act at nodes and a stage is dynamic; "
+                        "else blend.",
+                        "The finite element surface as it is.",
                         "Smooth patches by radial point interpolation with a polynomial basis, one per facet.",
                         "Such patches around every vertex, with their gaps blended: smooth over all edges."},
                        true, master.surface, [&v](auto& alternative) { describe(v, alternative); });
@@ -214,11 +218,20 @@ void describe(Visitor& v, DynamicAnalysis& s) {
               .unit = dimension::rate,
               .range = range::not_negative},
              s.mass_damping);
-    v.number({.name = "stiffness_damping",
-              .meaning = "Rayleigh damping proportional to stiffness.",
-              .unit = dimension::time,
-              .range = range::not_negative},
-             s.stiffness_damping);
+    v.optional_number({.name = "stiffness_damping",
+                       .meaning = "Rayleigh damping proportional to stiffness.",
+                       .unit = dimension::time,
+                       .range = range::not_negative,
+                       .default_text = "a tenth of the stage's step where impacts are inelastic, else 0"},
+                      s.stiffness_damping);
+    static const Words impacts{"automatic", "resolved", "inelastic"};
+    word(v,
+         {.name = "impacts",
+          .meaning = "Impacts shorter than a step. resolved: steps are cut until they follow the rebound. inelastic: "
+                     "such a step is one of backward Euler, after which bodies stay together; what it takes is counted "
+                     "as damping. automatic: inelastic with general contact, unless the integrator keeps all energy "
+                     "(rho_inf 1, alpha 0, gamma 1/2) or control.error_tolerance is given."},
+         impacts, s.impacts);
 }
 
 } // namespace

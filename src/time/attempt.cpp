@@ -22,6 +22,7 @@ std::string name(Reason reason) {
     case Reason::collision: return "collision";
     case Reason::audit: return "audit";
     case Reason::reach: return "reach";
+    case Reason::impact: return "impact";
     case Reason::forced: return "forced";
     }
     return "";

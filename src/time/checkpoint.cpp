@@ -39,8 +39,19 @@ std::string misfit(const model::ContactHistory& history, std::size_t slaves, Ind
 std::string misfit(const FoundPair& pair, const model::GeneralContact& general, Index nodes) {
     const auto surfaces = static_cast<Index>(general.surfaces().size());
     if (!within(pair.slave, surfaces) || !within(pair.master, surfaces)) return "surfaces of general contact";
-    if (pair.nodes.empty() || !within(pair.nodes, nodes) || !std::ranges::is_sorted(pair.nodes))
-        return "slave nodes of general contact";
+    if (pair.nodes.empty() || !within(pair.nodes, nodes)) return "slave nodes of general contact";
+    if (!pair.edges.empty()) {
+        const auto fits = [&](std::size_t k, Index surface) {
+            const auto& half_edges = general.surfaces()[static_cast<std::size_t>(surface)].side->surface().half_edges();
+            return pair.edges[k] >= 0 && static_cast<std::size_t>(pair.edges[k]) < half_edges.size() &&
+                   half_edges[static_cast<std::size_t>(pair.edges[k])].twin >= 0;
+        };
+        bool all = pair.edges.size() == 2 * pair.nodes.size();
+        for (std::size_t k = 0; all && k < pair.edges.size(); ++k) all = fits(k, k % 2 == 0 ? pair.slave : pair.master);
+        return all ? "" : "edges of general contact";
+    }
+    if (!std::ranges::is_sorted(pair.nodes)) return "slave nodes of general contact";
+    if (!std::ranges::includes(pair.nodes, pair.yielding)) return "slave nodes of general contact";
     for (std::size_t k = 0; k < pair.facets.size(); ++k)
         if (!(pair.facets[k] == -1 && k % 4 == 3) && !std::ranges::binary_search(pair.nodes, pair.facets[k]))
             return "slave facets of general contact";
@@ -65,7 +76,7 @@ std::string misfit(const equilibrium::EquilibriumMemory& memory, const model::Mo
     if (!memory.laws) return {};
     const linear::ContactLaws& laws = *memory.laws;
     const std::size_t count = laws.terms.size();
-    if (!std::isfinite(laws.dt) || !within(laws.couplings, static_cast<Index>(slaves.size())) ||
+    if (!std::isfinite(laws.mass_factor) || !within(laws.couplings, static_cast<Index>(slaves.size())) ||
         laws.couplings.size() > count || laws.B.size() != count || laws.D.size() != count || !finite(laws.B) ||
         !finite(laws.D))
         return "contact laws";
@@ -131,7 +142,13 @@ std::vector<FoundPair> found_pairs(const model::State& state, const model::Model
         const model::ContactPair& pair = *state.contact[p].pair;
         FoundPair& one = found.emplace_back();
         std::tie(one.slave, one.master) = model.general->sides_of(pair);
-        one.nodes = pair.slaves().node;
+        const model::SlaveNodes& slaves = pair.slaves();
+        one.nodes = slaves.node;
+        for (std::size_t j = 0; j < slaves.yields.size(); ++j)
+            if (slaves.yields[j] != 0) one.yielding.push_back(slaves.node[j]);
+        if (slaves.edges)
+            for (const auto& edges : slaves.edges->half_edges)
+                one.edges.insert(one.edges.end(), edges.begin(), edges.end());
         for (const mesh::Facet& facet : pair.slaves().facets)
             one.facets.insert(one.facets.end(), facet.nodes.begin(), facet.nodes.end());
     }
@@ -146,13 +163,20 @@ void restore_pairs(Checkpoint& checkpoint, const model::Model& model) {
     for (std::size_t p = 0; p < model.pairs.size(); ++p) state.contact[p].pair = model.pairs[p];
     for (std::size_t k = 0; k < checkpoint.found.size(); ++k) {
         const FoundPair& one = checkpoint.found[k];
+        std::shared_ptr<const model::ContactPair>& pair = state.contact[model.pairs.size() + k].pair;
+        if (!one.edges.empty()) {
+            std::vector<std::array<Index, 2>> edges;
+            for (std::size_t e = 0; e < one.edges.size(); e += 2) edges.push_back({one.edges[e], one.edges[e + 1]});
+            pair = model.general->make_edges(one.slave, one.master, edges);
+            continue;
+        }
         std::vector<mesh::Facet> facets(one.facets.size() / 4);
         for (std::size_t f = 0; f < facets.size(); ++f) {
             std::copy_n(one.facets.begin() + static_cast<std::ptrdiff_t>(4 * f), 4, facets[f].nodes.begin());
             facets[f].count = facets[f].nodes[3] < 0 ? 3 : 4;
         }
-        state.contact[model.pairs.size() + k].pair =
-            model.general->make_pair(*state.scope, one.slave, one.master, one.nodes, std::move(facets));
+        pair =
+            model.general->make_pair(*state.scope, one.slave, one.master, one.nodes, std::move(facets), one.yielding);
     }
 }
 

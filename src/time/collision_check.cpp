@@ -98,6 +98,7 @@ void CollisionCheck::add_solution(const Field& u, StepEvidence& evidence) {
 void CollisionCheck::add_normal_motions(const Field& u, StepEvidence& evidence) const {
     for (std::size_t p = 0; p < starts_.size(); ++p) {
         const model::ContactPair& pair = contact_[p].pair();
+        if (pair.slaves().edges) continue;
         for (Index j = 0; j < pair.size(); ++j) {
             const Start& start = starts_[p][j];
             if (!speaks_by_normal(p, start) || !sheet_lost(p, j)) continue;
@@ -115,6 +116,10 @@ void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
     const Field x = sum(model_.X, u);
     for (std::size_t p = 0; p < starts_.size(); ++p) {
         const model::ContactPair& pair = contact_[p].pair();
+        if (pair.slaves().edges) {
+            add_edge_paths(p, x, evidence);
+            continue;
+        }
         // motion relative to the mean of the master's
         const std::vector<Vec3> v0 = pair.vertices(x_), v1 = pair.vertices(x);
         Vec3 mean = Vec3::Zero();
@@ -132,6 +137,29 @@ void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
             if (far || (lost && !speaks_by_normal(p, start))) slaves.push_back(j);
         }
         if (!slaves.empty()) follow(p, slaves, x, evidence);
+    }
+}
+
+void CollisionCheck::add_edge_paths(std::size_t p, const Field& x, StepEvidence& evidence) const {
+    const model::ContactPair& pair = contact_[p].pair();
+    const std::vector<Vec3> v0 = pair.vertices(x_), v1 = pair.vertices(x);
+    for (Index j = 0; j < pair.size(); ++j) {
+        const contact::EdgesThatMeet& edge = pair.slaves().edges->meet[static_cast<std::size_t>(j)];
+        const Start &start = starts_[p][j], &reverse = starts_[p][edge.reverse];
+        if (edge.reverse < j || start.found || reverse.found) continue;
+        const auto [a0, b0] = pair.edges(j, x_, v0);
+        const auto [a1, b1] = pair.edges(j, x, v1);
+        const auto passage = contact::first_passage(a0, b0, a1, b1);
+        if (!passage) continue;
+        const double least = allowed(p, pair.surface().half_edges()[static_cast<std::size_t>(edge.half_edge)].facet);
+        if (passage->after >= -least) continue;
+        const double fraction = passage->before >= least
+                                    ? passage->time
+                                    : limits_.reserve * reduction_factor(passage->before, passage->after, least);
+        if (fraction >= evidence.collision) continue;
+        evidence.collision = fraction;
+        evidence.collision_pair = static_cast<Index>(p);
+        evidence.collision_slave = j;
     }
 }
 

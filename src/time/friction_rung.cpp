@@ -19,8 +19,9 @@ LadderResult settle_friction(equilibrium::Equilibrium& equilibrium, solve::Kinso
     const auto evaluate = [&](equilibrium::Statuses from) {
         equilibrium.set_statuses(std::move(from), StatusRule::natural, false);
         const Verdict verdict = equilibrium.residual(z, F);
+        if (verdict == Verdict::shorten || !F.allFinite()) return false; // otherwise F holds nothing
         result.residual = F.cwiseAbs().maxCoeff() / options.reference_force;
-        return verdict != Verdict::shorten && F.allFinite();
+        return true;
     };
     for (int k = 0; k < options.max_iterations; ++k, ++result.iterations) {
         if (!evaluate(last.empty() ? statuses : last)) return result;

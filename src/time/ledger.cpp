@@ -39,7 +39,7 @@ Ledger opened(const model::Model& model, const equilibrium::Dynamics& dynamics, 
 
 Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
                 const equilibrium::Equilibrium& equilibrium, const model::State& from, const model::State& to,
-                const Field& force) {
+                const Field& force, bool impact) {
     Ledger next = ledger;
     take_stock(next, model, dynamics, to);
     Field Du = weighted(1, to.u, -1, from.u);
@@ -69,9 +69,10 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibri
     const double algorithmic = work.inertia + work.internal - of_weights - change;
     next.external += external;
     next.friction += friction;
-    next.damping += work.damping;
-    next.algorithmic += algorithmic;
-    next.contact += contact + friction;
+    // an impact is inelastic on purpose
+    next.damping += work.damping + (impact ? algorithmic - contact - friction : 0);
+    next.algorithmic += impact ? 0 : algorithmic;
+    next.contact += impact ? 0 : contact + friction;
     next.balance += change - (external + contact - work.damping - algorithmic);
     return next;
 }

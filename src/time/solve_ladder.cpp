@@ -18,6 +18,23 @@ namespace {
 constexpr int most_settlings = 40; ///< KINSOL calls of rung 3
 constexpr int most_means = 3;      ///< ways out of a cycle of two iterates, one after another
 
+/// Whether z, which solves the equations, still does so when every slave node looks for its facet from where it started:
+/// iterates that ran away may have left nodes latched on facets that are not below them.
+bool is_solution(equilibrium::Equilibrium& equilibrium, const Vector& z, const LadderOptions& options) {
+    const auto latched = [](const model::ContactEvaluation& evaluation) {
+        for (Index j = 0; j < evaluation.pair().size(); ++j)
+            if (evaluation.hit(j).latched) return true;
+        return false;
+    };
+    if (!options.settles || std::ranges::none_of(equilibrium.contact(), latched)) return true;
+    equilibrium.forget_paths();
+    equilibrium.set_statuses(equilibrium.statuses(), equilibrium::StatusRule::natural, false);
+    Vector F(z.size());
+    if (equilibrium.residual(z, F) != equilibrium::Equilibrium::Verdict::proceed || !F.allFinite()) return false;
+    constexpr double same = 10; // times the tolerance: patches of other facets have round-off of their own
+    return F.cwiseAbs().maxCoeff() <= same * options.tolerance * options.reference_force;
+}
+
 /// Closes every second one of the nodes that `now` has open and `before` had closed; false when there are none.
 bool take_back_half(const equilibrium::Statuses& before, equilibrium::Statuses& now) {
     std::vector<std::pair<std::size_t, std::size_t>> released;
@@ -185,7 +202,9 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
 
 LadderResult solve_trial(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                          const equilibrium::Statuses& statuses, const LadderOptions& options) {
+    constexpr int most_iterations = 10; // sliding that goes on needs more, and says as little about what is open
     LadderOptions now = options;
+    if (options.settles) now.max_iterations = std::min(now.max_iterations, most_iterations);
     equilibrium.set_statuses(statuses, equilibrium::StatusRule::frozen, false);
     equilibrium.linearise_first_about(options.predicted);
     const auto solved = solve_once(equilibrium, solver, z, equilibrium::StatusRule::frozen, now);
@@ -208,6 +227,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         result = {
             solved.outcome,         result.iterations + solved.iterations, solved.residual, now.reference_force, rung,
             solved.failing_equation};
+        if (result.converged() && !is_solution(equilibrium, z, now)) result.outcome = KinsolOutcome::stopped;
         return result.converged();
     };
     const auto rungs = [&] {
@@ -220,16 +240,19 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         if (newton("semismooth Newton", options.predicted, force_first)) return singular;
         singular = found_singular();
         if (start.empty()) return singular;
+        equilibrium.set_impatient(false);
         z = unpredicted;
+        if (options.settles) equilibrium.forget_paths();
         LadderResult rubbed = settle_friction(equilibrium, solver, z, start, now);
         rubbed.iterations += result.iterations;
         rubbed.reference_force = now.reference_force;
-        if (rubbed.converged()) {
+        if (rubbed.converged() && is_solution(equilibrium, z, now)) {
             result = rubbed;
             return singular;
         }
         result.iterations = rubbed.iterations;
         z = unpredicted;
+        if (options.settles) equilibrium.forget_paths();
         if (predicted && newton("semismooth Newton without predictor", options.unpredicted, force_first))
             return singular;
         singular = singular || found_singular();
@@ -245,7 +268,9 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         return singular || found_singular();
     };
     const Vector first = z;
+    equilibrium.set_impatient(options.settles);
     const bool singular = rungs();
+    equilibrium.set_impatient(false);
     result.worst_element = equilibrium.worst_element();
     result.astray = !(largest_component(equilibrium.displacements(z)) <= options.farthest);
     const StabilisationOptions& how = options.stabilisation;

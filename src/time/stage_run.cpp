@@ -19,11 +19,10 @@ std::vector<model::ContactHistory> of_general_contact(const model::State& state,
 }
 } // namespace
 
-Machinery::Machinery(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
-                     const model::State& state)
-    : equilibrium(context.model, model::pairs_of(state.contact), constraints,
-                  stage.dynamics ? &*stage.dynamics : nullptr, stage.tangent, context.timings, context.options.threads,
-                  !stage.follower_pressures.empty()),
+Machinery::Machinery(RunContext& context, const Stage& stage, const equilibrium::Dynamics* dynamics,
+                     const linear::Constraints& constraints, const model::State& state)
+    : equilibrium(context.model, model::pairs_of(state.contact), constraints, dynamics, stage.tangent, context.timings,
+                  context.options.threads, !stage.follower_pressures.empty()),
       solver(equilibrium.size(), context.timings),
       collisions(context.model, equilibrium.contact(), stage.limits, stage.follow_paths, context.timings,
                  context.options.threads) {}
@@ -32,8 +31,8 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
                    const Checkpoint* from)
     : context_(context), stage_(stage), progress_(progress), observer_(observer),
       constraints_(context.model.nodes(), stage.constraints, model::dependent_nodes(context.model)),
-      dynamics_(stage.dynamics ? &*stage.dynamics : nullptr),
-      machinery_(std::make_unique<Machinery>(context, stage, constraints_, progress.state)) {
+      dynamics_(stage.dynamics),
+      machinery_(std::make_unique<Machinery>(context, stage, dynamics(), constraints_, progress.state)) {
     const model::Model& model = context.model;
     if (from == nullptr) {
         progress_.displacement_start.reset(model.X.size());
@@ -41,12 +40,13 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
             progress_.displacement_start[node] = constraints_.to_local(node, progress_.state.u[node]);
         progress_.stage_start = progress_.state.time;
         progress_.reached = 0;
+        progress_.impact = false;
         progress_.dt = stage.duration / stage.steps; // not end - begin: round-off would make every step another one
     }
-    if (dynamics_ != nullptr && progress_.state.v.empty())
+    if (dynamics_ && progress_.state.v.empty())
         start_motion(context_, stage, constraints_,
                      load_at(model, stage, constraints_, progress_.displacement_start, 0), progress_);
-    if (dynamics_ != nullptr) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);
+    if (dynamics_) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);
     targets_ = times_to_hit(stage, progress_.stage_start);
     if (context.model.general && !progress_.state.scope) {
         const double speed =
@@ -82,7 +82,7 @@ equilibrium::StepLoad StageRun::mean_load(const StepAttempt& attempt, Field& u) 
     const double start = progress_.stage_start;
     equilibrium::StepLoad load =
         load_at(context_.model, stage_, constraints_, progress_.displacement_start, attempt.time - start);
-    if (dynamics_ == nullptr) {
+    if (!dynamics_) {
         if (context_.options.predictor) predict(context_.model, constraints_, load.prescribed, u);
         return load;
     }
@@ -107,9 +107,11 @@ StepAttempt StageRun::prepare() {
     attempt.dt = fit.dt;
     attempt.on_target = fit.on_target;
 
+    if (dynamics_)
+        dynamics_->integrator = progress_.impact ? equilibrium::backward_euler() : stage_.dynamics->integrator;
     Field u = state.u;
     equilibrium::StepLoad load = mean_load(attempt, u);
-    if (dynamics_ != nullptr) attempt.force = load.force;
+    if (dynamics_) attempt.force = load.force;
     if (bounded() && !machinery_->located) machinery_->collisions.begin_step(state);
     machinery_->located = true;
     const double reference = reference_force(context_, stage_, constraints_, state, load, attempt.dt);
@@ -125,20 +127,20 @@ StepAttempt StageRun::prepare() {
     ladder.reference_force = reference;
     ladder.round_off = context_.round_off_force();
     ladder.farthest = context_.characteristic_length + largest_component(state.u);
+    ladder.settles = stage_.limits.inelastic_impacts;
     ladder.last_chance = cannot_be_cut(stage_.limits, attempt.dt, repeats_);
     if (context_.model.nonlinear) {
         ladder.predicted = u;
         ladder.unpredicted = state.u;
     }
     equilibrium().set_reference_force(reference > 0 ? reference : 1);
-    if (dynamics_ == nullptr) // inertia holds what nothing touches
+    if (!dynamics_) // inertia holds what nothing touches
         attempt.forced = starting_statuses(context_, equilibrium().bodies(), state, start, attempt.statuses);
     else
         for (const model::ContactHistory& history : state.contact) attempt.statuses.push_back(history.status);
-    if (dynamics_ == nullptr && options.stabilisation)
-        ladder.stabilisation = stabilisation_options(context_, state, start);
+    if (!dynamics_ && options.stabilisation) ladder.stabilisation = stabilisation_options(context_, state, start);
     if (reference == 0) {
-        equilibrium::Equilibrium alone(context_.model, model::pairs_of(state.contact), constraints_, dynamics_, {},
+        equilibrium::Equilibrium alone(context_.model, model::pairs_of(state.contact), constraints_, dynamics(), {},
                                        context_.timings, options.threads, !stage_.follower_pressures.empty());
         alone.begin_attempt(state, std::move(load), attempt.dt);
         ladder.reference_force = imbalance(alone, attempt.z, attempt.statuses, attempt.forced);
@@ -164,6 +166,7 @@ void StageRun::trial(StepAttempt& attempt) {
     if (!attempt.result.converged()) return;
     machinery_->collisions.add_trial(equilibrium().displacements(z), attempt.evidence);
     attempt.evidence.iterations = attempt.iterations;
+    attempt.evidence.impact = progress_.impact;
     attempt.decision = judge(attempt.evidence, stage_.limits, attempt.dt, repeats_);
     attempt.z = std::move(z);
     attempt.ladder.reference_force = attempt.result.reference_force;
@@ -179,6 +182,7 @@ void StageRun::solve(StepAttempt& attempt) {
     evidence = {};
     evidence.solved = attempt.result.converged();
     evidence.hopeless = attempt.result.adrift >= 0;
+    evidence.impact = progress_.impact;
     evidence.iterations = attempt.iterations;
     evidence.residual = attempt.result.residual;
     evidence.forced = every > 0 && (progress_.counts.attempts + 1) % every == 0;
@@ -189,11 +193,10 @@ void StageRun::gather_evidence(StepAttempt& attempt) {
     StepEvidence& evidence = attempt.evidence;
     attempt.next = equilibrium().state(attempt.z);
     attempt.next.time = attempt.time;
-    if (dynamics_ != nullptr)
+    if (dynamics_)
         attempt.ledger = advanced(progress_.ledger, context_.model, *dynamics_, equilibrium(), progress_.state,
-                                  attempt.next, attempt.force);
-    attempt.not_finite =
-        find_not_finite(equilibrium().contact(), attempt.next, dynamics_ != nullptr ? &attempt.ledger : nullptr);
+                                  attempt.next, attempt.force, progress_.impact);
+    attempt.not_finite = find_not_finite(equilibrium().contact(), attempt.next, dynamics_ ? &attempt.ledger : nullptr);
     if (attempt.not_finite) {
         attempt.result.outcome = solve::KinsolOutcome::not_finite;
         evidence.solved = false;
@@ -205,7 +208,7 @@ void StageRun::gather_evidence(StepAttempt& attempt) {
         attempt.audit = &context_.audit->examine(attempt.next.u);
         evidence.intrusion = context_.audit->deepest();
     }
-    if (dynamics_ != nullptr) gather_dynamic_evidence(attempt);
+    if (dynamics_) gather_dynamic_evidence(attempt);
     if (const auto& general = context_.model.general;
         general && !general->covers(*progress_.state.scope, sum(context_.model.X, attempt.next.u)))
         attempt.uncovered = largest_distance(attempt.next.u, progress_.state.u).value;
@@ -223,8 +226,9 @@ void StageRun::gather_dynamic_evidence(StepAttempt& attempt) {
         attempt.worst_in_time = worst.node;
     }
     if (std::isfinite(limits.velocity_error) && finite)
-        evidence.velocity_error = velocity_error(context_.model, *dynamics_, *centres_, progress_.state, attempt.next,
-                                                 attempt.dt, std::max(energy_so_far(before), energy_so_far(after)));
+        evidence.velocity_error =
+            velocity_error(context_.model, *stage_.dynamics, *centres_, equilibrium().contact(), progress_.state,
+                           attempt.next, attempt.dt, std::max(energy_so_far(before), energy_so_far(after)));
     if (std::isfinite(limits.closing_energy) && finite) evidence.closing_energy = closing_energy(before, after);
     // a node with mass loses the same however short the step in which it lands
     evidence.closes_anyhow = lost_per_second_ > 0 && evidence.closing_energy > lost_per_second_ * attempt.dt;
@@ -265,10 +269,10 @@ void StageRun::commit(StepAttempt& attempt) {
     progress_.state = attempt.next; // in place: its arrays stay where they are for whoever looks at them
     progress_.counts.stabilised_steps += attempt.result.stabilised_solves > 0 ? 1 : 0;
     progress_.counts.steps_at_round_off += equilibrium().rests() ? 1 : 0;
-    if (dynamics_ != nullptr) progress_.ledger = attempt.ledger;
+    if (dynamics_) progress_.ledger = attempt.ledger;
     observer_.attempted(attempts_.back(), equilibrium().records());
     observer_.accepted({progress_.state, equilibrium(), attempt.dt, attempt.iterations, stage_,
-                        dynamics_ != nullptr ? &progress_.ledger : nullptr, attempt.audit});
+                        dynamics_ ? &progress_.ledger : nullptr, attempt.audit});
     refit_patches();
     machinery_->located = false;
     if (const auto& general = context_.model.general) {
@@ -281,6 +285,7 @@ void StageRun::commit(StepAttempt& attempt) {
     progress_.reached += attempt.on_target ? 1 : 0;
     // a step that was short of a target alone keeps its size for the next
     progress_.dt = std::max(attempt.decision.dt, attempt.proposed);
+    progress_.impact = attempt.decision.impact;
     observer_.between_steps([this] { return checkpoint(); });
 }
 
@@ -289,9 +294,10 @@ void StageRun::reject(const StepAttempt& attempt) {
     if (attempt.decision.verdict == Verdict::give_up) give_up(attempt);
     equilibrium().rollback();
     const Reason reason = attempt.decision.reason;
-    const bool cut = reason != Reason::forced && reason != Reason::reach;
+    const bool cut = reason != Reason::forced && reason != Reason::reach && reason != Reason::impact;
     if (reason == Reason::closing_energy) lost_per_second_ = attempt.evidence.closing_energy / attempt.dt;
     if (cut) ++repeats_;
+    progress_.impact = attempt.decision.impact;
     progress_.dt = cut ? attempt.decision.dt : attempt.proposed;
 }
 
@@ -328,7 +334,7 @@ void StageRun::install(std::vector<model::ContactHistory> contact, model::Contac
                          std::make_move_iterator(contact.end()));
     state.scope = std::make_shared<const model::ContactScope>(std::move(scope));
     machinery_ = nullptr; // its memory first
-    machinery_ = std::make_unique<Machinery>(context_, stage_, constraints_, state);
+    machinery_ = std::make_unique<Machinery>(context_, stage_, dynamics(), constraints_, state);
 }
 
 void StageRun::find_pairs(double expected) {
@@ -354,6 +360,7 @@ void StageRun::look_farther(StepAttempt& attempt) {
     attempt.decision = {};
     attempt.decision.verdict = Verdict::retry;
     attempt.decision.reason = Reason::reach;
+    attempt.decision.impact = progress_.impact;
     attempt.decision.dt = attempt.dt;
     attempt.decision.value = attempt.uncovered;
     attempt.decision.cause = "bodies moved by " + number(attempt.uncovered) + " m, to others that were not near";

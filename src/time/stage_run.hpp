@@ -45,8 +45,9 @@ struct Machinery {
     CollisionCheck collisions;
     bool located = false; ///< whether collisions has begun the step
 
-    Machinery(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
-              const model::State& state);
+    /// @param dynamics  of the attempts; null in statics
+    Machinery(RunContext& context, const Stage& stage, const equilibrium::Dynamics* dynamics,
+              const linear::Constraints& constraints, const model::State& state);
 };
 
 class StageRun {
@@ -66,6 +67,7 @@ private:
     void solve(StepAttempt& attempt);
     void gather_evidence(StepAttempt& attempt);
     void gather_dynamic_evidence(StepAttempt& attempt);
+    [[nodiscard]] const equilibrium::Dynamics* dynamics() const { return dynamics_ ? &*dynamics_ : nullptr; }
     void commit(StepAttempt& attempt);
     void reject(const StepAttempt& attempt);
     /// Its row of the diary.
@@ -90,11 +92,11 @@ private:
     Progress& progress_;
     StepObserver& observer_;
     linear::Constraints constraints_;
-    const equilibrium::Dynamics* dynamics_; ///< null in statics
-    std::unique_ptr<Machinery> machinery_;  ///< for the pairs of the state
-    std::optional<CentreMasses> centres_;   ///< of dynamic stages
-    std::vector<double> targets_;           ///< times to hit
-    [[nodiscard]] bool bounded() const;     ///< whether interpenetration is
+    std::optional<equilibrium::Dynamics> dynamics_; ///< of the attempt; none in statics
+    std::unique_ptr<Machinery> machinery_;          ///< for the pairs of the state
+    std::optional<CentreMasses> centres_;           ///< of dynamic stages
+    std::vector<double> targets_;                   ///< times to hit
+    [[nodiscard]] bool bounded() const;             ///< whether interpenetration is
     // of one step
     int repeats_ = 0;
     double lost_per_second_ = 0; ///< by closing gaps, in the last attempt that was cut for it

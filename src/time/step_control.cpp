@@ -29,7 +29,7 @@ void consider_gap(Objection& governing, const GapEvidence& gap, const StepLimits
 }
 
 /// What speaks most strongly against the step. What is not a number does.
-/// @param can_be_cut  otherwise what only asks for smaller steps is silent
+/// @param can_be_cut  otherwise what only asks for smaller steps is silent, as in impacts
 Objection strongest(const StepEvidence& evidence, const StepLimits& limits, bool can_be_cut) {
     Objection governing;
     if (!evidence.solved) return {Reason::solver, limits.failure_lambda, evidence.residual, nullptr};
@@ -96,8 +96,15 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
         break;
     case Reason::none:
     case Reason::reach:
+    case Reason::impact:
     case Reason::forced: break;
     }
+}
+
+/// Whether a shock of contact within the step can be the cause.
+bool may_be_shock(const Objection& objection) {
+    return objection.reason == Reason::solver || objection.reason == Reason::energy ||
+           objection.reason == Reason::closing_energy || objection.of_velocity;
 }
 
 /// dt after an accepted step: larger after an easy one only, and not beyond what the time error admits.
@@ -108,7 +115,7 @@ double next_step(const StepEvidence& evidence, const StepLimits& limits, double 
         const double admitted = limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error);
         factor = std::min(factor, std::max(admitted, 1.0));
     }
-    if (evidence.velocity_error > 0) {
+    if (evidence.velocity_error > 0 && !limits.inelastic_impacts) {
         const double admitted = limits.reserve * std::sqrt(limits.velocity_error / evidence.velocity_error);
         factor = std::min(factor, std::max(admitted, 1.0));
     }
@@ -130,15 +137,18 @@ double reduction_factor(double g0, double g1, double g_p) {
 
 Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats) {
     Decision decision;
-    const Objection objection = strongest(evidence, limits, !cannot_be_cut(limits, dt, repeats));
+    const bool can_be_cut = !cannot_be_cut(limits, dt, repeats) || (limits.inelastic_impacts && !evidence.impact);
+    const Objection objection = strongest(evidence, limits, can_be_cut && !evidence.impact);
     if (objection.reason == Reason::none) {
         decision.value = evidence.residual;
+        decision.impact = evidence.impact && !(evidence.velocity_error <= limits.velocity_error);
         if (!evidence.forced) {
             decision.dt = next_step(evidence, limits, dt, repeats);
             return decision;
         }
         decision.verdict = Verdict::retry;
         decision.reason = Reason::forced;
+        decision.impact = evidence.impact;
         decision.dt = dt;
         decision.cause = "repeated on purpose";
         return decision;
@@ -146,6 +156,17 @@ Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt
 
     decision.reason = objection.reason;
     decision.value = objection.value;
+    decision.impact = evidence.impact;
+    if (limits.inelastic_impacts && !evidence.impact && !evidence.hopeless && may_be_shock(objection)) {
+        decision.verdict = Verdict::retry;
+        decision.reason = Reason::impact;
+        decision.impact = true;
+        decision.dt = dt;
+        std::ostringstream cause;
+        describe(cause, objection, evidence, limits);
+        decision.cause = cause.str() + "; repeated as an impact";
+        return decision;
+    }
     if (objection.point != nullptr) {
         decision.pair = objection.point->pair;
         decision.slave = objection.point->slave;

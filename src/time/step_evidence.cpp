@@ -53,13 +53,14 @@ double closing_energy(const Ledger& before, const Ledger& after) {
 }
 
 double velocity_error(const model::Model& model, const equilibrium::Dynamics& dynamics, const CentreMasses& masses,
-                      const model::State& from, const model::State& to, double dt, double energy) {
+                      const model::ContactEvaluations& contact, const model::State& from, const model::State& to,
+                      double dt, double energy) {
     if (!(energy > 0)) return 0;
     std::vector<Vec3> change(model.bodies.size(), Vec3::Zero()); // of the force on each body, N
     for (std::size_t p = 0; p < to.contact.size(); ++p) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t j = 0; j < to.contact[p].lambda.size(); ++j)
-            sum += to.contact[p].lambda[j] - from.contact[p].lambda[j];
+            sum += contact[p].whole(static_cast<Index>(j)) * (to.contact[p].lambda[j] - from.contact[p].lambda[j]);
         const model::ContactPair& pair = *to.contact[p].pair;
         change[static_cast<std::size_t>(model::body_index(model, pair.slaves().node.front()))] += sum;
         change[static_cast<std::size_t>(model::body_index(model, pair.master_nodes().front()))] -= sum;

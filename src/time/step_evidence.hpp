@@ -29,8 +29,8 @@ struct CentreMasses {
 /// StepEvidence::velocity_error, of an energy. From contact forces and not from accelerations: those of a rule that damps
 /// nothing alternate for ever after a shock.
 [[nodiscard]] double velocity_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
-                                    const CentreMasses& masses, const model::State& from, const model::State& to,
-                                    double dt, double energy);
+                                    const CentreMasses& masses, const model::ContactEvaluations& contact,
+                                    const model::State& from, const model::State& to, double dt, double energy);
 /// Largest of Integrator::local_error() over the nodes with mass, free directions, m.
 [[nodiscard]] AtNode local_error(const model::Model& model, const equilibrium::Dynamics& dynamics,
                                  const linear::Constraints& constraints, const model::State& from,

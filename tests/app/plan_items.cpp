@@ -51,7 +51,7 @@ contact                      x x x x x x x x x x x x x x
 general contact              . . . . . . . . . . . . . .
 choice of slaves             . . . . . . . . . . . . . .
 friction                     x . x x . x x x x x x x x x
-smooth master surface        x . x x . x x x x x x x x x
+smooth master surface        . . x x . x x x x x x x x x
 mirror images                . . . . . . . . . . . . . .
 averaged forces              . . . . . x x x x . . x x x
 interpenetration control     x x x x x x x x x x x x x x

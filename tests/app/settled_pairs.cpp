@@ -132,5 +132,57 @@ TEST(SettledPairs, ThePressureDependsOnTheOrderOfSidesOnlyWhereNothingElseDecide
     EXPECT_NEAR(uz[0] / uz[1], 1, 0.01);
 }
 
+TEST(SettledPairs, PlaneMastersTakeFacetsInDynamicsAndCurvedOnesABlend) {
+    const auto surface = [](const Changes& changes) { return compiled(changes).pair().master.surface; };
+    const auto facets = [&](const Changes& changes) {
+        return std::holds_alternative<scene::FacetsSurface>(surface(changes));
+    };
+    const scene::Override dynamic{"stages.press.analysis", "dynamic"};
+    EXPECT_TRUE(facets({dynamic}));
+    EXPECT_FALSE(facets({})) << "statics, where shares of the master's nodes would change";
+    EXPECT_EQ(surface({}),
+              (std::variant<scene::AutomaticSurface, scene::FacetsSurface, scene::RpimSurface, scene::BlendSurface>(
+                  scene::BlendSurface{})));
+    EXPECT_FALSE(facets({dynamic, {"contact.joint.discretisation", "petrov_galerkin"}}));
+    EXPECT_FALSE(facets({dynamic, {"contact.joint.surface", "blend"}}));
+}
+
+constexpr const char* analysis = "stages.press.analysis";
+const scene::Override general{"contact", "{general: {friction: 0.3}}"};
+
+scene::DynamicAnalysis analysed(const Changes& changes) {
+    return std::get<scene::DynamicAnalysis>(compiled(changes).scene.stages[0].second.analysis);
+}
+
+TEST(SettledDynamics, GeneralContactSettlesUnlessEnergyIsAskedFor) {
+    struct Case {
+        const char* analysis;
+        bool settles;
+    };
+    for (const Case& one :
+         {Case{"dynamic", true}, Case{"{dynamic: {integrator: {generalised_alpha: {rho_inf: 0}}}}", true},
+          Case{"{dynamic: {integrator: {generalised_alpha: {rho_inf: 1}}}}", false},
+          Case{"{dynamic: {integrator: newmark}}", false},
+          Case{"{dynamic: {integrator: {newmark: {beta: 0.3, gamma: 0.6}}}}", true},
+          Case{"{dynamic: {integrator: {hht: {alpha: 0}}}}", false},
+          Case{"{dynamic: {integrator: backward_euler}}", true}, Case{"{dynamic: {impacts: resolved}}", false}}) {
+        const Changes changes{general, {analysis, one.analysis}, {"stages.press.steps", "20"}};
+        const scene::DynamicAnalysis found = analysed(changes);
+        EXPECT_EQ(found.impacts, one.settles ? scene::Impacts::inelastic : scene::Impacts::resolved) << one.analysis;
+        EXPECT_DOUBLE_EQ(found.stiffness_damping.value(), one.settles ? 0.1 / 20 : 0) << "of 1 s; " << one.analysis;
+    }
+    const Changes bounded{general, {analysis, "dynamic"}, {"stages.press.control.error_tolerance", "1 mm"}};
+    EXPECT_EQ(analysed(bounded).impacts, scene::Impacts::resolved);
+}
+
+TEST(SettledDynamics, PairsByHandResolveImpactsUnlessTold) {
+    EXPECT_EQ(analysed({{analysis, "dynamic"}}).impacts, scene::Impacts::resolved);
+    EXPECT_EQ(analysed({{analysis, "dynamic"}}).stiffness_damping, 0);
+    const scene::DynamicAnalysis told = analysed({{analysis, "{dynamic: {impacts: inelastic}}"}});
+    EXPECT_EQ(told.impacts, scene::Impacts::inelastic);
+    EXPECT_DOUBLE_EQ(told.stiffness_damping.value(), 0.1);
+    EXPECT_EQ(analysed({{analysis, "{dynamic: {impacts: inelastic, stiffness_damping: 0 s}}"}}).stiffness_damping, 0);
+}
+
 } // namespace
 } // namespace osculate::app

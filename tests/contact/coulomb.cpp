@@ -128,6 +128,25 @@ TEST_P(Branch, HasExactDerivativesWhereStickIsElastic) {
     expect_exact_derivatives(elastic, trial_of_spring);
 }
 
+TEST_P(Branch, HasExactDerivativesWhereItYields) {
+    Coulomb yielding = elastic;
+    yielding.yield(0.2);
+    expect_exact_derivatives(yielding, trial_of_spring);
+}
+
+TEST(YieldingCoulomb, HasTheGapThatItsForceOpens) {
+    Coulomb yielding(mu, c);
+    yielding.yield(0.2);
+    EXPECT_DOUBLE_EQ(yielding.normal_compliance(), 0.2 / c);
+    for (ContactState s : random_states()) {
+        ContactState yielded = s;
+        yielded.gap += yielding.normal_compliance() * s.lambda.dot(s.normal);
+        EXPECT_EQ(yielding.status(s), law.status(yielded));
+        for (const Status status : {Status::open, Status::stick, Status::slip, Status::glide})
+            EXPECT_LT((yielding.residual(s, status).value - law.residual(yielded, status).value).norm(), 4 * round_off);
+    }
+}
+
 std::string branch_name(const ::testing::TestParamInfo<Status>& tested) {
     const char* names[] = {"Open", "Stick", "Slip", "Glide"};
     return names[static_cast<int>(tested.param)];

@@ -251,12 +251,14 @@ TEST(BadScene, OptionOfAnotherChoice) {
         "--set: contact.joint.master.surface.facets.ring: expected one of the keys hysteresis, found unknown key "
         "'ring'");
     expect_fault(replaced(small_scene, "{rpim: {ring: 1}}", "{rpim: {}, facets: {}}"),
-                 "bad.yaml:18:36: contact.joint.master.surface: expected only one of facets, rpim, blend, found facets "
+                 "bad.yaml:18:36: contact.joint.master.surface: expected only one of automatic, facets, rpim, blend, "
+                 "found facets "
                  "and rpim");
-    expect_fault(replaced(small_scene, "{rpim: {ring: 1}}", "{rpmi: {}}"),
-                 "bad.yaml:18:37: contact.joint.master.surface.rpmi: expected one of the keys facets, rpim, blend, "
-                 "found unknown "
-                 "key 'rpmi' (did you mean 'rpim'?)");
+    expect_fault(
+        replaced(small_scene, "{rpim: {ring: 1}}", "{rpmi: {}}"),
+        "bad.yaml:18:37: contact.joint.master.surface.rpmi: expected one of the keys automatic, facets, rpim, blend, "
+        "found unknown "
+        "key 'rpmi' (did you mean 'rpim'?)");
 }
 
 TEST(BadScene, SupportsThatContradict) {

@@ -78,7 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
                 {"12:7: bodies.cap.mesh: expected only one of block, half_tube, contactor, ball, cylinder, tube, file, "
                  "cad, found block and ball"}},
         Refusal{"misspelt_surface",
-                {"33:16: contact.joint.master.surface.belnd: expected one of the keys facets, rpim, blend, found "
+                {"33:16: contact.joint.master.surface.belnd: expected one of the keys automatic, facets, rpim, blend, "
+                 "found "
                  "unknown key 'belnd' (did you mean 'blend'?)"}},
         Refusal{"word_for_a_list", {"26:15: supports.side.fix: expected a list of x, y, z, found 'x'"}},
         Refusal{"number_for_a_vector",

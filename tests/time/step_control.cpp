@@ -193,6 +193,65 @@ TEST(StepControl, EveryObjectionGivesUpUnderItsOwnName) {
     }
 }
 
+/// A step that nothing but a shock of contact speaks against.
+std::vector<std::pair<StepEvidence, const char*>> shocks() {
+    StepEvidence solver, velocity, energy, closing;
+    solver.solved = false;
+    velocity.velocity_error = energy.energy_jump = closing.closing_energy = 1;
+    return {{solver, "solver"}, {velocity, "velocity"}, {energy, "energy"}, {closing, "closing"}};
+}
+
+StepLimits settling() {
+    StepLimits limits;
+    limits.velocity_error = limits.energy_tolerance = limits.closing_energy = 1e-3;
+    limits.inelastic_impacts = true;
+    return limits;
+}
+
+TEST(StepControl, AShockIsRepeatedAsAnImpactOfTheSameStep) {
+    for (const auto& [evidence, what] : shocks()) {
+        const Decision decision = judge(evidence, settling(), 0.5, 0);
+        EXPECT_EQ(decision.verdict, Verdict::retry) << what;
+        EXPECT_EQ(decision.reason, Reason::impact) << what;
+        EXPECT_EQ(decision.dt, 0.5) << what;
+        EXPECT_TRUE(decision.impact) << what;
+        StepLimits resolved = settling();
+        resolved.inelastic_impacts = false;
+        const Decision cut = judge(evidence, resolved, 0.5, 0);
+        EXPECT_LT(cut.dt, 0.5) << what;
+        EXPECT_FALSE(cut.impact) << what;
+    }
+    // paths and depths ask for shorter steps, whoever makes them
+    StepEvidence path;
+    path.collision = 0.3;
+    EXPECT_EQ(judge(path, settling(), 0.5, 0).reason, Reason::collision);
+}
+
+TEST(StepControl, AnImpactMayLoseEnergyButNotGainIt) {
+    const std::vector<std::string> cut{"solver", "energy"};
+    for (auto [evidence, what] : shocks()) {
+        evidence.impact = true;
+        const bool objects = std::ranges::find(cut, what) != cut.end();
+        const Decision decision = judge(evidence, settling(), 0.5, 0);
+        EXPECT_EQ(decision.verdict, objects ? Verdict::retry : Verdict::accept) << what;
+        if (objects) {
+            EXPECT_EQ(decision.dt, 0.25) << what;
+            EXPECT_TRUE(decision.impact) << what;
+        }
+    }
+}
+
+TEST(StepControl, AnImpactGoesOnUntilVelocitiesNoLongerJump) {
+    StepEvidence evidence;
+    evidence.impact = true;
+    evidence.velocity_error = 1.1e-3;
+    EXPECT_TRUE(judge(evidence, settling(), 0.5, 0).impact);
+    evidence.velocity_error = 0.9e-3;
+    EXPECT_FALSE(judge(evidence, settling(), 0.5, 0).impact);
+    evidence.forced = true; // the same once more
+    EXPECT_TRUE(judge(evidence, settling(), 0.5, 0).impact);
+}
+
 TEST(StepControl, AFailedSolveIsHalvedAndItsGapsMeanNothing) {
     StepEvidence evidence = falling(1, -100);
     evidence.solved = false;

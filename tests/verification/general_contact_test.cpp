@@ -73,7 +73,8 @@ TEST(GeneralContact, FindsBodiesThatCameNear) {
     const Diary found = run(bodies + general);
     const auto names = [](const model::State& state) {
         std::vector<std::string> all;
-        for (const model::ContactHistory& history : state.contact) all.push_back(history.pair->name());
+        for (const model::ContactHistory& history : state.contact)
+            if (!history.pair->slaves().facets.empty()) all.push_back(history.pair->name()); // not edges alone
         return all;
     };
     EXPECT_THAT(names(found.states.back()),
@@ -89,9 +90,9 @@ TEST(GeneralContact, CarriesTheLoadOnEverySurfaceWithEveryDiscretisation) {
         for (const char* discretisation : {"node", "petrov_galerkin"}) {
             const Diary diary =
                 run(scene, {{"contact.general.surface", surface}, {"contact.general.discretisation", discretisation}});
-            ASSERT_EQ(diary.states.back().contact.size(), 1u);
             double carried = 0;
-            for (const Vec3& lambda : diary.states.back().contact[0].lambda) carried += lambda.z();
+            for (const model::ContactHistory& history : diary.states.back().contact)
+                for (const Vec3& lambda : history.lambda) carried += lambda.z();
             EXPECT_NEAR(carried, pressed, 1e-7 * pressed) << surface << ' ' << discretisation;
         }
 }
@@ -135,7 +136,8 @@ contact:
 )";
     const Diary found = run(bodies + beside);
     std::vector<std::string> names;
-    for (const model::ContactHistory& history : found.states.back().contact) names.push_back(history.pair->name());
+    for (const model::ContactHistory& history : found.states.back().contact)
+        if (!history.pair->slaves().facets.empty()) names.push_back(history.pair->name());
     EXPECT_THAT(names, testing::UnorderedElementsAre("sliding", "general: cap on lid", "general: base on lid"));
     const Diary written =
         run(bodies + by_hand, {{"contact.sliding.friction", "0.1"}, {"contact.sliding.master.set", "ground"}});

@@ -2,6 +2,7 @@
 
 #include "support/scene_runner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -78,6 +79,53 @@ TEST(Tutorials, PadOfAFileLeavesAPrint) {
     const auto force = [&](std::size_t step) { return run.steps[step].pairs[0].on_slave.z(); };
     EXPECT_GT(force(0), 0);
     EXPECT_GT(force(3), 4 * force(0)) << "the contact grows with the depth";
+}
+
+TEST(Tutorials, StackStandsStillUnderItsWeights) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/stack.yaml"));
+    const model::State& end = run.steps.back().state;
+    std::vector<double> carried;
+    for (const model::ContactHistory& pair : end.contact) {
+        double sum = 0;
+        for (const Vec3& lambda : pair.lambda) sum += std::abs(lambda.z());
+        if (sum > 0) carried.push_back(sum);
+    }
+    std::ranges::sort(carried);
+    ASSERT_EQ(carried.size(), 10u);
+    const double weight = 7850 * std::pow(50e-3, 3) * 9.81;
+    for (std::size_t k = 0; k < carried.size(); ++k)
+        EXPECT_NEAR(carried[k], static_cast<double>(k + 1) * weight, 1e-4 * weight) << k;
+    for (const Vec3& v : end.v.values()) EXPECT_LT(v.norm(), 1e-6);
+}
+
+/// When the front of a domino's top has moved by 4 mm, s; 0: never.
+double knocked(const support::SceneRun& run, Index domino) {
+    constexpr double far = 4e-3;
+    const model::Body& body = run.plan.model.bodies[static_cast<std::size_t>(domino + 1)]; // the floor is first
+    const auto begin = body.mesh.nodes.begin();
+    const auto top = std::max_element(begin, body.mesh.nodes.end(),
+                                      [](const Vec3& a, const Vec3& b) { return a.z() + a.x() < b.z() + b.x(); });
+    const auto node = static_cast<std::size_t>(body.first_node + (top - begin));
+    double time = 0, moved = 0;
+    for (const auto& step : run.steps) {
+        const double now = step.state.u[node].x();
+        if (now >= far) return step.state.time - (step.state.time - time) * (now - far) / (now - moved);
+        time = step.state.time;
+        moved = now;
+    }
+    return 0;
+}
+
+TEST(Tutorials, DominoesFallAsRigidOnesDo) {
+    // scripts/measure/dominoes --dt 2e-4: rigid bodies with friction and inelastic impacts, s
+    const std::vector<double> rigid{0.0172, 0.1158, 0.1951, 0.2487};
+    constexpr double allowed = 0.05;
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/dominoes.yaml"),
+                       {{"stages.fall.duration", "0.26 s"}, {"stages.fall.steps", "260"}});
+    for (std::size_t k = 0; k < rigid.size(); ++k)
+        EXPECT_NEAR(knocked(run, static_cast<Index>(k)), rigid[k], allowed * rigid[k]) << k;
 }
 
 } // namespace

@@ -68,6 +68,10 @@ public:
         return dynamics_ || varies() || stabilised() ? tangent_ : model_.K;
     }
     [[nodiscard]] bool dynamic() const { return dynamics_ != nullptr; }
+    /// Factor (1 - alpha_m) da/du of M in the tangent of the attempt, 1/s^2; 0 in statics.
+    [[nodiscard]] double mass_factor() const {
+        return dynamic() ? (1 - dynamics_->integrator.alpha_m) * kinematics_.by_u_acceleration : 0;
+    }
     [[nodiscard]] bool symmetric() const {
         return !follower_pressure_ && !also_ && (dynamics_ == nullptr || !nonlinear());
     }
@@ -104,6 +108,7 @@ private:
     std::vector<FollowerLoad> pressures_;
     Kinematics kinematics_; ///< of the current dt
     double dt_ = 0;
+    Integrator rule_;                  ///< of the current attempt
     std::optional<fe::StepMean> mean_; ///< for nonlinear elements, with the current dt; none in statics
     model::MaterialHistory history_start_;
     Stabilisation springs_;        ///< no share: no springs

@@ -21,16 +21,17 @@ enum class StatusRule {
 
 /// Contact of one slave node, linear in the motion of its nodes and in its force, in the local axes (n, t_1, t_2):
 ///     u = w + A dy = (gap, tangential drift),   forces on the masters F r for the force r on the slave.
-/// If stick is elastic, its law holds for the tangential part of u + compliance (r - anchor).
+/// If stick is elastic, its law holds for the tangential part of u + compliance (r - anchor); if the contact yields, for the
+/// gap + normal compliance r_n.
 struct LinearisedContact {
     Index coupling = -1, slave = -1;
-    std::span<const Index> masters; ///< (n) global
-    Mat3 axes = Mat3::Identity();   ///< columns n, t_1, t_2
-    Vec3 w = Vec3::Zero();          ///< m
-    double compliance = 0;          ///< m/N
-    Vec3 anchor = Vec3::Zero();     ///< N
-    Matrix A;                       ///< (3 x 3+3n)
-    contact::MatrixX3 F;            ///< (3m x 3), of the first m masters
+    std::span<const Index> masters;               ///< (n) global
+    Mat3 axes = Mat3::Identity();                 ///< columns n, t_1, t_2
+    Vec3 w = Vec3::Zero();                        ///< m
+    double compliance = 0, normal_compliance = 0; ///< m/N
+    Vec3 anchor = Vec3::Zero();                   ///< N
+    Matrix A;                                     ///< (3 x 3+3n)
+    contact::MatrixX3 F;                          ///< (3m x 3), of the first m masters
     double friction = 0;
 };
 
@@ -58,6 +59,10 @@ public:
     [[nodiscard]] model::ContactEvaluations& evaluations() { return evaluations_; }
     /// Smallest gap, m; infinite if no slave node faces a master.
     [[nodiscard]] double least_gap() const;
+    /// See model::ContactEvaluation::forget_path().
+    void forget_paths() {
+        for (model::ContactEvaluation& evaluation : evaluations_) evaluation.forget_path();
+    }
     /// Writes the contact forces of a state into z.
     void pack(const std::vector<model::ContactHistory>& contact, VectorRef z) const;
     /// At the last linearise(): slave nodes in contact with a master, by coupling; and, for the others, derivatives of

@@ -12,6 +12,8 @@ namespace osculate::equilibrium {
 
 class CycleWatch {
 public:
+    /// Whether half of the patience will do, and the first return to statuses that were left counts.
+    void set_impatient(bool impatient) { impatient_ = impatient; }
     /// Opens an attempt.
     void begin();
     /// Opens a solve.
@@ -33,7 +35,7 @@ private:
     std::size_t last_configuration_ = 0;
     double best_ = std::numeric_limits<double>::max(); ///< least residual of the solve
     int idle_ = 0;
-    bool round_ = false;
+    bool round_ = false, impatient_ = false;
 };
 
 } // namespace osculate::equilibrium

@@ -29,7 +29,7 @@ struct IterationRecord {
 class Equilibrium final : public solve::NonlinearProblem {
 public:
     /// @param pairs     in force during its attempts
-    /// @param dynamics  null in statics; must outlive this object
+    /// @param dynamics  null in statics; must outlive this object; its integrator may change between attempts
     Equilibrium(const model::Model& model, model::ContactPairs pairs, const linear::Constraints& constraints,
                 const Dynamics* dynamics, const TangentChoice& choice, Timings& timings, int threads,
                 bool follower_pressure = false);
@@ -43,6 +43,11 @@ public:
     /// Data that the last commit() kept for later steps; recall() restores it. Call only between attempts.
     [[nodiscard]] EquilibriumMemory memory() const { return tangent_.memory(); }
     void recall(const EquilibriumMemory& memory) { tangent_.recall(memory); }
+    /// Begins again at the start of the step: facets are as they were there.
+    void forget_paths() { contact_.forget_paths(); }
+    /// Whether solves stop as soon as they come back to statuses or gain nothing for a while, since a rung that needs no
+    /// luck follows.
+    void set_impatient(bool impatient) { cycles_.set_impatient(impatient); }
     /// Statuses for the next solve, see ContactTerm.
     void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
     /// Makes the next residual linear in the displacements about u, (nodes) m: for elements under a driven motion that

@@ -28,8 +28,8 @@ public:
                        const linear::Dependence* dependence, const Iterate& at, const TangentChoice& choice,
                        Timings& timings, int threads);
 
-    /// Opens an attempt over dt (0 in statics); changed: the bodies' stiffness has new values.
-    void begin(double dt, bool changed);
+    /// Opens an attempt, see BodyForces::mass_factor(); changed: the bodies' stiffness has new values.
+    void begin(double mass_factor, bool changed);
     /// To be called when the bodies' stiffness is another matrix object.
     void stiffness_replaced();
     /// Ends an attempt: keeps or discards the growth of patterns during it.

@@ -14,6 +14,7 @@ struct Integrator {
     double beta = 0.25, gamma = 0.5;
     double beta_n = 0.25;
     double error = 1. / 12; ///< coefficient of local_error()
+    bool operator==(const Integrator&) const = default;
 
     /// Displacement at t + dt if the acceleration remains a_n, m.
     [[nodiscard]] Vec3 predictor(const Vec3& u_n, const Vec3& v_n, const Vec3& a_n, double dt) const;

@@ -40,11 +40,11 @@ public:
     CondensedTangent(const Constraints& constraints, const BlockMatrix& K, const Field& X,
                      const std::vector<CondensedBody>& bodies, std::vector<Index> contact, std::vector<Index> slaves,
                      int threads);
-    /// Opens an attempt with K for dt (0 in statics); changed: K has new values.
-    void begin(double dt, bool changed) {
-        dt_ = dt;
+    /// Opens an attempt with K with this share of M (0 in statics); changed: K has new values.
+    void begin(double mass_factor, bool changed) {
+        mass_factor_ = mass_factor;
         if (changed) factorised_ = false;
-        if (schur_ && schur_->dt != dt) schur_ = nullptr;
+        if (schur_ && schur_->mass_factor != mass_factor) schur_ = nullptr;
     }
     /// Keeps the current T, or restores the T of the last keep(): a rejected attempt leaves no trace.
     void keep() { kept_ = schur_; }
@@ -104,7 +104,7 @@ private:
     std::vector<Index> reduced_; ///< (3 contact nodes) reduced displacement of a local component, -1: held
     std::vector<Index> sprung_;  ///< contact nodes on springs
     double spring_ = 0;
-    double dt_ = 0;
+    double mass_factor_ = 0;
     bool factorised_ = false, usable_ = true;
     int factorisations_ = 0;
     const std::vector<BearingContact>* contacts_ = nullptr;

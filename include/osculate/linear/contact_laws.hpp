@@ -14,7 +14,7 @@ struct ContactLaws {
         Index node; ///< contact node
         Mat3 by;    ///< global components
     };
-    double dt = 0;                ///< length of the step for which they were made, 0 in statics, s
+    double mass_factor = 0;       ///< of M in the stiffness for which they were made, 0 in statics, 1/s^2
     std::vector<Index> couplings; ///< couplings of SystemMatrix that are in contact
     std::vector<std::vector<Term>> terms;
     std::vector<Mat3> B, D;

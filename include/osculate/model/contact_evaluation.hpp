@@ -29,6 +29,8 @@ public:
     /// @param tails  (nodes) rounding errors of x, the digits that x lacks, m; empty: none
     void begin_step(const std::vector<Vec3>& x, const ContactHistory& history, Timings& timings, int threads,
                     const std::vector<Vec3>& tails = {});
+    /// Facets as at the start of the step again, none latched: what a solve that failed went through does not count.
+    void forget_path();
     /// Evaluates every slave node at positions x, starting each search from the node's last facet.
     void evaluate(const std::vector<Vec3>& x, Timings& timings, int threads, const std::vector<Vec3>& tails = {});
 
@@ -38,6 +40,11 @@ public:
     [[nodiscard]] double area(Index j) const { return discretisation_->loaded_area(j, pair_->slaves().area[j]); }
     /// Smallest gap of all slave nodes with a contact partner, m; infinite if none has one.
     [[nodiscard]] double least_gap() const;
+    /// What presses on the slave side over the force on slave j: 1, and for an edge, whose two ends share it, 1/(1 - s), see
+    /// contact::make_edge_discretisation(). Drifts are those of the contact point times this.
+    [[nodiscard]] double whole(Index j) const {
+        return pair_->slaves().edges && points_[j].found ? 1 - points_[j].weights(0) : 1;
+    }
     /// Closest point of slave j on its facet, whether or not there is contact.
     [[nodiscard]] const contact::FacetHit& hit(Index j) const { return tracking_.hits[j]; }
     /// Gap of slave node j itself, m, if the discretisation averages gaps and may overlook it, and it has no contact
@@ -118,6 +125,13 @@ private:
     void place_facets(const std::vector<Vec3>& x);
     /// Whether slave j may touch a facet in this attempt, see SlaveNodes::around and OwnSurface.
     [[nodiscard]] bool may_touch(Index j, Index facet) const;
+    /// See SlaveNodes::yields.
+    [[nodiscard]] bool yields(Index j) const {
+        const SlaveNodes& slaves = pair_->slaves();
+        return slaves.edges || (!slaves.yields.empty() && slaves.yields[static_cast<std::size_t>(j)] != 0);
+    }
+    /// Whether a node that yields is where slaves of the pair in the other direction have the contact.
+    [[nodiscard]] bool is_left_to_slaves(Index j) const;
     /// Whether the closest facet, of those that may be touched, is not below the node but beside it.
     [[nodiscard]] bool looks_past(const contact::FacetHit& hit) const;
     /// Facets to look for slave j on.
@@ -136,6 +150,7 @@ private:
     std::vector<double> inertia_; ///< (slaves) N/m
     std::vector<char> held_;      ///< (slaves) in the current stage
     std::vector<Vec3> lambda_start_;
+    std::vector<Index> facet_start_;            ///< (slaves) at the start of the step, see forget_path()
     Places start_, now_;                        ///< positions, m
     Places tails_start_, tails_;                ///< their rounding errors, m; empty: none
     std::vector<Vec3> vertices_, vertex_tails_; ///< current, of the master surface

@@ -4,12 +4,15 @@
 
 #include "osculate/contact/coulomb.hpp"
 #include "osculate/contact/discretisation.hpp"
+#include "osculate/contact/edge_crossing.hpp"
 #include "osculate/core/choices.hpp"
 #include "osculate/model/master_side.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osculate::contact {
@@ -36,6 +39,13 @@ struct OwnSurface {
     double reach = 0; ///< how far facets are looked for, m
 };
 
+/// Slaves that are edges: each begins in a slave node, which stands for it.
+struct CrossingEdges {
+    std::vector<std::array<Index, 2>> half_edges; ///< (slaves) of the slave's and of the master's surface
+    std::vector<contact::EdgesThatMeet> meet;     ///< (slaves)
+    std::vector<Index> others;                    ///< further nodes, global; their numbers follow those of the slaves
+};
+
 /// Slave nodes of a pair and the data of each node.
 struct SlaveNodes {
     std::vector<Index> node;         ///< global
@@ -44,12 +54,18 @@ struct SlaveNodes {
     std::vector<mesh::Facet> facets; ///< slave surface, global nodes
     std::vector<Mat3> in_plane{};    ///< projectors on the symmetry planes of each node; empty: no such planes
     /// Nodes at the other ends of the edges that meet in each node, global: a node touches only what it points at, what no
-    /// such edge goes into at more than 45 degrees. Empty: it touches whatever it is above.
+    /// such edge goes into at more than 25 degrees. Empty: it touches whatever it is above.
     std::vector<std::vector<Index>> along{};
     /// Outer facets that meet at each node, global: a node touches only facets that one of these faces at the start of an
     /// attempt, and for it the master ends where they do. Empty: it touches whatever it is above.
     std::vector<std::vector<mesh::Facet>> around{};
+    /// Sides of the scene's own pairs that each slave is on, and the sides opposite to those that each master facet is on: a
+    /// slave touches no facet with which it has one in common. Empty: none.
+    std::vector<std::vector<Index>> treated{}, facet_treated{};
     std::optional<OwnSurface> own{}; ///< where slave and master are one surface
+    /// Which slave nodes yield a little, see contact::Coulomb: others may hold the same place. Empty: none does.
+    std::vector<char> yields{};
+    std::optional<CrossingEdges> edges{}; ///< where the slaves are edges
 };
 
 struct ContactOptions {
@@ -102,11 +118,16 @@ public:
         static const contact::Image none{};
         return vertex < surface().vertex_count() ? image_of(vertex).M : none.M;
     }
-    /// Global node of a vertex, or of a slave node in the numbering of Mortar.
+    /// Global node of a vertex, or of a slave node, or another one of the slave's, in the numbering of Mortar and CrossingEdges.
     [[nodiscard]] Index node(Index vertex) const {
-        return vertex < surface().vertex_count() ? master_nodes()[vertex]
-                                                 : slaves_.node[vertex - surface().vertex_count()];
+        const Index number = vertex - surface().vertex_count();
+        if (number < 0) return master_nodes()[vertex];
+        return number < size() ? slaves_.node[number] : slaves_.edges->others[number - size()];
     }
+    /// Where slaves are edges: the edge of slave j, and the master's that it may touch.
+    /// @param vertices  see vertices(), at x
+    [[nodiscard]] std::pair<contact::SharpEdge, contact::SharpEdge> edges(Index j, const std::vector<Vec3>& x,
+                                                                          const std::vector<Vec3>& vertices) const;
     /// Nothing has touched yet; without the pair itself, see opened().
     [[nodiscard]] ContactHistory initial_history() const;
 

@@ -4,6 +4,7 @@
 #include "osculate/core/field.hpp"
 #include "osculate/model/contact_pair.hpp"
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -57,8 +58,9 @@ public:
     /// Whether pairs found for a scope are all that may touch at positions x, and after nodes have moved on by `ahead`, m.
     [[nodiscard]] bool covers(const ContactScope& scope, const Field& x, double ahead = 0) const;
     /// The pairs for a scope with their histories: those of `before` where a slave node is in the same pair as there, which
-    /// it is if it is closed. @param before  of pairs found earlier
-    [[nodiscard]] std::vector<ContactHistory> near(const ContactScope& scope,
+    /// it is if it is closed. Margins of the scope become smaller where facets come to face each other within them.
+    /// @param before  of pairs found earlier
+    [[nodiscard]] std::vector<ContactHistory> near(ContactScope& scope,
                                                    const std::vector<ContactHistory>& before) const;
 
     [[nodiscard]] const std::vector<OuterSurface>& surfaces() const { return surfaces_; }
@@ -70,13 +72,24 @@ public:
     [[nodiscard]] std::vector<Index> possible_slaves() const;
     /// A pair of two surfaces, or of one and itself.
     /// @param nodes, facets  of the slave; the nodes of the facets and perhaps others, ascending
+    /// @param yielding  those of the nodes that yield, ascending
     [[nodiscard]] std::shared_ptr<const ContactPair> make_pair(const ContactScope& scope, Index slave, Index master,
                                                                const std::vector<Index>& nodes,
-                                                               std::vector<mesh::Facet> facets) const;
+                                                               std::vector<mesh::Facet> facets,
+                                                               const std::vector<Index>& yielding) const;
+    /// A pair of edges of two surfaces.
+    /// @param edges  half-edges of the slave's and of the master's surface, ascending
+    [[nodiscard]] std::shared_ptr<const ContactPair> make_edges(Index slave, Index master,
+                                                                const std::vector<std::array<Index, 2>>& edges) const;
     /// Surfaces of a pair that near() or make_pair() has made: slave and master.
     [[nodiscard]] std::pair<Index, Index> sides_of(const ContactPair& pair) const;
 
 private:
+    /// A convex feature edge of a surface.
+    struct FeatureEdge {
+        Index surface = -1, half_edge = -1;
+        bool own = true; ///< not the image of one
+    };
     struct Facet {
         Index surface = -1;
         double size = 0; ///< root of its area in the reference configuration, m
@@ -85,6 +98,7 @@ private:
     struct Found {
         std::vector<Index> facets; ///< numbers over all surfaces
         std::vector<Index> nodes;
+        std::vector<Index> yielding; ///< nodes of sharp edges of what is otherwise the master
     };
     using FacetPairs = std::vector<std::pair<Index, Index>>;
     /// For every vertex of a surface its facets that are near along the surface, ascending.
@@ -96,6 +110,10 @@ private:
     enum class Role : char { slave, none, master };
     [[nodiscard]] std::vector<Role> roles_within(const FacetPairs& facing,
                                                  const std::vector<ContactHistory>& before) const;
+    void find_sharp_edges();
+    /// Adds the pairs of edges for a scope, see near().
+    void add_edges(const ContactScope& scope, const std::vector<ContactHistory>& before,
+                   std::vector<ContactHistory>& histories) const;
     /// Number of the surface of a body, that of the surfaces if it has none.
     [[nodiscard]] std::size_t surface_of_body(Index body) const;
     [[nodiscard]] bool may_meet(Index f, Index g) const;
@@ -113,7 +131,10 @@ private:
     std::vector<std::vector<Index>> node_facets_,
         along_;                  ///< (nodes) facets that meet there; nodes at other ends of edges
     std::vector<char> left_out_; ///< (surfaces x surfaces)
-    std::vector<Index> first_;   ///< (surfaces) number of the first facet
+    std::vector<FeatureEdge> sharp_edges_;
+    std::vector<char> sharp_;      ///< (nodes) on such an edge
+    std::vector<double> diagonal_; ///< (surfaces) of the box of the reference configuration, m
+    std::vector<Index> first_;     ///< (surfaces) number of the first facet
     /// (nodes) facets of the own surface that are near along it, numbers within the surface, ascending
     std::vector<std::vector<Index>> around_;
     std::vector<std::vector<char>>

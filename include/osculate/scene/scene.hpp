@@ -235,10 +235,15 @@ struct BlendSurface {
     bool operator==(const BlendSurface&) const = default;
 };
 
+/// Facets or a blend, whichever suits the master.
+struct AutomaticSurface {
+    bool operator==(const AutomaticSurface&) const = default;
+};
+
 struct MasterSpec {
     std::string set;
     std::string rigid_surface; ///< a body with an exact surface, in place of the set; empty: not given
-    std::variant<FacetsSurface, RpimSurface, BlendSurface> surface = BlendSurface{};
+    std::variant<AutomaticSurface, FacetsSurface, RpimSurface, BlendSurface> surface;
     bool operator==(const MasterSpec&) const = default;
 };
 
@@ -297,6 +302,7 @@ struct BackwardEuler {
 
 enum class MassMatrix { consistent, lumped };
 enum class ContactMass { kept, redistributed };
+enum class Impacts { automatic, resolved, inelastic };
 
 struct StaticAnalysis {
     bool operator==(const StaticAnalysis&) const = default;
@@ -305,7 +311,10 @@ struct DynamicAnalysis {
     std::variant<GeneralisedAlpha, Newmark, Hht, BackwardEuler> integrator;
     MassMatrix mass = MassMatrix::consistent;
     ContactMass contact_mass = ContactMass::redistributed;
-    double mass_damping = 0, stiffness_damping = 0; ///< Rayleigh's C = mass_damping M + stiffness_damping K, 1/s and s
+    /// Rayleigh's C = mass_damping M + stiffness_damping K, 1/s and s; without stiffness_damping a rule gives it.
+    double mass_damping = 0;
+    std::optional<double> stiffness_damping;
+    Impacts impacts = Impacts::automatic;
     bool operator==(const DynamicAnalysis&) const = default;
 };
 

@@ -8,11 +8,25 @@
 namespace osculate::time {
 
 enum class Verdict { accept, retry, give_up };
-enum class Reason { none, interpenetration, solver, error, energy, collision, audit, closing_energy, reach, forced };
+enum class Reason {
+    none,
+    interpenetration,
+    solver,
+    error,
+    energy,
+    collision,
+    audit,
+    closing_energy,
+    reach,
+    impact,
+    forced
+};
 /// Those whose names differ.
-inline constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration, Reason::solver, Reason::error,
-                                     Reason::energy, Reason::collision,        Reason::audit,  Reason::reach,
-                                     Reason::forced};
+inline constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration,
+                                     Reason::solver, Reason::error,
+                                     Reason::energy, Reason::collision,
+                                     Reason::audit,  Reason::reach,
+                                     Reason::impact, Reason::forced};
 
 /// A row of steps.csv.
 struct Attempt {

@@ -16,6 +16,8 @@ struct FoundPair {
     Index slave = -1, master = -1; ///< surfaces of the general contact
     std::vector<Index> nodes;      ///< slave nodes
     std::vector<Index> facets;     ///< slave facets, four nodes each, the last of a triangle -1
+    std::vector<Index> yielding;   ///< nodes that yield, ascending
+    std::vector<Index> edges; ///< of a pair of edges: half-edges of the slave's and of the master's surface, by turns
 };
 
 struct Checkpoint : Progress {

@@ -19,6 +19,7 @@ namespace osculate::time {
 /// - *Path* against the moving facets, for all other open nodes whose motion could lead through a facet: it is at least
 ///   the distance of the closest facet, and is longer than `reach` or the node has lost, changed or found a sheet.
 ///   Paths are straight. Closed nodes follow a curved surface and therefore have no path.
+/// - *Edges against edges*: the gap at the end where they cross at the start, otherwise the path.
 /// A node that moves less than its distance to every facet costs one comparison; if all nodes do, no facet is examined.
 class CollisionCheck {
 public:
@@ -61,6 +62,8 @@ private:
     [[nodiscard]] double allowed(std::size_t p, Index facet) const;
     void add_normal_motions(const Field& u, StepEvidence& evidence) const;
     void add_paths(const Field& u, StepEvidence& evidence);
+    /// Paths of edges that had no crossing with each other at the start.
+    void add_edge_paths(std::size_t p, const Field& x, StepEvidence& evidence) const;
     void follow(std::size_t p, const std::vector<Index>& slaves, const Field& x, StepEvidence& evidence);
 
     const model::Model& model_;

@@ -15,7 +15,7 @@ struct Ledger {
     double kinetic = 0, strain = 0;
     double external = 0; ///< loads, supports and driven motions
     double friction = 0; ///< dissipated, >= 0
-    double damping = 0;  ///< dissipated
+    double damping = 0;  ///< dissipated, by damping and by inelastic impacts
     double algorithmic =
         0;              ///< dissipated by the integrator: work of inertia and stiffness beyond their energies' change
     double contact = 0; ///< work of normal contact forces; 0 while bodies stay in contact, > 0 is spurious energy
@@ -30,8 +30,9 @@ struct Ledger {
 /// The ledger after a step.
 /// @param equilibrium  at its last residual, that of `to`
 /// @param force        (nodes) external forces of the step's equations, N
+/// @param impact       all that the step takes beyond friction is damping
 [[nodiscard]] Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
                               const equilibrium::Equilibrium& equilibrium, const model::State& from,
-                              const model::State& to, const Field& force);
+                              const model::State& to, const Field& force, bool impact = false);
 
 } // namespace osculate::time

@@ -26,6 +26,7 @@ struct Progress {
     Field displacement_start{}; ///< (nodes) at the stage's start, local axes, m
     std::size_t reached = 0;    ///< number of the stage's target times already reached
     double dt = 0;              ///< of the next attempt, s
+    bool impact = false;        ///< the next attempt is one of an impact, see StepLimits::inelastic_impacts
     model::State state;
     Ledger ledger;
     bool moved = false; ///< a dynamic stage has begun

@@ -29,6 +29,8 @@ struct LadderOptions {
     /// (nodes) displacements of the start values, driven nodes at their old places: with nonlinear elements the first
     /// residuals are linear about them (Equilibrium::linearise_first_about); empty: exact from the start.
     Field predicted{}, unpredicted{};
+    /// Bodies settle: a trial is short, and Newton's method gives way early to exact friction, which starts afresh.
+    bool settles = false;
     bool last_chance = false; ///< the step cannot be cut: rung 3 may take long, and any failure leads to rung 4
     StabilisationOptions stabilisation{};
 };

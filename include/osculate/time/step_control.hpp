@@ -57,6 +57,7 @@ struct StepEvidence {
     GapEvidence unseen;
     /// Deepest place at which a body is inside another in the solution, from geometry alone.
     std::optional<contact::Intrusion> intrusion;
+    bool impact = false; ///< the attempt was made by the rule for impacts
     bool forced = false; ///< repeat the step unchanged, to test repetition
 };
 
@@ -81,13 +82,17 @@ struct StepLimits {
     double energy_tolerance = std::numeric_limits<double>::infinity();
     double velocity_error = std::numeric_limits<double>::infinity(); ///< ignored if the step cannot be cut, as the next
     double closing_energy = std::numeric_limits<double>::infinity();
+    /// A step in which contact acts as a shock is not cut, but made by backward Euler, for which an impact within a step
+    /// is inelastic: what a step cannot follow comes to rest.
+    bool inelastic_impacts = false;
 };
 
 struct Decision {
     Verdict verdict = Verdict::accept;
     Reason reason = Reason::none;
-    double dt = 0;     ///< of the next step after accept, of the same step after retry, s
-    double lambda = 1; ///< fraction of a rejected attempt's dt that was required, with floor but without dt_min
+    bool impact = false; ///< the next attempt is one of an impact
+    double dt = 0;       ///< of the next step after accept, of the same step after retry, s
+    double lambda = 1;   ///< fraction of a rejected attempt's dt that was required, with floor but without dt_min
     double value =
         0; ///< deciding value: gap g1, residual, local error, energy jump, share or fraction; if accepted: the residual
     Index pair = -1, slave = -1;                 ///< governing point of an interpenetration or a collision
@@ -102,7 +107,9 @@ struct Decision {
 /// The objection with the smallest lambda governs; among equal ones the first of: solver, interpenetration, collision,
 /// audit, error, velocity_error, energy, closing_energy. A cut never goes below dt_min, which is tried before giving
 /// up. Errors of velocities and closing gaps only cut: if the step cannot be cut they are ignored, and RunChecks
-/// reports their cost.
+/// reports their cost. With inelastic impacts, an objection that a shock can cause (solver, error of velocities, energy,
+/// closing_energy) makes the step an impact of the same dt; in an impact, errors of velocities and closing gaps are no
+/// objections, and the last such step is one without them.
 /// @param dt       of the attempt, s
 /// @param repeats  of this step so far, without forced ones
 [[nodiscard]] Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt, int repeats);

@@ -108,12 +108,16 @@ Check examine(const LoadedScene& loaded, int threads) {
         if (p.gaps.above == 0)
             check.warnings.push_back({"contact." + pair.name(), "no slave node is above or below the master"});
     }
+    const bool lands = std::ranges::any_of(
+        plan.stages, [](const time::Stage& stage) { return stage.dynamics && !stage.limits.inelastic_impacts; });
     for (const Index b : plan.model.kept_contact_mass)
-        check.warnings.push_back(
-            {"bodies." + plan.model.bodies[static_cast<std::size_t>(b)].name,
-             "its slave nodes keep their mass although contact_mass is redistributed: no masses on its other nodes "
-             "give its centre and inertia, so impacts lose or gain energy and contact forces oscillate; use a finer "
-             "mesh behind the contact or fewer slave nodes"});
+        if (lands)
+            check.warnings.push_back(
+                {"bodies." + plan.model.bodies[static_cast<std::size_t>(b)].name,
+                 "its slave nodes keep their mass although contact_mass is redistributed: no masses on its other nodes "
+                 "give its centre and inertia, so impacts lose or gain energy and contact forces oscillate; use a "
+                 "finer "
+                 "mesh behind the contact or fewer slave nodes"});
     check.free = free_motions(plan, contact);
     return check;
 }

@@ -5,6 +5,7 @@
 #include "app/plan/plan_items.hpp"
 #include "app/plan/planned_probe.hpp"
 #include "app/plan/settle_pairs.hpp"
+#include "app/plan/settling.hpp"
 #include "app/plan/supports.hpp"
 #include "app/report/plots.hpp"
 #include "osculate/core/error.hpp"
@@ -52,6 +53,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft);
     add_couplings(draft);
     throw_faults(draft);
+    settle_dynamics(draft.scene);
     settle_pairs(draft);
     add_stages(draft);
     add_pairs(draft);
@@ -84,6 +86,7 @@ Plan compile(scene::Scene& scene, int threads, Timings& timings) {
     plan.mesh_notes = std::move(notes);
     scene.contact = plan.contact;
     scene.general = plan.general;
+    settle_dynamics(scene);
     return plan;
 }
 

@@ -2,6 +2,7 @@
 
 #include "app/overloaded.hpp"
 #include "app/plan/rigid_surface.hpp"
+#include "app/plan/smooth_parts.hpp"
 #include "osculate/contact/exact_surface.hpp"
 #include "osculate/contact/mirror.hpp"
 #include "osculate/contact/mortar.hpp"
@@ -15,6 +16,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 
 namespace osculate::app {
 
@@ -83,6 +85,9 @@ std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spe
                                                     const mesh::HalfEdgeSurface& surface,
                                                     const std::vector<Vec3>& vertices, model::ContactOptions& options) {
     return std::visit(Overloaded{
+                          [](const scene::AutomaticSurface&) -> std::unique_ptr<contact::MasterSurface> {
+                              throw std::logic_error("the surface of a pair is not settled");
+                          },
                           [&](const scene::FacetsSurface& s) {
                               options.hysteresis = s.hysteresis;
                               return contact::make_facets_surface(surface);
@@ -258,48 +263,6 @@ std::vector<char> cut_off(const scene::Scene& scene, const model::Model& model, 
     return held;
 }
 
-/// Smooth parts of a surface, between feature edges.
-struct SmoothParts {
-    bool plane = true;   ///< all of them
-    bool strips = false; ///< one is curved and nowhere wider than a facet: patches tell nothing about its slope across
-};
-
-SmoothParts smooth_parts(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X) {
-    constexpr double same = 1e-6; // of the angle between two normals
-    const auto normal = [&](Index f) { return mesh::facet_area_vector(surface.facets()[f], X).normalized(); };
-    const auto ends = [&](Index h) { return surface.is_boundary_edge(h) || surface.is_feature_edge(h); };
-    std::vector<char> rim(static_cast<std::size_t>(surface.vertex_count()), 0);
-    for (Index h = 0; h < static_cast<Index>(surface.half_edges().size()); ++h)
-        if (ends(h)) {
-            const mesh::HalfEdge& edge = surface.half_edges()[h];
-            rim[edge.origin] = rim[surface.half_edges()[edge.next].origin] = 1;
-        }
-    SmoothParts parts;
-    std::vector<char> seen(static_cast<std::size_t>(surface.facet_count()), 0);
-    for (Index first = 0; first < surface.facet_count(); ++first) {
-        std::vector<Index> waiting{first};
-        bool plane = true, wide = false;
-        while (!waiting.empty()) {
-            const Index f = waiting.back();
-            waiting.pop_back();
-            if (seen[f] != 0) continue;
-            seen[f] = 1;
-            const auto vertices = surface.facet_vertices(f);
-            for (std::size_t c = 0; c < vertices.size(); ++c) {
-                wide = wide || rim[vertices[c]] == 0;
-                const Index h = surface.first_half_edge(f) + static_cast<Index>(c);
-                if (ends(h)) continue;
-                const Index next = surface.half_edges()[surface.half_edges()[h].twin].facet;
-                plane = plane && normal(f).cross(normal(next)).norm() <= same;
-                waiting.push_back(next);
-            }
-        }
-        parts.plane = parts.plane && plane;
-        parts.strips = parts.strips || (!plane && !wide);
-    }
-    return parts;
-}
-
 model::GeneralContactOptions general_options(const scene::Scene& scene, const model::Model& model,
                                              const std::vector<model::OuterSurface>& surfaces) {
     const scene::GeneralContact& spec = *scene.general;
@@ -361,7 +324,7 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
         for (const mesh::Facet& facet : all.facets) all.nodes.insert(all.nodes.end(), facet.begin(), facet.end());
         std::ranges::sort(all.nodes);
         all.nodes.erase(std::unique(all.nodes.begin(), all.nodes.end()), all.nodes.end());
-        scene::MasterSpec master;
+        scene::MasterSpec master{{}, {}, scene::BlendSurface{}};
         const SmoothParts parts = smooth_parts(mesh::HalfEdgeSurface(all.facets, model.X), model.X);
         if (spec.surface == scene::GeneralSurface::facets ||
             (spec.surface == scene::GeneralSurface::automatic && ((dynamic && parts.plane) || parts.strips)))

@@ -60,7 +60,8 @@ void add_mass(Draft& draft) {
 void leave_steps_where_mass_lands(Draft& draft) {
     if (draft.plan.model.kept_contact_mass.empty()) return;
     for (time::Stage& stage : draft.plan.stages)
-        stage.limits.velocity_error = stage.limits.closing_energy = std::numeric_limits<double>::infinity();
+        if (!stage.limits.inelastic_impacts) // which are not cut for it
+            stage.limits.velocity_error = stage.limits.closing_energy = std::numeric_limits<double>::infinity();
 }
 
 /// Whose mass a stage weighs: its own, in statics that of the dynamic stage it leads to, or else comes from.

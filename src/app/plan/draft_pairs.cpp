@@ -103,7 +103,8 @@ void add_general_contact(Draft& draft) {
         return;
     }
     const model::GeneralContact& general = *draft.plan.model.general;
-    draft.plan.near_at_start = general.near(general.scope_at(draft.plan.model.X, 0), {});
+    model::ContactScope scope = general.scope_at(draft.plan.model.X, 0);
+    draft.plan.near_at_start = general.near(scope, {});
 }
 
 void check_gaps(Draft& draft) {

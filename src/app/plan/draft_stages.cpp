@@ -26,6 +26,12 @@ time::StepLimits step_limits(const Draft& draft, const scene::Stage& spec, bool 
         if (!spec.control.error_tolerance) limits.velocity_error = spec.control.velocity_error;
         limits.closing_energy = spec.control.closing_energy;
     }
+    const auto* analysis = std::get_if<scene::DynamicAnalysis>(&spec.analysis);
+    if (analysis != nullptr && analysis->impacts == scene::Impacts::inelastic) {
+        limits.inelastic_impacts = true; // where steps would be cut for an error, also if step_size is fixed
+        limits.velocity_error = spec.control.velocity_error;
+        limits.closing_energy = spec.control.closing_energy;
+    }
     if (draft.audited()) limits.audited_depth = draft.scene.solver.audited_depth;
     limits.dt_max = spec.duration / spec.steps;
     limits.dt_min = draft.scene.solver.smallest_step * limits.dt_max;
@@ -160,7 +166,7 @@ void add_stages(Draft& draft) {
         stage.ramp = spec.ramp;
         if (const auto* analysis = std::get_if<scene::DynamicAnalysis>(&spec.analysis)) {
             stage.dynamics = equilibrium::Dynamics{integrator(*analysis), analysis->mass == scene::MassMatrix::lumped,
-                                                   analysis->mass_damping, analysis->stiffness_damping};
+                                                   analysis->mass_damping, analysis->stiffness_damping.value()};
         }
         const bool dynamic = stage.dynamics.has_value();
         stage.limits = step_limits(draft, spec, dynamic);

@@ -101,7 +101,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
             for (Index v = 0; v < side.surface().vertex_count() && side.mirrored(); ++v)
                 images += side.own_vertex(v) != v ? 1 : 0;
             if (!surface.smooth) continue;
-            const scene::MasterSpec blend;
+            const scene::MasterSpec blend{{}, {}, scene::BlendSurface{}};
             add_patches(blend, side.surface(), patches);
             smooth += (smooth.empty() ? "" : ", ") + surface.name + ": " + in_words(blend);
         }
@@ -110,7 +110,7 @@ void add_surface_items(const scene::Scene& scene, const Plan& plan, PlanList& li
             slave_facets += static_cast<double>(history.pair->slaves().facets.size());
     list.say("smooth master surface", !smooth.empty(),
              !smooth.empty() ? smooth + flat
-             : contact       ? "every pair asks for facets"
+             : contact       ? "every pair has facets"
                              : no_pair,
              patches);
     list.say("mirror images", images > 0,

@@ -1,11 +1,13 @@
 #include "app/plan/settle_pairs.hpp"
 
+#include "app/plan/smooth_parts.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace osculate::app {
@@ -68,6 +70,20 @@ std::string why_discretisation(bool dynamic) {
     return dynamic ? "node, which conserves energy: a stage is dynamic" : "petrov_galerkin: every stage is static";
 }
 
+/// Patches over a plane face give the gaps and normals of its facets, as long as it does not bend; in steps of dynamics
+/// the little that it bends is not worth them. In statics the shares of the master's nodes are results, which would change.
+bool facets_suffice(const Draft& draft, const scene::Pair& pair, bool dynamic) {
+    if (!dynamic || pair.discretisation != Discretisation::node) return false;
+    const std::vector<Vec3>& X = draft.plan.model.X;
+    const std::vector<mesh::Facet>& facets = draft.set(pair.master.set).facets;
+    if (facets.empty()) return false;
+    try {
+        return smooth_parts(mesh::HalfEdgeSurface(facets, X), X).plane;
+    } catch (const std::runtime_error&) { // no manifold, which is a fault of its own
+        return false;
+    }
+}
+
 } // namespace
 
 void settle_pairs(Draft& draft) {
@@ -77,12 +93,19 @@ void settle_pairs(Draft& draft) {
     for (auto& [name, pair] : draft.scene.contact) {
         PairChoice& choice = draft.plan.choices.emplace_back();
         if (!pair.between[0].empty()) choice.roles = choose_slave(draft, pair);
-        if (pair.discretisation) continue;
-        // forces that are not the work conjugates of the gaps add energy, or take it, in every impact
+        // a rigid surface is exact at every node, whatever facets draw it
         const bool exact = !pair.master.rigid_surface.empty();
-        pair.discretisation = dynamic || exact ? Discretisation::node : Discretisation::petrov_galerkin;
-        choice.discretisation =
-            exact ? "node: the master is a rigid surface, exact at every node" : why_discretisation(dynamic);
+        if (!pair.discretisation) {
+            // forces that are not the work conjugates of the gaps add energy, or take it, in every impact
+            pair.discretisation = dynamic || exact ? Discretisation::node : Discretisation::petrov_galerkin;
+            choice.discretisation =
+                exact ? "node: the master is a rigid surface, exact at every node" : why_discretisation(dynamic);
+        }
+        if (!std::holds_alternative<scene::AutomaticSurface>(pair.master.surface)) continue;
+        if (!exact && facets_suffice(draft, pair, dynamic))
+            pair.master.surface = scene::FacetsSurface{};
+        else
+            pair.master.surface = scene::BlendSurface{};
     }
     draft.plan.contact = draft.scene.contact;
     if (draft.scene.general && !draft.scene.general->discretisation) {

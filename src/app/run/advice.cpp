@@ -2,6 +2,7 @@
 
 #include "osculate/app/advice.hpp"
 
+#include "app/plan/settling.hpp"
 #include "osculate/core/without_traps.hpp"
 #include "osculate/model/general_contact.hpp"
 
@@ -214,8 +215,7 @@ private:
         const model::ContactPair* const one = found_.contact ? pair(found_.contact->pair) : nullptr;
         if (one == nullptr) return;
         if (failed_.stage.dynamics && failed_.stage.dynamics->stiffness_damping == 0 && one->options().friction > 0) {
-            constexpr double share = 0.1; // of a step: what swings faster than steps can follow dies out
-            const std::string value = rounded(share * whole_step()) + " s";
+            const std::string value = rounded(automatic_stiffness_damping(whole_step())) + " s";
             change(in_stage("analysis.dynamic.stiffness_damping"), value,
                    value + ": bodies that rock on surfaces with friction stick and slip in vibrations that are too "
                            "fast for any step");

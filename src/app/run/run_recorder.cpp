@@ -155,7 +155,7 @@ void RunRecorder::describe_plan() {
         summary_.bodies.push_back({body.name, body.nodes(), body.mesh.element_count()});
     for (const auto& pair : plan_.model.pairs) {
         const scene::Pair& spec = *scene::find(scene_.contact, pair->name());
-        static const char* const surfaces[] = {"facets", "rpim", "blend"}; // in the order of the variant
+        static const char* const surfaces[] = {"automatic", "facets", "rpim", "blend"}; // in the order of the variant
         summary_.pairs.push_back(
             {pair->name(), pair->size(), pair->surface().facet_count(), surfaces[spec.master.surface.index()]});
     }

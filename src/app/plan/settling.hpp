@@ -1,0 +1,16 @@
+#pragma once
+/// What lets bodies come to rest in a dynamic stage, where a scene leaves it to Osculate.
+
+#include "osculate/scene/scene.hpp"
+
+namespace osculate::app {
+
+/// Decides how impacts are taken, and the stiffness damping, in dynamic stages that leave it open. Impacts are inelastic
+/// with general contact, unless the integrator keeps all energy or an error in time is bounded.
+void settle_dynamics(scene::Scene& scene);
+
+/// Rayleigh damping by which vibrations that steps cannot follow die out, s: a tenth of the stage's step. A vibration
+/// of n steps a period has the damping ratio pi/(10 n).
+[[nodiscard]] double automatic_stiffness_damping(double whole_step);
+
+} // namespace osculate::app

@@ -94,7 +94,7 @@ public:
                   "node: gaps to a rigid surface are exact at the slave nodes, and its pressure needs no averaging",
                   "another one");
         if (written({"between"})) {
-            if (slave) fault({"contact", name, "slave"}, "between, or slave and master.set", "both");
+            if (slave) fault({"contact", name, "slave"}, "between, or slave and master", "both");
             if (master)
                 fault({"contact", name, "master", exact ? "rigid_surface" : "set"}, "between, or slave and master",
                       "both");

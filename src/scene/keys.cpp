@@ -61,7 +61,7 @@ public:
         list(key, "list of " + join(vocabulary), "[]");
     }
     void points(const Key& key, std::vector<Vec3>& /*value*/) override {
-        list(key, "list of [x, y, z] " + unit(key), "none");
+        list(key, "points [x, y, z], each a " + unit(key), "none");
     }
     void axes(const Key& key, Mat3& /*value*/) override { list(key, "two directions", "[[1, 0, 0], [0, 1, 0]]"); }
     void group(const Key& key, const std::function<void()>& body) override {

@@ -37,8 +37,9 @@ void add_short_forms(Json& scene) {
     pair["not"] = {{"type", "object"},
                    {"required", {"surface", "master"}},
                    {"properties", {{"master", {{"type", "object"}, {"required", {"surface"}}}}}}};
-    const Json named_master{{"type", "object"}, {"required", {"set"}}},
-        unnamed_master{{"not", {{"type", "object"}, {"required", {"set"}}}}};
+    const Json names{{{"required", {"set"}}}, {{"required", {"rigid_surface"}}}};
+    const Json named_master{{"type", "object"}, {"oneOf", names}},
+        unnamed_master{{"not", {{"type", "object"}, {"anyOf", names}}}};
     pair["if"] = {{"type", "object"}, {"required", {"between"}}};
     pair["then"]["properties"] = {{"slave", false}, {"master", unnamed_master}};
     pair["else"] = {{"type", "object"}, {"required", {"slave", "master"}}, {"properties", {{"master", named_master}}}};

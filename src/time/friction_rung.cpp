@@ -9,7 +9,6 @@ using solve::KinsolOutcome;
 
 LadderResult settle_friction(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                              const equilibrium::Statuses& statuses, LadderOptions& options) {
-    using Verdict = equilibrium::Equilibrium::Verdict;
     LadderResult result;
     result.rung = "exact friction";
     result.outcome = KinsolOutcome::stopped;
@@ -18,8 +17,9 @@ LadderResult settle_friction(equilibrium::Equilibrium& equilibrium, solve::Kinso
     // each has a cycle watch of its own: what went round before does not count
     const auto evaluate = [&](equilibrium::Statuses from) {
         equilibrium.set_statuses(std::move(from), StatusRule::natural, false);
-        const Verdict verdict = equilibrium.residual(z, F);
-        if (verdict == Verdict::shorten || !F.allFinite()) return false; // otherwise F holds nothing
+        const auto verdict = equilibrium.residual(z, F);
+        if (verdict == equilibrium::Equilibrium::Verdict::shorten || !F.allFinite())
+            return false; // otherwise F holds nothing
         result.residual = F.cwiseAbs().maxCoeff() / options.reference_force;
         return true;
     };

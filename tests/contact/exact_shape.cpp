@@ -77,7 +77,9 @@ TEST(ExactShape, HasItsFootOnItself) {
             const ShapePoint at = evaluate(shape, p);
             if (!at.found) continue;
             const ShapePoint foot = evaluate(shape, p - at.gap * at.normal);
-            if (foot.found) EXPECT_NEAR(foot.gap, 0, 1e-12) << shape.index();
+            if (foot.found) {
+                EXPECT_NEAR(foot.gap, 0, 1e-12) << shape.index();
+            }
         }
 }
 

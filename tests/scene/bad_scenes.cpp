@@ -72,9 +72,9 @@ TEST(BadScene, PairsHaveEitherRolesOrTwoSides) {
     const std::string roles = "    slave: under\n    master: {set: ground, surface";
     const std::string pair = "bad.yaml:17:5: contact.joint";
     expect_fault(replaced(small_scene, roles, "    between: [under, ground]\n    master: {set: ground, surface"),
-                 "bad.yaml:18:19: contact.joint.master.set: expected between, or slave and master.set, found both");
+                 "bad.yaml:18:19: contact.joint.master.set: expected between, or slave and master, found both");
     expect_fault(replaced(small_scene, roles, "    slave: under\n    between: [under, ground]\n    master: {surface"),
-                 "bad.yaml:17:12: contact.joint.slave: expected between, or slave and master.set, found both");
+                 "bad.yaml:17:12: contact.joint.slave: expected between, or slave and master, found both");
     expect_fault(replaced(small_scene, roles, "    between: [under, under]\n    master: {surface"),
                  "bad.yaml:17:14: contact.joint.between: expected two sets, found 'under' twice");
     expect_fault(replaced(small_scene, roles, "    between: [under]\n    master: {surface"),

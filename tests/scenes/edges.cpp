@@ -10,10 +10,10 @@ class RidgeOnRidge : public Program {};
 
 TEST_F(RidgeOnRidge, ReportsTheForceThatItsHoldersFeel) {
     const Csv history(run(scene_file("tests/scenes/ridges.yaml")) / "history.csv");
-    ASSERT_EQ(history.rows.size(), 5U);
+    ASSERT_EQ(history.rows.size(), 4U);
     constexpr double balance = 1e-7; // of the force; the solver's tolerance is 1e-9
     constexpr double moves = 0.006;  // m, the crossing from where ridges cross at first
-    for (std::size_t i = 1; i < history.rows.size(); ++i) {
+    for (std::size_t i = 0; i < history.rows.size(); ++i) {
         const auto number = [&](const std::string& column) { return history.number(i, column); };
         const double press = number("body.lower.contact_force_z");
         EXPECT_LT(press, -100) << i;

@@ -29,7 +29,9 @@ TEST(ExactAudit, MeasuresTheDistancesThatContactMeasures) {
             const double audited = audited_distance(shape, p);
             if (std::abs(at.gap) < chords) continue;
             EXPECT_EQ(at.found, std::isfinite(audited)) << shape.index() << " at " << p.transpose();
-            if (at.found && std::isfinite(audited)) EXPECT_NEAR(audited, at.gap, chords) << shape.index();
+            if (at.found && std::isfinite(audited)) {
+                EXPECT_NEAR(audited, at.gap, chords) << shape.index();
+            }
         }
     }
 }

@@ -282,9 +282,9 @@ struct Part final : time::StepObserver {
     void accepted(const time::AcceptedStep& step) override { diary.accepted(step); }
     void between_steps(const std::function<time::Checkpoint()>& checkpoint) override {
         if (diary.states.size() % 7 != 3) return;
-        output::CheckpointFile file;
-        file.run = checkpoint();
-        files.push_back(output::encode(file));
+        output::CheckpointFile kept;
+        kept.run = checkpoint();
+        files.push_back(output::encode(kept));
     }
     std::string file; ///< of the scene
     Timings timings;

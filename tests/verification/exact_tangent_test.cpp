@@ -67,6 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"cylinder", "cylinder: {axis_point: [0, 0, -0.4], axis_direction: [1, 1, 0.1], radius: 0.4}", true},
         Case{"bore", "cylinder: {axis_point: [0, 0, 0.6], axis_direction: [1, 0.2, 0], radius: 0.62, inside: true}"},
         Case{"cone", "cone: {apex: [0.5, 0, 0.1], axis_direction: [-1, 0, -0.6], half_angle: 0.4}", true},
+        Case{"funnel",
+             "cone: {apex: [-3, 0, -0.02], axis_direction: [0.98, 0, 0.1987], half_angle: 0.2, inside: true}"},
         Case{"profile", filleted.c_str(), true}, Case{"curve", smooth.c_str()}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 

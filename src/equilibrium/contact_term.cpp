@@ -67,9 +67,12 @@ void ContactTerm::pack(const std::vector<model::ContactHistory>& contact, Vector
         }
 }
 
-bool ContactTerm::begin(const model::State& state, const Iterate& at, const StepLoad&, double) {
-    for (std::size_t p = 0; p < evaluations_.size(); ++p)
+bool ContactTerm::begin(const model::State& state, const Iterate& at, const StepLoad&, double dt) {
+    for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         evaluations_[p].begin_step(at.x, state.contact[p], timings_, threads_, at.tail);
+        if (dt < recovery_time_)
+            evaluations_[p].keep_depths(1 - dt / recovery_time_, at.x, timings_, threads_, at.tail);
+    }
     return false;
 }
 
@@ -185,7 +188,7 @@ bool ContactTerm::rows_within(const Iterate& at, const ConstVectorRef& F, double
             const contact::ContactPoint& point = evaluations_[p].point(j);
             if (point.found && contact::is_closed(statuses_[p][j])) {
                 const double yielded = evaluations_[p].law(j).normal_compliance() * lambda_[p][j].dot(point.normal);
-                if (!(std::abs(point.gap + yielded) <=
+                if (!(std::abs(evaluations_[p].state(j, lambda_[p][j]).gap + yielded) <=
                       no_gap * evaluations_[p].pair().surface().facet_size(point.facet)))
                     return false;
             }

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace osculate::model {
@@ -25,6 +26,10 @@ constexpr double beside = 0.8, at_edge = 0.05;
 constexpr double end = 0.04, flat = 0.98;
 /// Cosine between the normal and an edge of the slave that goes into the master at 25 degrees.
 constexpr double deepest_edge = -0.42;
+/// What a contact in force is allowed beyond these bounds, so that it does not end where it holds and begin where it does
+/// not: parts of them, and of the facet size at a boundary.
+constexpr double slack = 0.5, past_end = 0.05;
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 } // namespace
 
 ContactEvaluation::ContactEvaluation(const ContactPair& pair)
@@ -36,6 +41,7 @@ ContactEvaluation::ContactEvaluation(const ContactPair& pair)
     tracking_.facet.assign(inertia_.size(), -1);
     tracking_.changes.assign(inertia_.size(), 0);
     tracking_.hits.resize(inertia_.size());
+    in_force_.assign(inertia_.size(), 0);
     points_at_.assign(inertia_.size(), 1);
 }
 
@@ -44,8 +50,10 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
       master_(other.master_), inertia_(other.inertia_), held_(other.held_), lambda_start_(other.lambda_start_),
       start_(other.start_), now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_),
       vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), facets_(other.facets_), faces_(other.faces_),
-      tracking_(other.tracking_), points_(other.points_), points_at_(other.points_at_), states_(other.states_),
-      point_nodes_(other.point_nodes_), facet_changes_(other.facet_changes_) {
+      tracking_(other.tracking_), in_force_(other.in_force_), in_force_start_(other.in_force_start_),
+      points_(other.points_), points_at_(other.points_at_), depth_(other.depth_), kept_part_(other.kept_part_),
+      vertices_start_(other.vertices_start_), states_(other.states_), point_nodes_(other.point_nodes_),
+      facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -92,6 +100,7 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
     tails_start_ = tails_;
     tracking_.facet = history.facet;
     lambda_start_ = history.lambda;
+    depth_.clear();
     std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
     const ScopedTimer timer(timings, Part::search);
     if (pair_->slaves().edges) {
@@ -109,11 +118,44 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
                 tracking_.facet[j] = search_.global(now_.slaves[j], vertices_, reach, choice(j)).facet;
     });
     facet_start_ = tracking_.facet;
+    for (Index j = 0; j < pair_->size(); ++j) in_force_[j] = contact::is_closed(history.status[j]);
+    in_force_start_ = in_force_;
     discretisation_->begin(positions(), tracking_, threads);
+}
+
+void ContactEvaluation::keep_depths(double part, const std::vector<Vec3>& x, Timings& timings, int threads,
+                                    const std::vector<Vec3>& tails) {
+    const SlaveNodes& slaves = pair_->slaves();
+    if (!slaves.edges && slaves.around.empty()) return; // not of general contact
+    evaluate(x, timings, threads, tails);
+    std::vector<double> depth(points_.size(), unknown);
+    for (Index j = 0; j < pair_->size(); ++j) {
+        const contact::ContactPoint& point = points_[j];
+        if (!point.found) continue;
+        const Vec3& lambda = lambda_start_[j];
+        depth[j] = part * std::min(0.0, states_[j].gap + law(j).normal_compliance() * lambda.dot(point.normal));
+    }
+    depth_ = std::move(depth);
+    kept_part_ = part;
+    vertices_start_ = vertices_;
+    forget_path();
+}
+
+double ContactEvaluation::kept_depth(Index j) const {
+    if (depth_.empty() || !points_[j].found) return 0;
+    if (!std::isnan(depth_[j])) return depth_[j];
+    if (pair_->slaves().edges || points_[j].gap >= 0) return 0;
+    // it comes to lie over a facet from beside it: where it was already lower, nothing pushes it up at once
+    contact::FacetHit hit = search_.closest_on(tracking_.facet[j], start_.slaves[j], vertices_start_);
+    hit.beyond = 0;
+    contact::ContactPoint before;
+    master_->evaluate(start_.slaves[j], hit, vertices_start_, before);
+    return before.found || before.behind ? kept_part_ * std::min(0.0, before.gap) : 0;
 }
 
 void ContactEvaluation::forget_path() {
     tracking_.facet = facet_start_;
+    if (!in_force_start_.empty()) in_force_ = in_force_start_;
     std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
 }
 
@@ -144,10 +186,11 @@ bool ContactEvaluation::is_left_to_slaves(Index j) const {
     const Index facet = tracking_.facet[j];
     if (facet < 0) return false;
     const Vec3& n = facets_.normal[static_cast<std::size_t>(facet)];
-    if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)], [&](const Vec3& m) { return m.dot(n) < -flat; }))
+    const double lies = in_force_[j] != 0 ? 1 - slack * (1 - flat) : flat;
+    if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)], [&](const Vec3& m) { return m.dot(n) < -lies; }))
         return false;
     const mesh::HalfEdgeSurface& surface = pair_->surface();
-    const double near = end * surface.facet_size(facet);
+    const double near = end * surface.facet_size(facet) * (in_force_[j] != 0 ? slack : 1);
     const auto around = surface.facet_vertices(facet);
     const Vec3& x = now_.slaves[j];
     for (std::size_t c = 0; c < around.size(); ++c) {
@@ -160,9 +203,10 @@ bool ContactEvaluation::is_left_to_slaves(Index j) const {
     return false;
 }
 
-bool ContactEvaluation::looks_past(const contact::FacetHit& hit) const {
+bool ContactEvaluation::looks_past(Index j) const {
+    const contact::FacetHit& hit = tracking_.hits[j];
     return hit.facet >= 0 && hit.overhang > beside * hit.distance &&
-           hit.overhang > at_edge * pair_->surface().facet_size(hit.facet);
+           hit.overhang > at_edge * (in_force_[j] != 0 ? 1 + slack : 1) * pair_->surface().facet_size(hit.facet);
 }
 
 bool ContactEvaluation::may_touch(Index j, Index facet) const {
@@ -206,7 +250,12 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
                               ? search_.track(s, facet[j], vertices_, tracking_.hysteresis, choice(j))
                               : search_.closest_on(facet[j], s, vertices_, choice(j));
                 hits[j].latched = tracking_.changes[j] >= latch;
-                if (!pair_->slaves().around.empty() && looks_past(hits[j])) hits[j].beyond = hits[j].overhang;
+                if (pair_->slaves().around.empty()) continue;
+                if (looks_past(j))
+                    hits[j].beyond = hits[j].overhang;
+                else if (in_force_[j] != 0 && hits[j].beyond > 0)
+                    hits[j].beyond =
+                        std::max(0.0, hits[j].beyond - past_end * pair_->surface().facet_size(hits[j].facet));
             }
         });
         for (Index j = 0; j < pair_->size(); ++j)
@@ -220,9 +269,11 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     const ScopedTimer timer(timings, Part::contact);
     facet_changes_ += discretisation_->evaluate(positions(), tracking_, points_, threads);
     if (!pair_->slaves().along.empty()) drop_what_is_not_pointed_at(x);
-    for (Index j = 0; j < pair_->size(); ++j) // averages look past edges
-        if (!pair_->slaves().around.empty() && (looks_past(hits[j]) || (yields(j) && is_left_to_slaves(j))))
-            points_[j].found = points_[j].behind = false;
+    if (!pair_->slaves().around.empty())
+        for (Index j = 0; j < pair_->size(); ++j) { // averages look past edges
+            if (looks_past(j) || (yields(j) && is_left_to_slaves(j))) points_[j].found = points_[j].behind = false;
+            in_force_[j] = points_[j].found;
+        }
     for (Index j = 0; j < pair_->size(); ++j) {
         point_nodes_[j].clear();
         if (!points_[j].found) continue;
@@ -250,7 +301,7 @@ void ContactEvaluation::drop_what_is_not_pointed_at(const std::vector<Vec3>& x) 
             n.normalize();
         }
         points_at_[j] = std::ranges::all_of(slaves.along[static_cast<std::size_t>(j)], [&](Index end) {
-            return (x[end] - s).normalized().dot(n) >= deepest_edge;
+            return (x[end] - s).normalized().dot(n) >= deepest_edge * (in_force_[j] != 0 ? 1 + 0.5 * slack : 1);
         });
         if (points_at_[j] == 0) point.found = point.behind = false;
     }
@@ -258,8 +309,8 @@ void ContactEvaluation::drop_what_is_not_pointed_at(const std::vector<Vec3>& x) 
 
 double ContactEvaluation::least_gap() const {
     double least = std::numeric_limits<double>::infinity();
-    for (const contact::ContactPoint& point : points_)
-        if (point.found) least = std::min(least, point.gap);
+    for (Index j = 0; j < pair_->size(); ++j)
+        if (points_[j].found) least = std::min(least, points_[j].gap - kept_depth(j));
     return least;
 }
 
@@ -317,6 +368,7 @@ contact::ContactState ContactEvaluation::measure(Index j, const contact::PairPos
     const contact::ContactPoint& point = points_[j];
     const bool rubs = pair_->options().friction > 0;
     contact::ContactState state{Vec3::Zero(), point.gap, point.normal, rubs ? drift(j) : Vec3(Vec3::Zero())};
+    state.gap -= kept_depth(j);
     if (!point.found || tails_.slaves.empty()) return state;
     state.gap += discretisation_->gap_rounded_off(j, at, point);
     if (rubs && !tails_start_.slaves.empty()) state.drift += drift(j, tails_start_, tails_);

@@ -75,7 +75,7 @@ GeneralContact::GeneralContact(std::vector<OuterSurface> surfaces, GeneralContac
     for (const auto& [a, b] : options_.left_out)
         left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] =
             left_out_[static_cast<std::size_t>(b) * surfaces_.size() + static_cast<std::size_t>(a)] = 1;
-    find_sharp_edges();
+    find_convex_edges();
     around_.resize(X.size());
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         if (left_out_[s * surfaces_.size() + s] != 0) continue;

@@ -12,13 +12,16 @@
 namespace osculate::model {
 
 namespace {
+/// Sine of the angle between facets from which their edge may meet a sharp edge: of coarse round bodies, whose smooth surfaces
+/// sharp edges enter between the nodes of both.
+constexpr double blunt = 0.35;
 /// Angle by which a body may turn before pairs are looked for anew, rad: its nodes move no farther than the margin then.
 double turn(double margin, double diagonal) {
     return 2 * std::asin(std::min(1.0, margin / diagonal));
 }
 } // namespace
 
-void GeneralContact::find_sharp_edges() {
+void GeneralContact::find_convex_edges() {
     sharp_.assign(X_.size(), 0);
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
         const MasterSide& side = *surfaces_[s].side;
@@ -26,19 +29,20 @@ void GeneralContact::find_sharp_edges() {
         const std::vector<Vec3> x = side.vertices(X_);
         for (Index h = 0; h < static_cast<Index>(surface.half_edges().size()); ++h) {
             const mesh::HalfEdge& half = surface.half_edges()[h];
-            if (half.twin < h || !surface.is_feature_edge(h)) continue; // also those at a boundary
+            if (half.twin < h) continue; // also those at a boundary
             const auto [a, b] = contact::vertices_of_edge(surface, h);
             const contact::SharpEdge edge = contact::sharp_edge(surface, h, x);
             const auto around = surface.facet_vertices(half.facet);
             Vec3 normal = Vec3::Zero();
             for (std::size_t c = 2; c < around.size(); ++c)
                 normal += (x[around[c - 1]] - x[around[0]]).cross(x[around[c]] - x[around[0]]);
-            if (!(normal.dot(edge.wings[1]) < 0)) continue; // hollow
+            const bool sharp = surface.is_feature_edge(h);
+            if (!(normal.normalized().dot(edge.wings[1]) < (sharp ? 0 : -blunt))) continue; // hollow, or flat
             const auto count = static_cast<Index>(surfaces_[s].facets.size());
             const auto [f, g] = contact::facets_at_edge(surface, h);
             const bool own = f < count && g < count;
-            sharp_edges_.push_back({static_cast<Index>(s), h, own});
-            sharp_[side.nodes()[a]] = sharp_[side.nodes()[b]] = 1;
+            convex_edges_.push_back({static_cast<Index>(s), h, own, sharp});
+            if (sharp) sharp_[side.nodes()[a]] = sharp_[side.nodes()[b]] = 1;
         }
     }
 }
@@ -51,7 +55,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
     std::vector<mesh::Facet> ends;
     std::vector<double> margin;
     std::vector<Vec3> x;
-    for (const FeatureEdge& edge : sharp_edges_) {
+    for (const ConvexEdge& edge : convex_edges_) {
         const auto s = static_cast<std::size_t>(edge.surface);
         at.push_back(contact::sharp_edge(surfaces_[s].side->surface(), edge.half_edge, vertices[s]));
         mesh::Facet& both = ends.emplace_back();
@@ -63,9 +67,9 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         margin.push_back(scope.margin[s]);
     }
     const auto may_cross = [&](Index e, Index f) {
-        const FeatureEdge &one = sharp_edges_[static_cast<std::size_t>(e)],
-                          &other = sharp_edges_[static_cast<std::size_t>(f)];
-        if (one.surface == other.surface || !(one.own || other.own)) return false;
+        const ConvexEdge &one = convex_edges_[static_cast<std::size_t>(e)],
+                         &other = convex_edges_[static_cast<std::size_t>(f)];
+        if (one.surface == other.surface || !(one.own || other.own) || !(one.sharp || other.sharp)) return false;
         const auto a = static_cast<std::size_t>(one.surface), b = static_cast<std::size_t>(other.surface);
         if (left_out_[a * surfaces_.size() + b] != 0) return false;
         const contact::SharpEdge &p = at[static_cast<std::size_t>(e)], &q = at[static_cast<std::size_t>(f)];
@@ -77,7 +81,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
                allowed;
     };
     std::map<std::pair<Index, Index>, std::vector<std::array<Index, 2>>> found;
-    const auto add = [&](const FeatureEdge& slave, const FeatureEdge& master) {
+    const auto add = [&](const ConvexEdge& slave, const ConvexEdge& master) {
         if (!slave.own) return;
         const mesh::HalfEdgeSurface &own = surfaces_[static_cast<std::size_t>(slave.surface)].side->surface(),
                                     &other = surfaces_[static_cast<std::size_t>(master.surface)].side->surface();
@@ -92,8 +96,8 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         list.push_back({own.half_edges()[static_cast<std::size_t>(slave.half_edge)].twin, master.half_edge});
     };
     for (const auto& [e, f] : contact::near_facets(ends, margin, x, may_cross)) {
-        const FeatureEdge &one = sharp_edges_[static_cast<std::size_t>(e)],
-                          &other = sharp_edges_[static_cast<std::size_t>(f)];
+        const ConvexEdge &one = convex_edges_[static_cast<std::size_t>(e)],
+                         &other = convex_edges_[static_cast<std::size_t>(f)];
         const double E = surfaces_[static_cast<std::size_t>(one.surface)].E,
                      E_other = surfaces_[static_cast<std::size_t>(other.surface)].E;
         const bool first = E != E_other ? E < E_other : one.surface < other.surface; // the softer is the slave

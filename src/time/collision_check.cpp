@@ -102,6 +102,7 @@ void CollisionCheck::add_normal_motions(const Field& u, StepEvidence& evidence) 
         for (Index j = 0; j < pair.size(); ++j) {
             const Start& start = starts_[p][j];
             if (!speaks_by_normal(p, start) || !sheet_lost(p, j)) continue;
+            if (start.gap <= -allowed(p, start.facet)) continue; // as in add_trial()
             const auto moved = [&](Index node) -> Vec3 { return model_.X[node] + u[node] - x_[node]; };
             const auto around = pair.surface().facet_vertices(start.facet);
             Vec3 motion = moved(pair.slaves().node[j]);

@@ -94,6 +94,13 @@ TEST(EdgeCrossing, IsThatOfTheNearerEndAndOfConesThatMeet) {
     EXPECT_FALSE(upright.begin_and_evaluate().found);
 }
 
+TEST(EdgeCrossing, ThatIsDeepIsOneThatWasThereBefore) {
+    Roofs roofs(-0.05);
+    EXPECT_FALSE(roofs.begin_and_evaluate().found); // the lines cross, but the edges have not met
+    roofs.tracking.facet[0] = 0;
+    EXPECT_TRUE(roofs.begin_and_evaluate().found);
+}
+
 TEST(EdgeCrossing, KeepsItsSideWithinAnAttempt) {
     Roofs roofs(0.2);
     roofs.begin_and_evaluate();
@@ -104,7 +111,7 @@ TEST(EdgeCrossing, KeepsItsSideWithinAnAttempt) {
 TEST(EdgeCrossing, ForcesAndMomentsAddUpToNone) {
     Random random(5);
     for (int k = 0; k < 20; ++k) {
-        Roofs roofs(0);
+        Roofs roofs(0.4);
         for (auto* list : {&roofs.slaves, &roofs.vertices})
             for (Vec3& x : *list) x += random.vector(0.1);
         const ContactPoint& point = roofs.begin_and_evaluate();
@@ -127,7 +134,7 @@ TEST(EdgeCrossing, HasTheVariationsThatDifferencesGive) {
     constexpr double step = 1e-6, tolerance = 1e-8; // step^2 of curvature, 1e-15 / step of round-off
     Random random(7);
     for (int k = 0; k < 20; ++k) {
-        Roofs roofs(0.05);
+        Roofs roofs(0.4);
         for (auto* list : {&roofs.slaves, &roofs.vertices})
             for (Vec3& x : *list) x += random.vector(0.1);
         const ContactPoint at = roofs.begin_and_evaluate();

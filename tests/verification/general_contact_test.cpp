@@ -151,5 +151,36 @@ TEST(GeneralContact, RejectedAttemptsLeaveNoTraceAndThreadsNoDifference) {
     support::expect_same_bits(straight, run(bodies + general, {}, 0, 3));
 }
 
+/// Two free cubes drawn 4 mm inside one another.
+const std::string inside = R"(
+bodies:
+  left:
+    mesh: {block: {size: [0.1 m, 0.1 m, 0.1 m], divisions: [2, 2, 2]}}
+    material: {neo_hookean: {E: 10 MPa, nu: 0.3, density: 1000 kg/m^3}}
+  right:
+    mesh: {block: {origin: [0.096 m, 0.01 m, 0.01 m], size: [0.1 m, 0.08 m, 0.08 m], divisions: [3, 3, 3]}}
+    material: {neo_hookean: {E: 10 MPa, nu: 0.3, density: 1000 kg/m^3}}
+contact: {general: {friction: 0.3}}
+stages:
+  free: {analysis: dynamic, duration: 0.05 s, steps: 50}
+)";
+
+TEST(GeneralContact, LetsBodiesOutSlowlyThatAreInsideOneAnother) {
+    app::Plan plan = support::compiled(scene::read_scene(support::scene_file("inside.yaml", inside)), 1);
+    const Diary diary = support::diary_of(plan, 0);
+    const model::State& last = diary.states.back();
+    const auto mean = [&](const Field& field, std::size_t body) {
+        const model::Body& b = plan.model.bodies[body];
+        Vec3 sum = Vec3::Zero();
+        for (Index i = 0; i < b.nodes(); ++i) sum += field[b.first_node + i] / b.nodes();
+        return sum;
+    };
+    constexpr double depth = 0.004, leaves_in = 0.03; // m; s, thirty steps
+    EXPECT_GT((mean(last.u, 1) - mean(last.u, 0)).x(), depth);
+    const double apart = (mean(last.v, 1) - mean(last.v, 0)).x();
+    EXPECT_GT(apart, 0);
+    EXPECT_LT(apart, 2 * depth / leaves_in); // depth/dt would be thirty times as much
+}
+
 } // namespace
 } // namespace osculate

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
 namespace osculate {
 namespace {
@@ -97,6 +98,30 @@ TEST(Tutorials, StackStandsStillUnderItsWeights) {
     for (std::size_t k = 0; k < carried.size(); ++k)
         EXPECT_NEAR(carried[k], static_cast<double>(k + 1) * weight, 1e-4 * weight) << k;
     for (const Vec3& v : end.v.values()) EXPECT_LT(v.norm(), 1e-6);
+}
+
+TEST(Tutorials, ToolIntoRubberHasHertzForceAndTheMomentOfFullSliding) {
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/tool_into_rubber.yaml"));
+    constexpr double E = 2e6, nu = 0.45, R = 0.06, d = 0.015, h = 0.08, mu = 0.4;
+    constexpr double mesh = 0.1; // of 14 elements over the pad, and of strains of a half
+    const double a = std::sqrt(R * d), chi = a / h;
+    // Hertz on a thin layer that is bonded below, nu = 1/2 [Dimitriadis et al. 2002]
+    const double layer = 1 + 1.133 * chi + 1.283 * chi * chi + 0.769 * std::pow(chi, 3) + 0.0975 * std::pow(chi, 4);
+    const double hertz = 4. / 3 * E / (1 - nu * nu) * std::sqrt(R) * std::pow(d, 1.5) * layer;
+    EXPECT_NEAR(-run.steps[4].pairs[0].on_slave.z(), hertz, mesh * hertz);
+    const model::State& end = run.steps.back().state;
+    const model::ContactHistory& tip = end.contact[0];
+    double force = 0, moment = 0;
+    for (std::size_t j = 0; j < tip.lambda.size(); ++j) {
+        const auto node = static_cast<std::size_t>(tip.pair->slaves().node[j]);
+        force -= tip.lambda[j].z();
+        moment += (run.plan.model.X[node] + end.u[node]).cross(tip.lambda[j]).z();
+    }
+    // mu times Hertz' pressure times the radius, over the circle of that radius which carries the force
+    const double radius = std::cbrt(0.75 * force * R * (1 - nu * nu) / E);
+    const double sliding = 3 * std::numbers::pi / 16 * mu * force * radius;
+    EXPECT_NEAR(moment, sliding, mesh * sliding);
 }
 
 /// When the front of a domino's top has moved by 4 mm, s; 0: never.

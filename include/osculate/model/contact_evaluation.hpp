@@ -38,7 +38,7 @@ public:
     /// Area that the force on slave j presses on, m^2: of the reference configuration, and only the part above the
     /// master where the discretisation knows it.
     [[nodiscard]] double area(Index j) const { return discretisation_->loaded_area(j, pair_->slaves().area[j]); }
-    /// Smallest gap of all slave nodes with a contact partner, m; infinite if none has one.
+    /// Smallest gap of all slave nodes with a contact partner, m, over depths that are kept; infinite if none has one.
     [[nodiscard]] double least_gap() const;
     /// What presses on the slave side over the force on slave j: 1, and for an edge, whose two ends share it, 1/(1 - s), see
     /// contact::make_edge_discretisation(). Drifts are those of the contact point times this.
@@ -58,6 +58,10 @@ public:
     [[nodiscard]] Vec3 drift(Index j, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const;
     /// The same since the step began.
     [[nodiscard]] Vec3 drift(Index j) const { return drift(j, start_, now_); }
+    /// Of general contact, once after begin_step() with the positions there: where bodies are inside one another by more than
+    /// contacts yield, contact keeps this part of the depth.
+    void keep_depths(double part, const std::vector<Vec3>& x, Timings& timings, int threads,
+                     const std::vector<Vec3>& tails = {});
     /// Input of the contact law, from differences of displacements and of reference positions, so that the distance of
     /// the bodies from the origin has no effect. The drift is computed only with friction.
     [[nodiscard]] contact::ContactState state(Index j, const Vec3& lambda) const {
@@ -133,9 +137,11 @@ private:
     /// Whether a node that yields is where slaves of the pair in the other direction have the contact.
     [[nodiscard]] bool is_left_to_slaves(Index j) const;
     /// Whether the closest facet, of those that may be touched, is not below the node but beside it.
-    [[nodiscard]] bool looks_past(const contact::FacetHit& hit) const;
+    [[nodiscard]] bool looks_past(Index j) const;
     /// Facets to look for slave j on.
     [[nodiscard]] contact::FacetSearch::Choice choice(Index j) const;
+    /// Gap that contact keeps in this attempt, m, <= 0, see keep_depths().
+    [[nodiscard]] double kept_depth(Index j) const;
     /// state() of slave j without the force.
     [[nodiscard]] contact::ContactState measure(Index j, const contact::PairPositions& at) const;
     [[nodiscard]] const Mat3& image(Index j, Index i) const { return pair_->image(points_[j].nodes[i]); }
@@ -159,8 +165,14 @@ private:
     } facets_; ///< of the master surface at the start of the attempt; empty: not needed, see SlaveNodes::around
     std::vector<std::vector<Vec3>> faces_; ///< (slaves) normals of the facets around each node then
     contact::FacetTracking tracking_;
+    /// (slaves) General contact: whether the contact had a point at the last evaluation, or was closed when the attempt
+    /// started; it loses it later then. And at the start.
+    std::vector<char> in_force_, in_force_start_;
     std::vector<contact::ContactPoint> points_;
     std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along
+    std::vector<double> depth_;   ///< (slaves) see kept_depth(), NaN for nodes that had no partner then; empty: none
+    double kept_part_ = 0;
+    std::vector<Vec3> vertices_start_; ///< of the master surface at the start of the attempt, if depths are kept
     std::vector<contact::ContactState> states_; ///< without forces
     std::vector<std::vector<Index>> point_nodes_;
     int facet_changes_ = 0;

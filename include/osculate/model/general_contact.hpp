@@ -85,10 +85,11 @@ public:
     [[nodiscard]] std::pair<Index, Index> sides_of(const ContactPair& pair) const;
 
 private:
-    /// A convex feature edge of a surface.
-    struct FeatureEdge {
+    /// A convex edge of a surface.
+    struct ConvexEdge {
         Index surface = -1, half_edge = -1;
-        bool own = true; ///< not the image of one
+        bool own = true;    ///< not the image of one
+        bool sharp = false; ///< a feature edge; others meet only these
     };
     struct Facet {
         Index surface = -1;
@@ -110,7 +111,7 @@ private:
     enum class Role : char { slave, none, master };
     [[nodiscard]] std::vector<Role> roles_within(const FacetPairs& facing,
                                                  const std::vector<ContactHistory>& before) const;
-    void find_sharp_edges();
+    void find_convex_edges();
     /// Adds the pairs of edges for a scope, see near().
     void add_edges(const ContactScope& scope, const std::vector<ContactHistory>& before,
                    std::vector<ContactHistory>& histories) const;
@@ -131,7 +132,7 @@ private:
     std::vector<std::vector<Index>> node_facets_,
         along_;                  ///< (nodes) facets that meet there; nodes at other ends of edges
     std::vector<char> left_out_; ///< (surfaces x surfaces)
-    std::vector<FeatureEdge> sharp_edges_;
+    std::vector<ConvexEdge> convex_edges_;
     std::vector<char> sharp_;      ///< (nodes) on such an edge
     std::vector<double> diagonal_; ///< (surfaces) of the box of the reference configuration, m
     std::vector<Index> first_;     ///< (surfaces) number of the first facet

@@ -4,6 +4,7 @@
 #include "app/overloaded.hpp"
 #include "app/plan/courses.hpp"
 #include "app/plan/draft.hpp"
+#include "app/plan/settling.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
 #include <stdexcept>
@@ -166,7 +167,9 @@ void add_stages(Draft& draft) {
         stage.ramp = spec.ramp;
         if (const auto* analysis = std::get_if<scene::DynamicAnalysis>(&spec.analysis)) {
             stage.dynamics = equilibrium::Dynamics{integrator(*analysis), analysis->mass == scene::MassMatrix::lumped,
-                                                   analysis->mass_damping, analysis->stiffness_damping.value()};
+                                                   analysis->mass_damping, analysis->stiffness_damping.value(), 0};
+            if (analysis->impacts == scene::Impacts::inelastic)
+                stage.dynamics->recovery_time = recovery_time(spec.duration / spec.steps);
         }
         const bool dynamic = stage.dynamics.has_value();
         stage.limits = step_limits(draft, spec, dynamic);

@@ -22,6 +22,11 @@ double automatic_stiffness_damping(double whole_step) {
     return share * whole_step;
 }
 
+double recovery_time(double whole_step) {
+    constexpr double steps = 30;
+    return steps * whole_step;
+}
+
 void settle_dynamics(scene::Scene& scene) {
     for (auto& [name, stage] : scene.stages) {
         auto* analysis = std::get_if<scene::DynamicAnalysis>(&stage.analysis);

@@ -138,6 +138,9 @@ private:
     [[nodiscard]] bool is_left_to_slaves(Index j) const;
     /// Whether the closest facet, of those that may be touched, is not below the node but beside it.
     [[nodiscard]] bool looks_past(Index j) const;
+    /// Ends contact of slave j where its facet does, by what the closest point tells; and where general contact ends it.
+    void end_at_bounds(Index j);
+    void drop_what_is_beside();
     /// Facets to look for slave j on.
     [[nodiscard]] contact::FacetSearch::Choice choice(Index j) const;
     /// Gap that contact keeps in this attempt, m, <= 0, see keep_depths().

@@ -180,21 +180,24 @@ Vec3 ContactTerm::law_magnitudes(const Iterate& at, std::size_t p, Index j) cons
     return constraints_.frame(slave).cwiseAbs().transpose() * terms;
 }
 
-bool ContactTerm::rows_within(const Iterate& at, const ConstVectorRef& F, double share) const {
+bool ContactTerm::rows_within(const Iterate& at, const Field& sums, const ConstVectorRef& F, double share) const {
     // a contact force that grows without bound makes any gap its round-off
     constexpr double no_gap = 1e-6; // of the facet size
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
             const contact::ContactPoint& point = evaluations_[p].point(j);
+            const Index slave = evaluations_[p].pair().slaves().node[j];
             if (point.found && contact::is_closed(statuses_[p][j])) {
                 const double yielded = evaluations_[p].law(j).normal_compliance() * lambda_[p][j].dot(point.normal);
                 if (!(std::abs(evaluations_[p].state(j, lambda_[p][j]).gap + yielded) <=
                       no_gap * evaluations_[p].pair().surface().facet_size(point.facet)))
                     return false;
             }
-            const Vec3 sums = law_magnitudes(at, p, j);
+            Vec3 terms = law_magnitudes(at, p, j);
+            if (!contact::is_closed(statuses_[p][j])) // what the solution of a linear system leaves of other forces
+                terms += constraints_.frame(slave).cwiseAbs().transpose() * sums[slave];
             for (int k = 0; k < 3; ++k)
-                if (!(std::abs(F[unknowns_.contact_row(first_[p] + j, k)]) <= share * sums(k))) return false;
+                if (!(std::abs(F[unknowns_.contact_row(first_[p] + j, k)]) <= share * terms(k))) return false;
         }
     return true;
 }

@@ -13,7 +13,7 @@ void CycleWatch::begin() {
 void CycleWatch::restart() {
     visits_.clear();
     best_ = std::numeric_limits<double>::max();
-    idle_ = 0;
+    idle_ = slow_ = 0;
     round_ = false;
 }
 
@@ -26,6 +26,7 @@ void CycleWatch::note(const Statuses& statuses, double residual) {
     // in the slip branch Newton can also alternate with all statuses at rest
     const int patience = impatient_ ? 4 : 8;
     idle_ = residual < 0.99 * best_ ? 0 : idle_ + 1;
+    slow_ = residual < 0.5 * best_ ? 0 : slow_ + 1;
     best_ = std::min(best_, residual);
     round_ = idle_ >= patience || comes_back(statuses, residual);
 }

@@ -82,7 +82,8 @@ public:
     void add_forces(Field& f) const override;
     [[nodiscard]] Index write_rows(VectorRef F) const override;
     void add_magnitudes(const Iterate& at, Field& sums) const override;
-    [[nodiscard]] bool rows_within(const Iterate& at, const ConstVectorRef& F, double share) const override;
+    [[nodiscard]] bool rows_within(const Iterate& at, const Field& sums, const ConstVectorRef& F,
+                                   double share) const override;
     void linearise(const Iterate& at) override;
     void add_product(const Direction& d, Field& f, VectorRef y) override;
     [[nodiscard]] bool add_pattern(std::vector<linear::Coupling>& couplings) const override;

@@ -22,8 +22,8 @@ public:
     void note(const Statuses& statuses, double residual);
     /// Whether the iteration cycles, or has made no progress for several iterates.
     [[nodiscard]] bool goes_round() const { return round_; }
-    /// Number of consecutive iterates without progress.
-    [[nodiscard]] int idle() const { return idle_; }
+    /// Number of consecutive iterates that have not halved the residual.
+    [[nodiscard]] int slow() const { return slow_; }
     /// The last few different sets of statuses since begin(), the latest last, for diagnosis of a failure.
     [[nodiscard]] const std::vector<Statuses>& recent() const { return recent_; }
 
@@ -34,7 +34,7 @@ private:
     std::map<std::size_t, std::pair<int, double>> visits_; ///< contact configuration -> visits, least residual
     std::size_t last_configuration_ = 0;
     double best_ = std::numeric_limits<double>::max(); ///< least residual of the solve
-    int idle_ = 0;
+    int idle_ = 0, slow_ = 0; ///< consecutive iterates without progress; and that have not halved the residual
     bool round_ = false, impatient_ = false;
 };
 

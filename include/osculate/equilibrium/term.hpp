@@ -56,8 +56,10 @@ public:
     virtual void add_magnitudes(const Iterate& at, Field& sums) const = 0;
     /// Whether each of its own rows in F is at most `share` times the sum of the absolute values of its summands, and
     /// these are of a size that leaves the row a meaning.
-    [[nodiscard]] virtual bool rows_within(const Iterate& at, const ConstVectorRef& F, double share) const {
-        (void)at, (void)F, (void)share;
+    /// @param sums  (nodes) those of the forces of all terms, see add_magnitudes(), N
+    [[nodiscard]] virtual bool rows_within(const Iterate& at, const Field& sums, const ConstVectorRef& F,
+                                           double share) const {
+        (void)at, (void)sums, (void)F, (void)share;
         return true;
     }
 

@@ -178,10 +178,10 @@ private:
                         other = sharp_edge(surface_, edge.half_edge, positions.vertices);
         const auto leaves = [&](double side) { return out_of_cones(side * crossing.across, own, other); };
         const double side = leaves(1) < leaves(-1) ? 1 : -1;
-        if (leaves(side) > cone_tolerance) return {};
+        if (leaves(side) > (edge.watched ? watched_tolerance : cone_tolerance)) return {};
         const double length = std::min((at[1] - at[0]).norm(), (at[3] - at[2]).norm());
-        const bool known = std::max(tracking.facet[static_cast<std::size_t>(j)],
-                                    tracking.facet[static_cast<std::size_t>(edge.reverse)]) >= 0;
+        const bool known = edge.watched || std::max(tracking.facet[static_cast<std::size_t>(j)],
+                                                    tracking.facet[static_cast<std::size_t>(edge.reverse)]) >= 0;
         if (side * crossing.across.dot(crossing.offset) < -(known ? deepest : deepest_new) * length) return {};
         const Vec3 n = side * crossing.across;
         // the normal of a face is normal to its wing

@@ -162,6 +162,11 @@ private:
         double distance = 0; ///< < 0 inside
         Index facet = -1;
     };
+    struct Foot {
+        Index facet = -1;
+        Triangle triangle;
+        Vec3 closest; ///< its point that is closest
+    };
     struct Crossing {
         double at = 0; ///< fraction of the edge
         Index facet = -1;
@@ -190,39 +195,51 @@ private:
             visit(Triangle{x_[facet.nodes[0]], x_[facet.nodes[c - 1]], x_[facet.nodes[c]]});
     }
 
-    /// Signed distance from the surface of a body. Where several facets are equally near, at an edge or a vertex, the one
-    /// whose normal is nearest to the way there tells the side.
+    /// Signed distance from the surface of a body. At an edge or a vertex the mean of the normals of the triangles there tells the
+    /// side, each with its angle as weight                                              [Baerentzen, Aanaes 2005].
     Side side(Index body, const Vec3& p) {
         constexpr double tie = 1e-7; // relative, of distances
         const Shell& shell = shells_[body];
         const Tree& boxes = tree(body);
         const Point at = to_point(p);
         const auto every = static_cast<unsigned>(shell.facets.size());
-        constexpr double nowhere = std::numeric_limits<double>::infinity();
-        Side best{nowhere, -1};
-        double steepest = -1; // |cosine| of the facet that tells the side
         for (unsigned k = 8;; k *= 2) {
             nearest_.clear();
             boxes.query(bgi::nearest(at, std::min(k, every)), std::back_inserter(nearest_));
-            double reached = 0;
-            best = {nowhere, -1};
+            double reached = 0, least = std::numeric_limits<double>::infinity();
+            Vec3 foot = Vec3::Zero();
+            feet_.clear();
             for (const Leaf& leaf : nearest_) {
                 const Index f = leaf.second;
-                const double away = bg::distance(at, leaf.first), reach = std::abs(best.distance) * (1 + tie);
+                const double away = bg::distance(at, leaf.first);
                 reached = std::max(reached, away);
-                if (away > reach) continue;
+                if (away > least * (1 + tie)) continue;
                 for_triangles(shell.facets[f], [&](const Triangle& triangle) {
-                    const Vec3 way = p - triangle.closest(p), normal = triangle.normal();
-                    const double distance = way.norm(), length = normal.norm();
-                    if (distance > std::abs(best.distance) * (1 + tie) || length == 0) return;
-                    const double cosine = distance > 0 ? way.dot(normal) / (distance * length) : 0;
-                    const bool nearer = distance < std::abs(best.distance) * (1 - tie);
-                    if (!nearer && std::abs(cosine) <= steepest) return;
-                    steepest = std::abs(cosine);
-                    best = {cosine < 0 ? -distance : distance, f};
+                    if (triangle.normal().isZero(0)) return;
+                    const Vec3 closest = triangle.closest(p);
+                    const double distance = (p - closest).norm();
+                    if (distance > least * (1 + tie)) return;
+                    feet_.push_back({f, triangle, closest});
+                    if (distance >= least) return;
+                    least = distance;
+                    foot = closest;
                 });
             }
-            if (k >= every || reached > std::abs(best.distance)) return best;
+            if (k < every && !(reached > least)) continue;
+            Side found;
+            Vec3 normal = Vec3::Zero();
+            double steepest = -1; // of the facets there, the one turned to p most
+            for (const Foot& one : feet_) {
+                if (!((one.closest - foot).norm() <= tie * shell.size[one.facet])) continue;
+                const Vec3 n = one.triangle.normal().normalized();
+                normal += one.triangle.angle_at(one.closest, tie) * n;
+                if (const double turned = std::abs(n.dot(p - foot)); turned > steepest) {
+                    steepest = turned;
+                    found.facet = one.facet;
+                }
+            }
+            found.distance = normal.dot(p - foot) < 0 ? -least : least;
+            return found;
         }
     }
 
@@ -244,9 +261,12 @@ private:
 
     enum class Part { node, edge, facet };
 
-    /// Takes down what lies `depth` deep at a facet of `other`; `node` is the node, an end of the edge or a corner.
+    /// Takes down what lies `depth` deep at a facet of `other`.
+    /// @param parts  nodes of the node, edge or facet
     /// @returns excess, m
-    double note(Index body, Index other, Index node, Part part, const Vec3& place, Index facet, double depth) {
+    double note(Index body, Index other, const std::array<Index, 4>& parts, Part part, const Vec3& place, Index facet,
+                double depth) {
+        const Index node = parts[0];
         const Shell &own = shells_[body], &host = shells_[other];
         double h = host.size[facet], bend = 0;
         for (const Index f : own.node_facets[audit_.shell_node_[node]]) {
@@ -260,6 +280,7 @@ private:
         const double excess = std::max(0.0, depth - sagitta);
         if (deepest_.body < 0 || excess / h > deepest_.relative())
             deepest_ = {body, other, node, part == Part::edge, part == Part::facet, place, depth, excess, h};
+        if (body != other) result_.places.push_back({body, other, parts, host.facets[facet].nodes, depth, excess, h});
         return excess;
     }
 
@@ -315,7 +336,8 @@ private:
         for (const Shell::Edge& edge : shell.edges) {
             cross(body, tree(body), edge, crossings, on);
             for (const Crossing& c : crossings)
-                note(body, body, edge.a, Part::edge, x_[edge.a] + c.at * (x_[edge.b] - x_[edge.a]), c.facet, c.least);
+                note(body, body, {edge.a, edge.b, -1, -1}, Part::edge, x_[edge.a] + c.at * (x_[edge.b] - x_[edge.a]),
+                     c.facet, c.least);
         }
     }
 
@@ -332,7 +354,8 @@ private:
             const bool in = where.distance < -touching * shells_[other].size[where.facet];
             seen[own] = in ? 2 : 1;
             if (!in) return false;
-            const double excess = note(body, other, node, Part::node, x_[node], where.facet, -where.distance);
+            const double excess =
+                note(body, other, {node, -1, -1, -1}, Part::node, x_[node], where.facet, -where.distance);
             double& most = inside_[node];
             most = std::max(most, excess);
             queue.push_back(own);
@@ -359,7 +382,7 @@ private:
                 const Vec3 middle = x_[edge.a] + at * (x_[edge.b] - x_[edge.a]);
                 const Side where = side(other, middle);
                 if (where.distance < -touching * shells_[other].size[where.facet])
-                    note(body, other, edge.a, Part::edge, middle, where.facet, -where.distance);
+                    note(body, other, {edge.a, edge.b, -1, -1}, Part::edge, middle, where.facet, -where.distance);
             }
         }
         for (const std::vector<Index>& part : shell.components) {
@@ -370,17 +393,18 @@ private:
         }
         std::ranges::sort(on_surface);
         on_surface.erase(std::unique(on_surface.begin(), on_surface.end()), on_surface.end());
-        const auto look_between = [&](Index node, Part part, const Vec3& middle) {
+        const auto look_between = [&](const std::array<Index, 4>& parts, Part part, const Vec3& middle) {
             const Side where = side(other, middle);
             if (where.distance < -touching * shells_[other].size[where.facet])
-                note(body, other, node, part, middle, where.facet, -where.distance);
+                note(body, other, parts, part, middle, where.facet, -where.distance);
         };
         std::vector<Index> around; // facets
         for (const Index own : on_surface) {
             const Index node = shell.nodes[own];
             for (const Index next : shell.node_nodes[own])
                 if (!look(shell.nodes[next]) && (next > own || !std::ranges::binary_search(on_surface, next)))
-                    look_between(node, Part::edge, 0.5 * (x_[node] + x_[shell.nodes[next]]));
+                    look_between({node, shell.nodes[next], -1, -1}, Part::edge,
+                                 0.5 * (x_[node] + x_[shell.nodes[next]]));
             around.insert(around.end(), shell.node_facets[own].begin(), shell.node_facets[own].end());
         }
         std::ranges::sort(around);
@@ -388,7 +412,7 @@ private:
         for (const Index f : around) {
             Vec3 middle = Vec3::Zero();
             for (const Index node : shell.facets[f]) middle += x_[node] / shell.facets[f].count;
-            look_between(shell.facets[f].nodes[0], Part::facet, middle);
+            look_between(shell.facets[f].nodes, Part::facet, middle);
         }
         for (std::size_t k = 0; k < queue.size(); ++k)
             for (const Index next : shell.node_nodes[queue[k]]) look(shell.nodes[next]);
@@ -403,6 +427,7 @@ private:
     Intrusion deepest_; ///< of the two bodies looked at
     AuditResult result_;
     std::vector<Leaf> near_, nearest_;
+    std::vector<Foot> feet_;
 };
 
 const Intrusion* AuditResult::worst() const {

@@ -4,6 +4,8 @@
 #include "osculate/core/types.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace osculate::contact {
 
@@ -35,6 +37,18 @@ struct Triangle {
         }
         const double sum = va + vb + vc;
         return sum == 0 ? a : Vec3(a + vb / sum * ab + vc / sum * ac);
+    }
+
+    /// Angle of the triangle around one of its own points: at a corner, to within `near` of the longest side, that of the corner,
+    /// else pi.
+    [[nodiscard]] double angle_at(const Vec3& p, double near) const {
+        const double size2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+        const auto between = [](const Vec3& u, const Vec3& v) { return std::atan2(u.cross(v).norm(), u.dot(v)); };
+        const auto is_at = [&](const Vec3& corner) { return (p - corner).squaredNorm() <= near * near * size2; };
+        if (is_at(a)) return between(b - a, c - a);
+        if (is_at(b)) return between(c - b, a - b);
+        if (is_at(c)) return between(a - c, b - c);
+        return std::numbers::pi;
     }
 
     /// Whether a point of its plane lies in it, or beside it by round-off.

@@ -54,6 +54,44 @@ double ContactTerm::least_gap() const {
     return least;
 }
 
+bool ContactTerm::can_hold_geometry() const {
+    return std::ranges::all_of(evaluations_, [](const model::ContactEvaluation& evaluation) {
+        return evaluation.pair().slaves().edges || evaluation.pair().options().discretisation == Discretisation::node;
+    });
+}
+
+void ContactTerm::hold_geometry() {
+    for (model::ContactEvaluation& evaluation : evaluations_) evaluation.hold_geometry();
+}
+
+void ContactTerm::let_go() {
+    for (model::ContactEvaluation& evaluation : evaluations_) evaluation.let_go();
+}
+
+double ContactTerm::geometry_error(const Iterate& at) const {
+    constexpr double along = 0.1; // what moves along a surface meets other normals only after a while
+    double largest = 0;
+    for (std::size_t p = 0; p < evaluations_.size(); ++p) {
+        const model::ContactEvaluation& held = evaluations_[p];
+        model::ContactEvaluation now = held;
+        now.evaluate(at.x, timings_, threads_, at.tail);
+        for (Index j = 0; j < held.pair().size(); ++j) {
+            const bool closed = contact::is_closed(statuses_[p][j]);
+            const auto size = [&](const contact::ContactPoint& point) {
+                return held.pair().surface().facet_size(point.facet);
+            };
+            if (now.point(j).found) {
+                const double gap = now.state(j, lambda_[p][j]).gap +
+                                   now.law(j).normal_compliance() * lambda_[p][j].dot(now.point(j).normal);
+                largest = std::max(largest, (closed ? std::abs(gap) : -gap) / size(now.point(j)));
+            }
+            if (closed && held.point(j).found)
+                largest = std::max(largest, along * held.moved_since_held(j) / size(held.point(j)));
+        }
+    }
+    return largest;
+}
+
 Vec3 ContactTerm::force(const ConstVectorRef& z, Index coupling) const {
     return constraints_.to_global(unknowns_.slave(coupling), Vec3(z.segment<3>(unknowns_.multiplier(coupling))));
 }

@@ -79,6 +79,7 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
         discretisation_ = pair_->discretisation().clone();
         master_ = history.master;
     }
+    let_go();
     place(x, tails);
     start_ = now_;
     tails_start_ = tails_;
@@ -118,6 +119,17 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     std::vector<Index>& facet = tracking_.facet;
     std::vector<contact::FacetHit>& hits = tracking_.hits;
     facet_changes_ = 0;
+    if (holds_geometry()) {
+        place(x, tails);
+        for (Index j = 0; j < pair_->size(); ++j) {
+            const HeldPoint& held = held_geometry_[j];
+            if (!points_[j].found) continue;
+            points_[j].gap = held.gap + held.dg.dot(point_positions(j) - held_positions_[j]);
+        }
+        const contact::PairPositions at = positions();
+        for (Index j = 0; j < pair_->size(); ++j) states_[j] = measure(j, at);
+        return;
+    }
     if (pair_->slaves().edges) {
         place(x, tails);
     } else {
@@ -155,6 +167,40 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j) states_[j] = measure(j, at);
     });
+}
+
+Vector ContactEvaluation::point_positions(Index j) const {
+    const contact::ContactPoint& point = points_[j];
+    const auto n = static_cast<Index>(point.nodes.size()), count = pair_->surface().vertex_count();
+    Vector y(3 + 3 * n);
+    y.head<3>() = now_.slaves[j];
+    for (Index i = 0; i < n; ++i) {
+        const Index v = point.nodes[i];
+        y.segment<3>(3 + 3 * i) = v < count ? vertices_[v] : now_.slaves[v - count];
+    }
+    return y;
+}
+
+void ContactEvaluation::hold_geometry() {
+    held_geometry_.assign(points_.size(), {});
+    held_positions_.assign(points_.size(), {});
+    contact::ContactVariation variation;
+    variation.form = contact::VariationForm::gap;
+    for (Index j = 0; j < pair_->size(); ++j) {
+        if (!points_[j].found) continue;
+        variation.patches.clear();
+        discretisation_->vary(j, positions(), hit(j), points_[j], variation);
+        held_geometry_[j] = {points_[j].gap, variation.dg};
+        held_positions_[j] = point_positions(j);
+    }
+}
+
+double ContactEvaluation::moved_since_held(Index j) const {
+    const Vector moved = point_positions(j) - held_positions_[j];
+    Vec3 relative = moved.head<3>();
+    for (Index i = 0; i < points_[j].weights.size(); ++i)
+        relative -= points_[j].weights(i) * moved.segment<3>(3 + 3 * i);
+    return relative.norm();
 }
 
 double ContactEvaluation::least_gap() const {
@@ -226,12 +272,20 @@ contact::ContactState ContactEvaluation::measure(Index j, const contact::PairPos
 }
 
 void ContactEvaluation::prepare_variations(std::span<const char> wanted, int threads) {
-    discretisation_->prepare_variations(positions(), wanted, threads);
+    if (!holds_geometry()) discretisation_->prepare_variations(positions(), wanted, threads);
 }
 
 void ContactEvaluation::vary(Index j, contact::ContactVariation& variation) const {
     variation.patches.clear();
-    discretisation_->vary(j, positions(), hit(j), points_[j], variation);
+    if (!holds_geometry()) {
+        discretisation_->vary(j, positions(), hit(j), points_[j], variation);
+        return;
+    }
+    variation.dg = held_geometry_[j].dg;
+    const Index columns = variation.dg.cols(), n = columns / 3 - 1;
+    variation.dn.setZero(3, columns);
+    variation.dweights.setZero(n, columns);
+    variation.dpressing.setZero(3 * n, columns);
 }
 
 void ContactEvaluation::drift_variation(Index j, const contact::ContactVariation& variation, Matrix& dd) const {

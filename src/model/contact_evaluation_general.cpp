@@ -80,11 +80,13 @@ bool ContactEvaluation::looks_past(Index j) const {
 
 bool ContactEvaluation::may_touch(Index j, Index facet) const {
     const Vec3& n = facets_.normal[static_cast<std::size_t>(facet)];
-    if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)],
-                             [&](const Vec3& m) { return m.dot(n) < contact::facing; }))
-        return false;
-    const double depth = behind_at_start * std::min(pair_->surface().facet_size(facet), pair_->thickness(facet));
-    if (!((start_.slaves[j] - facets_.centre[static_cast<std::size_t>(facet)]).dot(n) > -depth)) return false;
+    if (!watched(j)) {
+        if (std::ranges::none_of(faces_[static_cast<std::size_t>(j)],
+                                 [&](const Vec3& m) { return m.dot(n) < contact::facing; }))
+            return false;
+        const double depth = behind_at_start * std::min(pair_->surface().facet_size(facet), pair_->thickness(facet));
+        if (!((start_.slaves[j] - facets_.centre[static_cast<std::size_t>(facet)]).dot(n) > -depth)) return false;
+    }
     const SlaveNodes& slaves = pair_->slaves();
     if (!slaves.treated.empty()) {
         const std::vector<Index>& there = slaves.facet_treated[static_cast<std::size_t>(facet)];
@@ -116,9 +118,10 @@ void ContactEvaluation::drop_what_is_not_pointed_at(const std::vector<Vec3>& x) 
                          .cross(vertices_[around[c]] - vertices_[around[0]]);
             n.normalize();
         }
-        points_at_[j] = std::ranges::all_of(slaves.along[static_cast<std::size_t>(j)], [&](Index end) {
-            return (x[end] - s).normalized().dot(n) >= deepest_edge * (in_force_[j] != 0 ? 1 + 0.5 * slack : 1);
-        });
+        points_at_[j] =
+            watched(j) || std::ranges::all_of(slaves.along[static_cast<std::size_t>(j)], [&](Index end) {
+                return (x[end] - s).normalized().dot(n) >= deepest_edge * (in_force_[j] != 0 ? 1 + 0.5 * slack : 1);
+            });
         if (points_at_[j] == 0) point.found = point.behind = false;
     }
 }

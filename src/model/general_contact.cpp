@@ -129,8 +129,8 @@ bool GeneralContact::is_slave(Index f, Index g) const {
     return data_[f].surface < data_[g].surface;
 }
 
-ContactScope GeneralContact::scope_at(const Field& x, double expected) const {
-    ContactScope scope{x, {}, {}};
+ContactScope GeneralContact::scope_at(const Field& x, double expected, std::vector<WatchedNode> watched) const {
+    ContactScope scope{x, {}, {}, std::move(watched)};
     for (const OuterSurface& surface : surfaces_) {
         const double size = surface.side->surface().mean_facet_size(), diagonal = diagonal_[scope.margin.size()];
         scope.margin.push_back(std::max({sizes * size, diagonals * diagonal, 2 * expected}));
@@ -253,6 +253,17 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
                             found[{data_[one].surface, data_[other].surface}].nodes.push_back(node);
         }
     }
+    std::vector<WatchedNode> watched; // still near
+    for (const auto& [f, g] : near)
+        for (const auto& [one, other] : {std::pair{f, g}, std::pair{g, f}})
+            for (const Index node : facets_[one])
+                if (const WatchedNode here{node, data_[other].surface};
+                    data_[one].surface != here.surface && std::ranges::binary_search(scope.watched, here))
+                    watched.push_back(here);
+    std::ranges::sort(watched);
+    watched.erase(std::unique(watched.begin(), watched.end()), watched.end());
+    for (const auto& [node, surface] : watched) found[{surface_of_[node], surface}].yielding.push_back(node);
+    scope.watched = std::move(watched);
     for (const auto& [who, what] : nearest)
         if (leads(who.first, what.second)) found[{data_[who.first].surface, who.second}].facets.push_back(who.first);
     for (const ContactHistory& history : before) {
@@ -277,9 +288,12 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
         }
         in_order(part.nodes);
         in_order(part.yielding);
-        std::erase_if(part.yielding, [&](Index node) { return std::ranges::binary_search(part.nodes, node); });
+        std::erase_if(part.yielding, [&](Index node) {
+            return std::ranges::binary_search(part.nodes, node) &&
+                   !std::ranges::binary_search(scope.watched, WatchedNode{node, sides.second});
+        });
         part.nodes.insert(part.nodes.end(), part.yielding.begin(), part.yielding.end());
-        std::ranges::sort(part.nodes);
+        in_order(part.nodes);
         const auto old = std::ranges::find_if(before, [&](const ContactHistory& history) {
             return !history.pair->slaves().edges && sides_of(*history.pair) == sides;
         });
@@ -340,6 +354,9 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(const ContactScope&
             slaves.in_plane.push_back(plane != own.in_plane.end() ? plane->second : Mat3(Mat3::Identity()));
         }
     slaves.facets = std::move(facets);
+    if (!scope.watched.empty())
+        for (const Index node : nodes)
+            slaves.watched.push_back(std::ranges::binary_search(scope.watched, WatchedNode{node, master}));
     if (!yielding.empty()) {
         slaves.yields.assign(nodes.size(), 0);
         for (const Index node : yielding) slaves.yields[static_cast<std::size_t>(number(node))] = 1;

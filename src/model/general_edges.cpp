@@ -13,8 +13,8 @@ namespace osculate::model {
 
 namespace {
 /// Sine of the angle between facets from which their edge may meet a sharp edge: of coarse round bodies, whose smooth surfaces
-/// sharp edges enter between the nodes of both.
-constexpr double blunt = 0.35;
+/// sharp edges enter between the nodes of both. And from which it may meet any other where one of them is watched.
+constexpr double blunt = 0.35, convex = 0.05;
 /// Angle by which a body may turn before pairs are looked for anew, rad: its nodes move no farther than the margin then.
 double turn(double margin, double diagonal) {
     return 2 * std::asin(std::min(1.0, margin / diagonal));
@@ -37,11 +37,12 @@ void GeneralContact::find_convex_edges() {
             for (std::size_t c = 2; c < around.size(); ++c)
                 normal += (x[around[c - 1]] - x[around[0]]).cross(x[around[c]] - x[around[0]]);
             const bool sharp = surface.is_feature_edge(h);
-            if (!(normal.normalized().dot(edge.wings[1]) < (sharp ? 0 : -blunt))) continue; // hollow, or flat
+            if (!(normal.normalized().dot(edge.wings[1]) < (sharp ? 0 : -convex))) continue; // hollow, or flat
+            const bool blunt_enough = sharp || normal.normalized().dot(edge.wings[1]) < -blunt;
             const auto count = static_cast<Index>(surfaces_[s].facets.size());
             const auto [f, g] = contact::facets_at_edge(surface, h);
             const bool own = f < count && g < count;
-            convex_edges_.push_back({static_cast<Index>(s), h, own, sharp});
+            convex_edges_.push_back({static_cast<Index>(s), h, own, sharp, blunt_enough});
             if (sharp) sharp_[side.nodes()[a]] = sharp_[side.nodes()[b]] = 1;
         }
     }
@@ -66,17 +67,22 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         }
         margin.push_back(scope.margin[s]);
     }
+    const auto are_watched = [&](const ConvexEdge& one, const ConvexEdge& other) {
+        return is_watched(scope.watched, one, other.surface) || is_watched(scope.watched, other, one.surface);
+    };
     const auto may_cross = [&](Index e, Index f) {
         const ConvexEdge &one = convex_edges_[static_cast<std::size_t>(e)],
                          &other = convex_edges_[static_cast<std::size_t>(f)];
-        if (one.surface == other.surface || !(one.own || other.own) || !(one.sharp || other.sharp)) return false;
+        if (one.surface == other.surface || !(one.own || other.own)) return false;
+        if (!((one.sharp && other.blunt) || (one.blunt && other.sharp) || are_watched(one, other))) return false;
         const auto a = static_cast<std::size_t>(one.surface), b = static_cast<std::size_t>(other.surface);
         if (left_out_[a * surfaces_.size() + b] != 0) return false;
         const contact::SharpEdge &p = at[static_cast<std::size_t>(e)], &q = at[static_cast<std::size_t>(f)];
         const contact::LineCrossing crossing = contact::cross_lines(p.end[0], p.end[1], q.end[0], q.end[1]);
         if (!(crossing.sine > contact::least_sine)) return false;
         const double turned = turn(scope.margin[a], diagonal_[a]) + turn(scope.margin[b], diagonal_[b]),
-                     allowed = std::sin(std::min(0.5 * std::numbers::pi, turned + contact::cone_tolerance));
+                     tolerance = are_watched(one, other) ? contact::watched_tolerance : contact::cone_tolerance,
+                     allowed = std::sin(std::min(0.5 * std::numbers::pi, turned + std::asin(tolerance)));
         return std::min(contact::out_of_cones(crossing.across, p, q), contact::out_of_cones(-crossing.across, p, q)) <=
                allowed;
     };
@@ -105,7 +111,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
     }
     for (auto& [sides, edges] : found) {
         std::ranges::sort(edges);
-        ContactHistory& history = histories.emplace_back(opened(make_edges(sides.first, sides.second, edges)));
+        ContactHistory& history = histories.emplace_back(opened(make_edges(scope, sides.first, sides.second, edges)));
         const auto old = std::ranges::find_if(before, [&](const ContactHistory& one) {
             return one.pair->slaves().edges && sides_of(*one.pair) == sides;
         });
@@ -123,7 +129,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
     }
 }
 
-std::shared_ptr<const ContactPair> GeneralContact::make_edges(Index slave, Index master,
+std::shared_ptr<const ContactPair> GeneralContact::make_edges(const ContactScope& scope, Index slave, Index master,
                                                               const std::vector<std::array<Index, 2>>& edges) const {
     const OuterSurface &own = surfaces_[static_cast<std::size_t>(slave)],
                        &other = surfaces_[static_cast<std::size_t>(master)];
@@ -151,6 +157,8 @@ std::shared_ptr<const ContactPair> GeneralContact::make_edges(Index slave, Index
         contact::EdgesThatMeet& one = crossing.meet.emplace_back();
         one.end = number_of(b);
         one.half_edge = meets;
+        one.watched =
+            is_watched(scope.watched, {slave, half_edge}, master) || is_watched(scope.watched, {master, meets}, slave);
         const std::array<Index, 2> reverse{surface.half_edges()[static_cast<std::size_t>(half_edge)].twin, meets};
         one.reverse = static_cast<Index>(std::ranges::lower_bound(edges, reverse) - edges.begin());
         for (std::size_t k = 0; k < 2; ++k) {

@@ -270,6 +270,7 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
     visit("attempts", run.counts.attempts);
     visit("stabilised_steps", run.counts.stabilised_steps);
     visit("steps_at_round_off", run.counts.steps_at_round_off);
+    visit("held_geometry_steps", run.counts.held_geometry_steps);
     visit("factorisations", run.counts.factorisations);
     visit("gmres_iterations", run.counts.gmres_iterations);
     visit("refreshed_patches", run.counts.refreshed_patches);
@@ -280,6 +281,7 @@ void each_value(Run& run, const Visit& visit) requires std::is_same_v<std::remov
     visit("scope_x", run.scope_x);
     visit("scope_margin", run.scope_margin);
     visit("scope_own", run.scope_own);
+    visit("watched", run.watched);
 }
 
 struct Writer {

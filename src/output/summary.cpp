@@ -26,7 +26,8 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["steps"] = {{"accepted", summary.steps.accepted},
                      {"rejected", summary.steps.rejected},
                      {"stabilised", summary.steps.stabilised},
-                     {"at_round_off", summary.steps.at_round_off}};
+                     {"at_round_off", summary.steps.at_round_off},
+                     {"held_geometry", summary.steps.held_geometry}};
     json["iterations"] = summary.iterations;
     json["factorisations"] = summary.factorisations;
     json["gmres_iterations"] = summary.gmres_iterations;

@@ -130,6 +130,11 @@ std::string misfit(const Checkpoint& checkpoint, const model::Model& model, std:
                           checkpoint.scope_margin.size() != model.general->surfaces().size() ||
                           checkpoint.scope_own.size() != model.general->surfaces().size()))
         return "scope of general contact";
+    for (std::size_t k = 0; k < checkpoint.watched.size(); ++k)
+        if (!model.general || checkpoint.watched.size() % 2 != 0 ||
+            !within(checkpoint.watched[k],
+                    k % 2 == 0 ? model.nodes() : static_cast<Index>(model.general->surfaces().size())))
+            return "watched nodes of general contact";
     for (const auto& patches : checkpoint.patches)
         for (const contact::RefittedPatch& patch : patches)
             if (!finite(patch.at)) return "patches";
@@ -157,9 +162,12 @@ std::vector<FoundPair> found_pairs(const model::State& state, const model::Model
 
 void restore_pairs(Checkpoint& checkpoint, const model::Model& model) {
     model::State& state = checkpoint.state;
-    if (model.general)
-        state.scope = std::make_shared<const model::ContactScope>(
-            model::ContactScope{checkpoint.scope_x, checkpoint.scope_margin, checkpoint.scope_own});
+    if (model.general) {
+        model::ContactScope scope{checkpoint.scope_x, checkpoint.scope_margin, checkpoint.scope_own, {}};
+        for (std::size_t k = 0; k < checkpoint.watched.size(); k += 2)
+            scope.watched.push_back({checkpoint.watched[k], checkpoint.watched[k + 1]});
+        state.scope = std::make_shared<const model::ContactScope>(std::move(scope));
+    }
     for (std::size_t p = 0; p < model.pairs.size(); ++p) state.contact[p].pair = model.pairs[p];
     for (std::size_t k = 0; k < checkpoint.found.size(); ++k) {
         const FoundPair& one = checkpoint.found[k];
@@ -167,7 +175,7 @@ void restore_pairs(Checkpoint& checkpoint, const model::Model& model) {
         if (!one.edges.empty()) {
             std::vector<std::array<Index, 2>> edges;
             for (std::size_t e = 0; e < one.edges.size(); e += 2) edges.push_back({one.edges[e], one.edges[e + 1]});
-            pair = model.general->make_edges(one.slave, one.master, edges);
+            pair = model.general->make_edges(*state.scope, one.slave, one.master, edges);
             continue;
         }
         std::vector<mesh::Facet> facets(one.facets.size() / 4);

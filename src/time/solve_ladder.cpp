@@ -1,6 +1,7 @@
 #include "osculate/time/solve_ladder.hpp"
 
 #include "time/friction_rung.hpp"
+#include "time/geometry_rung.hpp"
 #include "time/solve_once.hpp"
 
 #include <algorithm>
@@ -265,6 +266,19 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         settled.iterations += result.iterations;
         settled.reference_force = now.reference_force;
         result = settled;
+        if (result.converged() || !options.settles) return singular || found_singular();
+        const Vector failed = z;
+        z = unpredicted;
+        equilibrium.forget_paths();
+        LadderResult held = settle_geometry(equilibrium, solver, z, start, now);
+        result.iterations += held.iterations;
+        if (held.converged()) {
+            held.iterations = result.iterations;
+            held.reference_force = now.reference_force;
+            result = held;
+        } else {
+            z = failed; // says more
+        }
         return singular || found_singular();
     };
     const Vector first = z;

@@ -66,6 +66,7 @@ void StageRun::run() {
             attempt.decision = judge(attempt.evidence, stage_.limits, attempt.dt, repeats_);
         }
         if (attempt.decision.verdict == Verdict::accept && attempt.uncovered > 0) look_farther(attempt);
+        if (attempt.decision.reason == Reason::audit) watch(attempt);
         progress_.counts.factorisations += machinery_->solver.factorisations() - factorised;
         progress_.counts.gmres_iterations += machinery_->solver.gmres_iterations() - iterated;
         progress_.counts.paths_followed += machinery_->collisions.take_paths_followed();
@@ -268,6 +269,7 @@ void StageRun::commit(StepAttempt& attempt) {
     attempt.next.scope = progress_.state.scope;
     progress_.state = attempt.next; // in place: its arrays stay where they are for whoever looks at them
     progress_.counts.stabilised_steps += attempt.result.stabilised_solves > 0 ? 1 : 0;
+    progress_.counts.held_geometry_steps += attempt.result.held_geometry ? 1 : 0;
     progress_.counts.steps_at_round_off += equilibrium().rests() ? 1 : 0;
     if (dynamics_) progress_.ledger = attempt.ledger;
     observer_.attempted(attempts_.back(), equilibrium().records());
@@ -276,8 +278,11 @@ void StageRun::commit(StepAttempt& attempt) {
     refit_patches();
     machinery_->located = false;
     if (const auto& general = context_.model.general) {
-        const Field x = sum(context_.model.X, progress_.state.u);
-        if (!general->covers(*progress_.state.scope, x, moved)) find_pairs(moved);
+        const model::ContactScope& scope = *progress_.state.scope;
+        std::vector<model::WatchedNode> watched = scope.watched;
+        if (attempt.audit != nullptr) watched = general->watched(watched, attempt.audit->places);
+        if (watched != scope.watched || !general->covers(scope, sum(context_.model.X, progress_.state.u), moved))
+            find_pairs(moved, std::move(watched));
     }
     attempts_.clear();
     repeats_ = 0;
@@ -302,11 +307,13 @@ void StageRun::reject(const StepAttempt& attempt) {
 }
 
 Checkpoint StageRun::checkpoint() const {
-    Checkpoint now{progress_, found_pairs(progress_.state, context_.model), {}, {}, {}, equilibrium().memory(), {}};
+    Checkpoint now{progress_, found_pairs(progress_.state, context_.model), {}, {}, {}, {}, equilibrium().memory(), {}};
     if (progress_.state.scope) {
         now.scope_x = progress_.state.scope->x;
         now.scope_margin = progress_.state.scope->margin;
         now.scope_own = progress_.state.scope->own;
+        for (const auto& [node, surface] : progress_.state.scope->watched)
+            now.watched.insert(now.watched.end(), {node, surface});
     }
     for (const model::ContactHistory& history : progress_.state.contact)
         now.patches.push_back(history.master->refitted_patches());
@@ -337,11 +344,11 @@ void StageRun::install(std::vector<model::ContactHistory> contact, model::Contac
     machinery_ = std::make_unique<Machinery>(context_, stage_, dynamics(), constraints_, state);
 }
 
-void StageRun::find_pairs(double expected) {
+void StageRun::find_pairs(double expected, std::vector<model::WatchedNode> watched) {
     const ScopedTimer timer(context_.timings, Part::search);
     const model::State& state = progress_.state;
     const model::GeneralContact& general = *context_.model.general;
-    model::ContactScope scope = general.scope_at(sum(context_.model.X, state.u), expected);
+    model::ContactScope scope = general.scope_at(sum(context_.model.X, state.u), expected, std::move(watched));
     std::vector<model::ContactHistory> found = general.near(scope, of_general_contact(state, context_.model));
     install(std::move(found), std::move(scope));
 }
@@ -349,7 +356,8 @@ void StageRun::find_pairs(double expected) {
 void StageRun::look_farther(StepAttempt& attempt) {
     const model::State& state = progress_.state;
     const model::GeneralContact& general = *context_.model.general;
-    model::ContactScope scope = general.scope_at(sum(context_.model.X, state.u), attempt.uncovered);
+    model::ContactScope scope =
+        general.scope_at(sum(context_.model.X, state.u), attempt.uncovered, state.scope->watched);
     const std::vector<model::ContactHistory> before = of_general_contact(state, context_.model);
     std::vector<model::ContactHistory> found = general.near(scope, before);
     const auto same = [](const model::ContactHistory& a, const model::ContactHistory& b) {
@@ -364,6 +372,24 @@ void StageRun::look_farther(StepAttempt& attempt) {
     attempt.decision.dt = attempt.dt;
     attempt.decision.value = attempt.uncovered;
     attempt.decision.cause = "bodies moved by " + number(attempt.uncovered) + " m, to others that were not near";
+}
+
+void StageRun::watch(StepAttempt& attempt) {
+    const auto& general = context_.model.general;
+    if (!general || attempt.audit == nullptr) return;
+    const model::State& state = progress_.state;
+    std::vector<model::WatchedNode> watched = general->watched(state.scope->watched, attempt.audit->places);
+    if (watched == state.scope->watched) return;
+    model::ContactScope scope =
+        general->scope_at(sum(context_.model.X, state.u), attempt.uncovered, std::move(watched));
+    std::vector<model::ContactHistory> found = general->near(scope, of_general_contact(state, context_.model));
+    if (std::ranges::includes(state.scope->watched, scope.watched)) return; // the others are not near yet
+    install(std::move(found), std::move(scope));
+    attempt.decision.verdict = Verdict::retry;
+    attempt.decision.reason = Reason::reach;
+    attempt.decision.impact = progress_.impact;
+    attempt.decision.dt = attempt.dt;
+    attempt.decision.cause = "contact watches the place from now on";
 }
 
 void StageRun::give_up(const StepAttempt& attempt) {

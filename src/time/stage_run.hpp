@@ -2,6 +2,7 @@
 /// One stage of a run, step by step: prepare, trial, solve, judge; then commit or reject.
 
 #include "osculate/equilibrium/equilibrium.hpp"
+#include "osculate/model/general_contact.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 #include "osculate/time/checkpoint.hpp"
 #include "osculate/time/collision_check.hpp"
@@ -77,9 +78,11 @@ private:
     void refit_patches();
     /// Looks for the pairs of general contact anew, from the accepted state on.
     /// @param expected  largest motion of a node in the next step, m
-    void find_pairs(double expected);
+    void find_pairs(double expected, std::vector<model::WatchedNode> watched = {});
     /// The same where an attempt has moved nodes out of the scope of the pairs: it is repeated if there are others.
     void look_farther(StepAttempt& attempt);
+    /// The same where the audit rejects an attempt for places that contact does not watch yet: it is repeated if they are near.
+    void watch(StepAttempt& attempt);
     /// Makes a list of pairs that of the state.
     void install(std::vector<model::ContactHistory> contact, model::ContactScope scope);
     [[nodiscard]] equilibrium::Equilibrium& equilibrium() { return machinery_->equilibrium; }

@@ -48,7 +48,7 @@ TEST_F(SummaryFile, HoldsEveryMemberUnderItsName) {
         "version": "0.1.0", "scene": "half_tube", "status": "done", "dofs": 4680,
         "bodies": [{"name": "tube", "nodes": 728, "elements": 468}, {"name": "contactor", "nodes": 884, "elements": 576}],
         "pairs": [{"name": "sliding", "slave_nodes": 221, "master_facets": 156, "surface": "rpim"}],
-        "steps": {"accepted": 31, "rejected": 2, "stabilised": 0, "at_round_off": 3}, "iterations": 77, "factorisations": 70, "gmres_iterations": 300,
+        "steps": {"accepted": 31, "rejected": 2, "stabilised": 0, "at_round_off": 3, "held_geometry": 0}, "iterations": 77, "factorisations": 70, "gmres_iterations": 300,
         "seconds": {"total": 2.5, "cpu": 2.25, "search": 0.1, "patches": 0.2, "contact": 0.3, "assembly": 0.4,
                     "factor": 0.5, "solve": 0.6, "output": 0.7, "audit": 0.0},
         "peak_memory_bytes": 5000000000, "threads": 2,

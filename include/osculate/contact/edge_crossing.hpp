@@ -41,6 +41,8 @@ struct SharpEdge {
 [[nodiscard]] double out_of_cones(const Vec3& normal, const SharpEdge& a, const SharpEdge& b);
 /// Sine up to which that counts as inside: faces that lie on one another have their normals at the border.
 inline constexpr double cone_tolerance = 0.1;
+/// The same where an audit has found them in one another: whatever separates them will do.
+inline constexpr double watched_tolerance = 0.5;
 
 /// Two edges that move on straight lines come to cross from outside one another.
 struct EdgePassage {
@@ -58,6 +60,7 @@ struct EdgesThatMeet {
     std::array<std::array<Index, 4>, 2> wings{}; ///< nodes of its facets, such numbers; -1: none
     Index half_edge = -1;                        ///< of the master surface
     Index reverse = -1;                          ///< number of the item that begins where this one ends
+    bool watched = false;                        ///< the edges may meet however deep they are in one another at first
 };
 
 /// The slave's edge of item j. @param at  position of a number, m

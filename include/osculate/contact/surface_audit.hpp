@@ -3,6 +3,7 @@
 
 #include "osculate/mesh/mesh.hpp"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -23,11 +24,22 @@ struct Intrusion {
     [[nodiscard]] double relative() const { return excess / length; }
 };
 
+/// A place at which one body is inside another, and what meets there.
+struct IntrudedPlace {
+    Index body = -1, other = -1;  ///< the body that is inside, and the one around it
+    std::array<Index, 4> parts{}; ///< global nodes of the node, edge or facet of `body`; -1: fewer
+    std::array<Index, 4>
+        facet{}; ///< global nodes of the facet of `other` that it went through; the last of a triangle -1
+    double depth = 0, excess = 0; ///< see Intrusion, m
+    double length = 1;            ///< see Intrusion, m
+};
+
 /// Result of an audit: for each pair of bodies that penetrate each other the deepest place, ascending by their numbers;
 /// and nodes inside a body with their excess, ascending.
 struct AuditResult {
     std::vector<Intrusion> intrusions;
     std::vector<std::pair<Index, double>> nodes;
+    std::vector<IntrudedPlace> places; ///< between two bodies, in the order in which they were found
 
     /// The intrusion with the largest relative(); null if there are none.
     [[nodiscard]] const Intrusion* worst() const;

@@ -65,6 +65,14 @@ public:
     void forget_paths() {
         for (model::ContactEvaluation& evaluation : evaluations_) evaluation.forget_path();
     }
+    /// Whether all pairs can hold their geometry; holds that of the last evaluate(), and lets it go, see
+    /// model::ContactEvaluation::hold_geometry().
+    [[nodiscard]] bool can_hold_geometry() const;
+    void hold_geometry();
+    void let_go();
+    /// How far the geometry of an iterate is from the one that is held, in facet sizes: gaps of closed nodes, depths of open
+    /// ones, and a tenth of the way that closed nodes have moved along their masters since.
+    [[nodiscard]] double geometry_error(const Iterate& at) const;
     /// Writes the contact forces of a state into z.
     void pack(const std::vector<model::ContactHistory>& contact, VectorRef z) const;
     /// At the last linearise(): slave nodes in contact with a master, by coupling; and, for the others, derivatives of

@@ -56,6 +56,13 @@ public:
     /// Adds springs from the next residual on, see BodyForces; release() removes them.
     void stabilise(Stabilisation springs);
     void release();
+    /// Whether the geometry of contact can be held; holds that of the last residual until let_go_of_contact() or begin_attempt(). See
+    /// ContactTerm::hold_geometry().
+    [[nodiscard]] bool can_hold_contact() const { return contact_.can_hold_geometry(); }
+    void hold_contact() { contact_.hold_geometry(); }
+    void let_go_of_contact() { contact_.let_go(); }
+    /// See ContactTerm::geometry_error(), at the last residual.
+    [[nodiscard]] double contact_geometry_error() const { return contact_.geometry_error(at_); }
     /// See FrictionStep::advance(), from the last residual.
     [[nodiscard]] bool advance_friction(Vector& z);
     void set_reference_force(double force) { reference_force_ = force; }

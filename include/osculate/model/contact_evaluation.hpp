@@ -13,7 +13,7 @@ namespace osculate::model {
 class ContactEvaluation {
 public:
     explicit ContactEvaluation(const ContactPair& pair); ///< must outlive this object
-    /// Copies are for inspection: vary() needs an evaluate() first.
+    /// Copies are for inspection: vary() needs an evaluate() first. They hold no geometry.
     ContactEvaluation(const ContactEvaluation& other);
     ContactEvaluation& operator=(const ContactEvaluation& other) { return *this = ContactEvaluation(other); }
     ContactEvaluation(ContactEvaluation&&) noexcept = default;
@@ -31,6 +31,13 @@ public:
                     const std::vector<Vec3>& tails = {});
     /// Facets as at the start of the step again, none latched: what a solve that failed went through does not count.
     void forget_path();
+    /// Keeps partners, normals and weights of the last evaluate() from now on, until let_go() or begin_step(): gaps are then linear in
+    /// the positions. For pairs with contact at nodes or of edges. @pre prepare_variations() with all that have a point
+    void hold_geometry();
+    void let_go() { held_geometry_.clear(); }
+    [[nodiscard]] bool holds_geometry() const { return !held_geometry_.empty(); }
+    /// How far slave j, which has a point, has moved relative to its master since hold_geometry(), m.
+    [[nodiscard]] double moved_since_held(Index j) const;
     /// Evaluates every slave node at positions x, starting each search from the node's last facet.
     void evaluate(const std::vector<Vec3>& x, Timings& timings, int threads, const std::vector<Vec3>& tails = {});
 
@@ -118,6 +125,13 @@ private:
     struct Places {
         std::vector<Vec3> slaves, masters;
     };
+    /// What hold_geometry() keeps of a point.
+    struct HeldPoint {
+        double gap = 0;                              ///< m
+        Eigen::Matrix<double, 1, Eigen::Dynamic> dg; ///< (3+3n) first variation of the gap; empty: no partner
+    };
+    /// Positions of the slave and of the n nodes of its point, m, (3+3n).
+    [[nodiscard]] Vector point_positions(Index j) const;
     /// Extracts these values from a field; nothing from an empty field.
     void gather(const std::vector<Vec3>& field, Places& into) const;
     [[nodiscard]] const Vec3& at(const Places& places, Index vertex) const;
@@ -133,6 +147,10 @@ private:
     [[nodiscard]] bool yields(Index j) const {
         const SlaveNodes& slaves = pair_->slaves();
         return slaves.edges || (!slaves.yields.empty() && slaves.yields[static_cast<std::size_t>(j)] != 0);
+    }
+    /// See SlaveNodes::watched.
+    [[nodiscard]] bool watched(Index j) const {
+        return !pair_->slaves().watched.empty() && pair_->slaves().watched[static_cast<std::size_t>(j)] != 0;
     }
     /// Whether a node that yields is where slaves of the pair in the other direction have the contact.
     [[nodiscard]] bool is_left_to_slaves(Index j) const;
@@ -179,6 +197,8 @@ private:
     std::vector<contact::ContactState> states_; ///< without forces
     std::vector<std::vector<Index>> point_nodes_;
     int facet_changes_ = 0;
+    std::vector<HeldPoint> held_geometry_; ///< (slaves) empty: nothing is held
+    std::vector<Vector> held_positions_;   ///< (slaves) point_positions() then
 };
 
 /// One for each pair.

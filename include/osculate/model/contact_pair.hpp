@@ -65,6 +65,8 @@ struct SlaveNodes {
     std::optional<OwnSurface> own{}; ///< where slave and master are one surface
     /// Which slave nodes yield a little, see contact::Coulomb: others may hold the same place. Empty: none does.
     std::vector<char> yields{};
+    /// Which slave nodes may touch any facet of the master, whatever they point at or face. Empty: none.
+    std::vector<char> watched{};
     std::optional<CrossingEdges> edges{}; ///< where the slaves are edges
 };
 

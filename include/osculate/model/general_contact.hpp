@@ -1,6 +1,7 @@
 #pragma once
 /// General contact: which parts of the bodies' outer surfaces may meet, and as what, from the geometry of the moment.
 
+#include "osculate/contact/surface_audit.hpp"
 #include "osculate/core/field.hpp"
 #include "osculate/model/contact_pair.hpp"
 
@@ -14,11 +15,20 @@
 
 namespace osculate::model {
 
+/// A node that an audit has found in or next to another body, and the surface of that body: the node is a slave of it whatever
+/// its role, and may touch any of its facets.
+struct WatchedNode {
+    Index node = -1, surface = -1;
+
+    auto operator<=>(const WatchedNode&) const = default;
+};
+
 /// Where pairs of general contact were looked for, and how long they are all there are.
 struct ContactScope {
     Field x;                    ///< (nodes) positions, m
     std::vector<double> margin; ///< (surfaces) how far nodes of each may move before others could meet, m
     std::vector<double> own; ///< (surfaces) how far they may move against their mean before the surface meets itself, m
+    std::vector<WatchedNode> watched{}; ///< ascending
 };
 
 /// The outer surface of a body, as far as it takes part.
@@ -54,7 +64,8 @@ public:
 
     /// Where to look for pairs: from positions x on, for motions that a few steps make.
     /// @param expected  largest motion of a node that the next step may make, m
-    [[nodiscard]] ContactScope scope_at(const Field& x, double expected) const;
+    /// @param watched  ascending; near() keeps those that are still near their surface
+    [[nodiscard]] ContactScope scope_at(const Field& x, double expected, std::vector<WatchedNode> watched = {}) const;
     /// Whether pairs found for a scope are all that may touch at positions x, and after nodes have moved on by `ahead`, m.
     [[nodiscard]] bool covers(const ContactScope& scope, const Field& x, double ahead = 0) const;
     /// The pairs for a scope with their histories: those of `before` where a slave node is in the same pair as there, which
@@ -63,6 +74,11 @@ public:
     [[nodiscard]] std::vector<ContactHistory> near(ContactScope& scope,
                                                    const std::vector<ContactHistory>& before) const;
 
+    /// Nodes to watch after an audit besides those that are watched: of every node, edge or facet that is more than touching
+    /// inside another body, and of the facet through which it went. Empty: no others.
+    /// @returns all, ascending
+    [[nodiscard]] std::vector<WatchedNode> watched(const std::vector<WatchedNode>& now,
+                                                   const std::vector<contact::IntrudedPlace>& places) const;
     [[nodiscard]] const std::vector<OuterSurface>& surfaces() const { return surfaces_; }
     [[nodiscard]] const GeneralContactOptions& options() const { return options_; }
     /// Whether two bodies may meet; and whether they are said not to.
@@ -79,7 +95,7 @@ public:
                                                                const std::vector<Index>& yielding) const;
     /// A pair of edges of two surfaces.
     /// @param edges  half-edges of the slave's and of the master's surface, ascending
-    [[nodiscard]] std::shared_ptr<const ContactPair> make_edges(Index slave, Index master,
+    [[nodiscard]] std::shared_ptr<const ContactPair> make_edges(const ContactScope& scope, Index slave, Index master,
                                                                 const std::vector<std::array<Index, 2>>& edges) const;
     /// Surfaces of a pair that near() or make_pair() has made: slave and master.
     [[nodiscard]] std::pair<Index, Index> sides_of(const ContactPair& pair) const;
@@ -89,7 +105,8 @@ private:
     struct ConvexEdge {
         Index surface = -1, half_edge = -1;
         bool own = true;    ///< not the image of one
-        bool sharp = false; ///< a feature edge; others meet only these
+        bool sharp = false; ///< a feature edge
+        bool blunt = true;  ///< sharp enough to meet these; others meet only what is watched
     };
     struct Facet {
         Index surface = -1;
@@ -112,6 +129,8 @@ private:
     [[nodiscard]] std::vector<Role> roles_within(const FacetPairs& facing,
                                                  const std::vector<ContactHistory>& before) const;
     void find_convex_edges();
+    /// Whether a node at an end of an edge is watched against a surface.
+    [[nodiscard]] bool is_watched(const std::vector<WatchedNode>& watched, const ConvexEdge& edge, Index surface) const;
     /// Adds the pairs of edges for a scope, see near().
     void add_edges(const ContactScope& scope, const std::vector<ContactHistory>& before,
                    std::vector<ContactHistory>& histories) const;

@@ -29,6 +29,7 @@ struct Summary {
         long stabilised = 0; ///< accepted steps solved with supporting springs, see time::StabilisationOptions
         long at_round_off =
             0; ///< accepted steps whose tolerance was below the round-off of rows, see equilibrium::Equilibrium
+        long held_geometry = 0; ///< accepted steps solved with the geometry of contact held, see time::LadderResult
     };
 
     /// Worst values over the accepted steps, see app::RunChecks.

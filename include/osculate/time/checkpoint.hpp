@@ -24,6 +24,8 @@ struct Checkpoint : Progress {
     std::vector<FoundPair> found; ///< the last pairs of the state, which come behind those of the model
     Field scope_x;                ///< ContactScope of the state; empty: none
     std::vector<double> scope_margin, scope_own;
+    std::vector<Index>
+        watched; ///< nodes and the surfaces of the general contact against which they are watched, by turns
     equilibrium::EquilibriumMemory memory;
     std::vector<std::vector<contact::RefittedPatch>> patches; ///< (pairs) of the state's masters
 };

@@ -15,6 +15,7 @@ struct RunCounts {
     int stabilised_steps = 0; ///< steps accepted on the rung `stabilised`, see climb()
     int steps_at_round_off =
         0; ///< steps accepted above the tolerance, but at the round-off of their rows: Equilibrium::rests()
+    int held_geometry_steps = 0; ///< steps accepted with the geometry of contact held, LadderResult::held_geometry
     long factorisations = 0, gmres_iterations = 0;
     long refreshed_patches = 0; ///< master patches refitted between steps, see contact::MasterSurface::refitted()
     long paths_followed = 0;    ///< paths of slave nodes, see CollisionCheck

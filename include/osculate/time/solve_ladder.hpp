@@ -43,6 +43,7 @@ struct LadderResult {
     const char* rung = "";      ///< the rung that ended the attempt
     solve::SparseIndex failing_equation = -1;
     bool astray = false;                 ///< its last iterate is beyond LadderOptions::farthest
+    bool held_geometry = false;          ///< solved with the geometry of contact held, see settle_geometry()
     int stabilised_solves = 0;           ///< number of solves with springs
     Index adrift = -1;                   ///< node with the largest travel, in a body without support
     double travelled = 0;                ///< that travel, m
@@ -62,6 +63,7 @@ struct LadderResult {
 ///   can make Newton cycle in the slip branch
 /// 3 statuses frozen during each KINSOL call and settled between calls; if releases make the tangent singular, half of
 ///   them are undone, repeatedly, so that no body loses its support
+///   Where bodies settle, settle_geometry() follows.
 /// 4 stabilised: for a singular tangent, or as a last resort. Repeated solves with springs that hold bodies at the last
 ///   solution, softer after each success; accepted if the residual without springs is within tolerance, so that motions
 ///   that nothing determines remain as they are

@@ -157,6 +157,11 @@ void show_run(const output::Summary& summary, const Arguments& arguments) {
         print(fmt::format("note: {} of these steps ended at the round-off of their forces and gaps, which is above "
                           "solver.tolerance\n",
                           summary.steps.at_round_off));
+    if (summary.steps.held_geometry > 0)
+        print(fmt::format(
+            "note: {} of these steps found no solution while contact followed its facets and edges; they were "
+            "solved with normals and places of contact held, to 1 % of a facet\n",
+            summary.steps.held_geometry));
 }
 
 void report_run(const std::string& folder) {

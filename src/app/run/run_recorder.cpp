@@ -381,6 +381,7 @@ void RunRecorder::count_up() {
     summary_.gmres_iterations = stepper_.counts().gmres_iterations;
     summary_.steps.stabilised = stepper_.counts().stabilised_steps;
     summary_.steps.at_round_off = stepper_.counts().steps_at_round_off;
+    summary_.steps.held_geometry = stepper_.counts().held_geometry_steps;
     summary_.timings = timings_;
     summary_.checks = checks_.checks();
     if (plan_.stepper.audit || !scene_.solver.audit) {

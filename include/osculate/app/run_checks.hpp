@@ -1,6 +1,7 @@
 #pragma once
 /// Checks of every run while it proceeds, and its comparison with the expectation of the scene.
 
+#include "osculate/app/rotation_check.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/output/summary.hpp"
 #include "osculate/scene/scene.hpp"
@@ -20,12 +21,13 @@ namespace osculate::app {
 ///   penetration     deepest slave node below its master, open or closed, in sizes of its facet; or deepest node or
 ///                   edge inside another body or its own according to the audit of geometry
 ///   closing_loss    energy lost in closing gaps: exact contact returns none of it, see docs/theory.md
+///   rotation_strain what rotations add to strains at small strain, see RotationCheck
 /// All energies are fractions of the largest energy: kinetic plus strain, or the work of external forces.
 class RunChecks {
 public:
     /// The model must outlive this object.
     RunChecks(const model::Model& model, std::optional<scene::Expectation> expect)
-        : model_(model), expect_(std::move(expect)) {}
+        : model_(model), expect_(std::move(expect)), rotations_(model) {}
 
     void accepted(const time::AcceptedStep& step);
     /// Results so far, as plain numbers; recall() continues from them.
@@ -49,6 +51,7 @@ private:
 
     const model::Model& model_;
     const std::optional<scene::Expectation> expect_;
+    RotationCheck rotations_;
     contact::Intrusion deepest_;                    ///< body -1: none
     double deepest_time_ = 0;                       ///< s
     double left_over_ = 0, acting_ = 0;             ///< N

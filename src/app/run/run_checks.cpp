@@ -23,6 +23,7 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
     acting_ = std::max(acting_, forces.acting);
     add_penetration(step);
     add_audit(step);
+    rotations_.accepted(step.state, step.equilibrium.constraints());
     if (step.ledger == nullptr)
         contact_ = 0; // the next dynamic stage opens a ledger of its own
     else
@@ -102,29 +103,32 @@ void RunChecks::add_energies(const time::Ledger& ledger) {
 
 std::vector<double> RunChecks::memory() const {
     const contact::Intrusion& d = deepest_;
-    return {left_over_,
-            acting_,
-            penetration_,
-            penetration_m_,
-            excess_,
-            excessive_,
-            bound_,
-            dynamic_ ? 1.0 : 0.0,
-            energy_,
-            balance_,
-            growth_,
-            static_cast<double>(d.body),
-            static_cast<double>(d.other),
-            static_cast<double>(d.node),
-            d.depth,
-            d.excess,
-            d.length,
-            d.place.x(),
-            d.place.y(),
-            d.place.z(),
-            deepest_time_,
-            contact_,
-            closing_};
+    std::vector<double> numbers{left_over_,
+                                acting_,
+                                penetration_,
+                                penetration_m_,
+                                excess_,
+                                excessive_,
+                                bound_,
+                                dynamic_ ? 1.0 : 0.0,
+                                energy_,
+                                balance_,
+                                growth_,
+                                static_cast<double>(d.body),
+                                static_cast<double>(d.other),
+                                static_cast<double>(d.node),
+                                d.depth,
+                                d.excess,
+                                d.length,
+                                d.place.x(),
+                                d.place.y(),
+                                d.place.z(),
+                                deepest_time_,
+                                contact_,
+                                closing_};
+    const std::vector<double> rotations = rotations_.memory();
+    numbers.insert(numbers.end(), rotations.begin(), rotations.end());
+    return numbers;
 }
 
 void RunChecks::recall(const std::vector<double>& memory) {
@@ -134,8 +138,10 @@ void RunChecks::recall(const std::vector<double>& memory) {
                                &bound_,      &dynamic,     &energy_,       &balance_,       &growth_,  &body,
                                &other,       &node,        &d.depth,       &d.excess,       &d.length, &d.place.x(),
                                &d.place.y(), &d.place.z(), &deepest_time_, &contact_,       &closing_};
-    if (memory.size() != std::size(members)) throw std::runtime_error("the checkpoint holds no checks of the run");
-    for (std::size_t i = 0; i < memory.size(); ++i) *members[i] = memory[i];
+    constexpr std::size_t count = std::size(members);
+    if (memory.size() < count) throw std::runtime_error("the checkpoint holds no checks of the run");
+    for (std::size_t i = 0; i < count; ++i) *members[i] = memory[i];
+    rotations_.recall(std::span(memory).subspan(count));
     dynamic_ = dynamic != 0;
     d.body = static_cast<Index>(body);
     d.other = static_cast<Index>(other);
@@ -147,6 +153,7 @@ output::Summary::Checks RunChecks::checks() const {
     checks.force_balance = share(left_over_, acting_);
     checks.penetration = penetration_;
     checks.penetration_m = penetration_m_;
+    checks.rotation_strain = rotations_.largest();
     if (dynamic_) {
         checks.energy_balance = share(balance_, energy_);
         checks.energy_growth = share(growth_, energy_);
@@ -157,12 +164,16 @@ output::Summary::Checks RunChecks::checks() const {
 
 std::vector<std::string> RunChecks::warnings() const {
     constexpr double much = 0.05; // a rebound at 0.975 of the exact speed
-    if (!dynamic_ || share(closing_, energy_) <= much) return {};
-    return {fmt::format("gaps that closed took {:.2g} of the largest energy, and exact contact takes none: rebounds "
+    std::vector<std::string> warnings;
+    if (const std::optional<std::string> turned = rotations_.warning()) warnings.push_back(*turned);
+    if (dynamic_ && share(closing_, energy_) > much)
+        warnings.push_back(
+            fmt::format("gaps that closed took {:.2g} of the largest energy, and exact contact takes none: rebounds "
                         "are too slow. Smaller steps lose less: set control.step_size to controlled if it is fixed, "
                         "otherwise make control.closing_energy or solver.smallest_step smaller; nodes that keep their "
                         "mass (see check) lose its energy at every impact",
-                        share(closing_, energy_))};
+                        share(closing_, energy_)));
+    return warnings;
 }
 
 std::optional<output::Summary::Expectation> RunChecks::judge(const std::string& failure) const {

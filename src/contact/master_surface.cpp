@@ -17,20 +17,27 @@ namespace osculate::contact {
 
 namespace {
 
+/// A slave point and the nodes of a patch, from one of these: the round-off of X = Phi_i x_i must not grow with the
+/// distance from the origin.
+struct FromNode {
+    Vec3 origin, s;
+    MatrixX3 nodes;
+
+    FromNode(std::span<const Index> vertices, const Vec3& slave, const std::vector<Vec3>& x)
+        : origin(x[vertices[0]]), s(slave - origin), nodes(static_cast<Index>(vertices.size()), 3) {
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            nodes.row(static_cast<Index>(i)) = (x[vertices[i]] - origin).transpose();
+    }
+};
+
 template <class Patch>
-bool evaluate_on(const Patch& patch, std::span<const Index> vertices, const Vec2& start, const Vec3& s,
-                 const std::vector<Vec3>& x, double facet_size, ContactPoint& point, ContactVariation* variation) {
-    // from a node of the patch: the round-off of X = Phi_i x_i must not grow with the distance from the origin
-    const Vec3 origin = x[vertices[0]], from_origin = s - origin;
-    MatrixX3 nodes(static_cast<Index>(vertices.size()), 3);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-        nodes.row(static_cast<Index>(i)) = (x[vertices[i]] - origin).transpose();
-    const auto foot = project(patch, patch.coefficients(nodes), from_origin, start);
+bool evaluate_at(const std::optional<Foot>& foot, const Patch& patch, std::span<const Index> vertices,
+                 const FromNode& from, double facet_size, ContactPoint& point, ContactVariation* variation) {
     if (!foot) return false;
     point.nodes.assign(vertices.begin(), vertices.end());
-    if (!locate(patch, *foot, from_origin, point)) return false;
+    if (!locate(patch, *foot, from.s, point)) return false;
     if (variation != nullptr) vary(patch, *foot, point, *variation);
-    point.foot += origin;
+    point.foot += from.origin;
     point.behind = point.gap <= -deepest * facet_size;
     return !point.behind;
 }
@@ -49,8 +56,14 @@ public:
         const double size = surface_.facet_size(hit.facet);
         if (beyond_boundary(hit, size)) return;
         const auto vertices = surface_.facet_vertices(hit.facet);
-        const FacetPatch patch(static_cast<int>(vertices.size()));
-        point.found = evaluate_on(patch, vertices, hit.u, s, x, size, point, variation);
+        FacetPatch patch(static_cast<int>(vertices.size()));
+        const FromNode from(vertices, s, x);
+        std::optional<Foot> foot = patch.foot(from.s, from.nodes, hit.u);
+        if (!foot && vertices.size() == 4) {
+            patch = patch.flattened();
+            foot = patch.foot(from.s, from.nodes, hit.u);
+        }
+        point.found = evaluate_at(foot, patch, vertices, from, size, point, variation);
     }
 
 private:
@@ -94,7 +107,9 @@ public:
         MatrixX2 phi_a(facet.size(), 2);
         facet.weights(hit.u, phi, phi_a);
         const Vec2 start = domain.corners.transpose() * phi;
-        point.found = evaluate_on(*domain.patch, domain.vertices, start, s, x, size, point, variation);
+        const FromNode from(domain.vertices, s, x);
+        const auto foot = project(*domain.patch, domain.patch->coefficients(from.nodes), from.s, start);
+        point.found = evaluate_at(foot, *domain.patch, domain.vertices, from, size, point, variation);
     }
 
     Index fallbacks() const override { return fallbacks_; }

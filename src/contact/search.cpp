@@ -2,7 +2,6 @@
 
 #include "contact/box_tree.hpp"
 #include "osculate/contact/facet_patch.hpp"
-#include "osculate/contact/projection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -135,7 +134,7 @@ FacetHit FacetSearch::closest_on(Index facet, const Vec3& s, const std::vector<V
     const MatrixX3 corner = storage.topRows(corners);
     FacetHit hit;
     hit.facet = facet;
-    const auto foot = project(patch, corner, s, patch.centre());
+    const auto foot = patch.foot(s, corner, patch.centre());
     if (foot && inside(foot->u, corners)) {
         hit.u = foot->u;
         hit.distance = (s - foot->point.X).norm();

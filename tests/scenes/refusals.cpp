@@ -109,18 +109,23 @@ INSTANTIATE_TEST_SUITE_P(
                  "x, which is held",
                  "28:13: stages.push.motion.soft: expected a rigid body or a coupling, found 'soft', which deforms",
                  "29:20: stages.push.moment.soft: expected a rigid body or a coupling, found 'soft', which deforms"}},
-        Refusal{"coupled_twice",
-                {"16:15: couplings.side.set: expected nodes that follow no other coupling: a node has one motion only, "
-                 "found a node at [0, 0, 1] m that follows couplings.head too",
-                 "17:16: couplings.hinge.set: expected nodes that are not all on one line, or `fix: [rx, ry, rz]`: "
-                 "nothing holds the turns about it, found 3 nodes on one line",
-                 "17:16: couplings.hinge.set: expected nodes that follow no other coupling: a node has one motion "
-                 "only, found a node at [1, 0, 1] m that follows couplings.head too",
-                 "13:3: supports.bed: expected nodes that follow no coupling: couplings.side.fix holds, "
-                 "stages.<stage>.motion.side drives them all, found a node at [0, 0, 0] m that follows couplings.side",
-                 "20:20: stages.push.displacement.top: expected nodes that follow no coupling: couplings.head.fix "
-                 "holds, stages.<stage>.motion.head drives them all, found a node at [0, 0, 1] m that follows "
-                 "couplings.head"}},
+        Refusal{
+            "coupled_twice",
+            {"17:15: couplings.side.set: expected nodes that follow no other coupling: a node has one motion only, "
+             "found a node at [0, 0, 1] m that follows couplings.head too",
+             "18:16: couplings.hinge.set: expected nodes that are not all on one line, or `fix: [rx, ry, rz]`: "
+             "nothing holds the turns about it, found 3 nodes on one line",
+             "18:16: couplings.hinge.set: expected nodes that follow no other coupling: a node has one motion "
+             "only, found a node at [1, 0, 1] m that follows couplings.head too",
+             "13:3: supports.bed: expected nodes that follow no coupling, or one that keeps them there: add x, y, z, "
+             "rx, ry, rz to couplings.side.fix, found a node at [0, 0, 0] m that follows couplings.side",
+             "14:3: supports.left: expected nodes that follow no coupling, or one that keeps them there: add x, ry, "
+             "rz to couplings.side.fix, found a node at [0, 0, 0] m that follows couplings.side",
+             "14:3: supports.left: expected nodes that follow no coupling, or one that keeps them there: add x, ry, "
+             "rz to couplings.head.fix, found a node at [0, 0, 1] m that follows couplings.head",
+             "21:20: stages.push.displacement.top: expected nodes that follow no coupling: couplings.head.fix "
+             "holds, stages.<stage>.motion.head drives them all, found a node at [0, 0, 1] m that follows "
+             "couplings.head"}},
         Refusal{"coupling_contradictions",
                 {"14:15: couplings.grip.set: expected a set of a body that deforms: bodies.tool.rigid has a reference "
                  "point for the whole body, found a set of rigid body 'tool'",

@@ -25,8 +25,8 @@ class Constraints {
 public:
     static constexpr Index held = -1;
 
-    /// @param dependent  nodes without equations, whose motion follows from that of others, see Dependence; none of them
-    ///                   may be constrained
+    /// @param dependent  nodes without equations, whose motion follows from that of others, see Dependence; directions
+    ///                   held at them are ones along which this motion keeps them
     /// @throws std::invalid_argument naming the node (global number) whose directions or values contradict each other
     Constraints(Index nodes, const std::vector<NodeConstraint>& constraints, const std::vector<Index>& dependent = {});
 

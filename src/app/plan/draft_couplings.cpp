@@ -4,8 +4,11 @@
 #include "app/plan/draft.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <fmt/format.h>
 #include <map>
+#include <set>
+#include <string>
 
 namespace osculate::app {
 
@@ -22,14 +25,33 @@ bool on_one_line(const std::vector<Vec3>& points) {
     return !(squares(1) > thin * thin * squares(2));
 }
 
-/// Sets whose nodes a run holds or drives, and the keys that do.
-std::vector<std::pair<std::string, std::string>> held_sets(const scene::Scene& scene) {
-    std::vector<std::pair<std::string, std::string>> held;
-    for (const auto& [set, support] : scene.supports) held.emplace_back(set, "supports." + set);
-    for (const auto& [name, stage] : scene.stages)
-        for (const auto& [set, components] : stage.displacement)
-            held.emplace_back(set, "stages." + name + ".displacement." + set);
+/// Directions along which a support holds its nodes.
+std::vector<Vec3> held_directions(const scene::Support& support) {
+    std::vector<Vec3> held;
+    for (int k = 0; k < 3; ++k)
+        if (support.fixed[static_cast<std::size_t>(k)]) held.emplace_back(support.axes.col(k));
     return held;
+}
+
+/// Marks the components that a coupling's `fix` lacks to hold a node along a unit vector d through any motion.
+/// @param arm  from the reference point to the node
+void find_missing(const std::array<bool, 6>& fixed, const Vec3& arm, const Vec3& d, std::array<bool, 6>& missing) {
+    constexpr double round_off = 1e-9; // of unit vectors and arms
+    int free_turns = 0;
+    Vec3 axis = Vec3::Zero(); // of the last of them
+    for (int k = 0; k < 3; ++k) {
+        if (!fixed[static_cast<std::size_t>(k)] && std::abs(d(k)) > round_off)
+            missing[static_cast<std::size_t>(k)] = true;
+        if (fixed[static_cast<std::size_t>(k + 3)]) continue;
+        ++free_turns;
+        axis = Vec3::Unit(k);
+    }
+    const auto along = [&](const Vec3& v, const Vec3& e) { return v.cross(e).norm() <= round_off * v.norm(); };
+    // turns about one axis move no node along it, and none that is on it; those about two lead anywhere
+    if (free_turns == 0 || arm.isZero(0) || (free_turns == 1 && (along(d, axis) || along(arm, axis)))) return;
+    for (int k = 0; k < 3; ++k)
+        if (!fixed[static_cast<std::size_t>(k + 3)] && !along(d, Vec3::Unit(k)))
+            missing[static_cast<std::size_t>(k + 3)] = true;
 }
 
 } // namespace
@@ -77,18 +99,41 @@ void add_couplings(Draft& draft) {
         m.rigid.push_back(std::move(coupling));
     }
     if (follows.empty()) return;
-    std::map<std::pair<std::string, std::string>, bool> told;
-    for (const auto& [set, key] : held_sets(draft.scene))
+    // refuses the first node of each coupling in a set for which expected(node, coupling) has words
+    const auto refuse = [&](const std::string& set, const std::string& key, const auto& expected) {
+        std::set<std::string> told;
         for (const Index node : draft.set(set).nodes) {
             const auto at = follows.find(node);
-            if (at == follows.end() || !told.emplace(std::pair{at->second, set}, true).second) continue;
+            if (at == follows.end() || told.contains(at->second)) continue;
+            const std::string words = expected(node, at->second);
+            if (words.empty()) continue;
+            told.insert(at->second);
             draft.faults.push_back(
-                fault(key,
-                      fmt::format("nodes that follow no coupling: couplings.{0}.fix holds, stages.<stage>.motion.{0} "
-                                  "drives them all",
-                                  at->second),
-                      fmt::format("a node at {} that follows couplings.{}", place(node), at->second)));
+                fault(key, words, fmt::format("a node at {} that follows couplings.{}", place(node), at->second)));
         }
+    };
+    for (const auto& [set, support] : draft.scene.supports)
+        refuse(set, "supports." + set, [&](Index node, const std::string& name) -> std::string {
+            const model::RigidBody& coupling = draft.rigid(name);
+            const Vec3 arm = m.X[static_cast<std::size_t>(node)] - coupling.centre;
+            std::array<bool, 6> missing{};
+            for (const Vec3& d : held_directions(support))
+                find_missing(scene::find(draft.scene.couplings, name)->fixed, arm, d, missing);
+            std::vector<std::string> names;
+            for (std::size_t k = 0; k < 6; ++k)
+                if (missing[k]) names.emplace_back(std::array{"x", "y", "z", "rx", "ry", "rz"}[k]);
+            if (names.empty()) return {};
+            return fmt::format(
+                "nodes that follow no coupling, or one that keeps them there: add {} to couplings.{}.fix",
+                fmt::join(names, ", "), name);
+        });
+    for (const auto& [stage_name, stage] : draft.scene.stages)
+        for (const auto& [set, components] : stage.displacement)
+            refuse(set, "stages." + stage_name + ".displacement." + set, [&](Index, const std::string& name) {
+                return fmt::format("nodes that follow no coupling: couplings.{0}.fix holds, "
+                                   "stages.<stage>.motion.{0} drives them all",
+                                   name);
+            });
 }
 
 } // namespace osculate::app

@@ -46,6 +46,23 @@ TEST_F(Init, WritesASceneWithItsMeshThatRunsWhereItIs) {
     EXPECT_EQ(osculate({"check", "mine/pad.yaml"}).code, 0);
 }
 
+/// Two pads of one mesh.
+TEST_F(Init, WritesAMeshOnceThatBodiesShare) {
+    std::string text = content(scene_file("configs/tutorials/pad_from_file.yaml"));
+    const std::size_t pad = text.find("  pad:"), slab = text.find("  slab:");
+    text.insert(slab, "  upper:" + text.substr(pad + 6, slab - pad - 6));
+    std::filesystem::create_directories(folder / "shipped/meshes");
+    std::ofstream(folder / "shipped/two_pads.yaml") << text;
+    std::filesystem::copy_file(scene_file("configs/tutorials/meshes/pad.vtu"), folder / "shipped/meshes/pad.vtu");
+    const std::string shipped = (folder / "shipped").string();
+    const Outcome outcome = osculate({"init", "two_pads", "-o", "mine/pads.yaml"},
+                                     [&] { setenv("OSCULATE_TUTORIALS", shipped.c_str(), 1); });
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out,
+              "mine/pads.yaml written, its mesh mine/meshes/pad.vtu; run it: osculate run mine/pads.yaml\n");
+    EXPECT_EQ(content(folder / "mine/meshes/pad.vtu"), content(folder / "shipped/meshes/pad.vtu"));
+}
+
 TEST_F(Init, OverwritesNothing) {
     std::ofstream(folder / "press_block.yaml") << "mine";
     const Outcome outcome = osculate({"init", "press_block"});

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <system_error>
 #include <vector>
@@ -104,15 +105,15 @@ std::string init_scene(const std::string& name, const std::string& file) {
         refuse("init", fmt::format("a tutorial: {}", fmt::join(known, ", ")), name.empty() ? "none" : "'" + name + "'",
                scene::nearest(name, known));
     const fs::path from = folder() / (name + ".yaml"), to = file.empty() ? name + ".yaml" : file;
-    std::vector<std::pair<fs::path, fs::path>> meshes;
+    std::map<fs::path, fs::path> meshes; // copy -> source; bodies may share one
     for (const auto& [body, spec] : scene::read_scene(from.string()).bodies)
         if (const auto* mesh = std::get_if<scene::FileMesh>(&spec.mesh.source))
-            meshes.emplace_back(mesh->path, to.parent_path() / fs::relative(mesh->path, folder()));
-    for (const auto& [source, mesh] : meshes)
+            meshes.emplace(to.parent_path() / fs::relative(mesh->path, folder()), mesh->path);
+    for (const auto& [mesh, source] : meshes)
         if (fs::exists(mesh)) refuse(mesh.string(), "a mesh that is not there yet: nothing is overwritten", "a file");
     copy(adapted(file_content(from), name, to.string()), to);
     std::string text = fmt::format("{} written", to.string());
-    for (const auto& [source, mesh] : meshes) {
+    for (const auto& [mesh, source] : meshes) {
         copy(file_content(source), mesh);
         text += fmt::format(", its mesh {}", mesh.string());
     }

@@ -190,9 +190,21 @@ private:
         return *trees_[body];
     }
 
+    /// Of a quadrilateral two, along the diagonal from its first corner unless they would lie on one another.
     template <class Visit> void for_triangles(const mesh::Facet& facet, const Visit& visit) const {
-        for (int c = 2; c < facet.count; ++c)
-            visit(Triangle{x_[facet.nodes[0]], x_[facet.nodes[c - 1]], x_[facet.nodes[c]]});
+        const auto triangle = [&](std::size_t i, std::size_t j, std::size_t k) {
+            return Triangle{x_[facet.nodes[i]], x_[facet.nodes[j]], x_[facet.nodes[k]]};
+        };
+        const Triangle first = triangle(0, 1, 2);
+        if (facet.count < 4) return visit(first);
+        const Triangle second = triangle(0, 2, 3);
+        if (first.normal().dot(second.normal()) >= 0) {
+            visit(first);
+            visit(second);
+        } else {
+            visit(triangle(0, 1, 3));
+            visit(triangle(1, 2, 3));
+        }
     }
 
     /// Signed distance from the surface of a body. At an edge or a vertex the mean of the normals of the triangles there tells the

@@ -70,40 +70,51 @@ bool CollisionCheck::speaks_by_normal(std::size_t p, const Start& start) const {
                            start.distance < hollow * contact_[p].pair().surface().facet_size(start.facet));
 }
 
-bool CollisionCheck::sheet_lost(std::size_t p, Index j) const {
+bool CollisionCheck::sheet_lost(std::size_t p, Index j, const Field& x) const {
     const contact::ContactPoint& point = contact_[p].point(j);
-    return !point.found || point.normal.dot(starts_[p][j].normal) <= same_side;
+    const Start& start = starts_[p][j];
+    if (!point.found || point.normal.dot(start.normal) <= same_side) return true;
+    // the gap from one sheet changes by no more than the nodes there move
+    constexpr double reserve = 2, round_off = 1e-9; // factor; facet sizes
+    const model::ContactPair& pair = contact_[p].pair();
+    const auto motion = [&](Index node) { return (x[node] - x_[node]).norm(); };
+    double master = 0;
+    for (const Index node : contact_[p].point_nodes(j)) master = std::max(master, motion(node));
+    return std::abs(point.gap - start.gap) >
+           reserve * (motion(pair.slaves().node[j]) + master) + round_off * pair.surface().facet_size(point.facet);
 }
 
 void CollisionCheck::add_trial(const Field& u, StepEvidence& evidence) {
-    add_normal_motions(u, evidence);
+    const Field x = sum(model_.X, u);
+    add_normal_motions(x, evidence);
     for (std::size_t p = 0; p < starts_.size(); ++p)
         for (Index j = 0; j < contact_[p].pair().size(); ++j) {
             const Start& start = starts_[p][j];
             const contact::ContactPoint& point = contact_[p].point(j);
             if (start.closed || !start.found || !(point.found || point.behind)) continue;
-            if (paths_ && sheet_lost(p, j)) continue; // of another sheet: told by motion or path
+            if (paths_ && sheet_lost(p, j, x)) continue; // of another sheet: told by motion or path
             // an initial overlap: no step is short enough, and the equilibrium with contact lifts it
             if (start.gap <= -allowed(p, start.facet)) continue;
             evidence.gaps.push_back({start.gap, point.gap, static_cast<Index>(p), j, length(p, point.facet)});
         }
-    if (paths_) add_paths(u, evidence);
+    if (paths_) add_paths(x, evidence);
 }
 
 void CollisionCheck::add_solution(const Field& u, StepEvidence& evidence) {
-    add_normal_motions(u, evidence);
-    if (paths_) add_paths(u, evidence);
+    const Field x = sum(model_.X, u);
+    add_normal_motions(x, evidence);
+    if (paths_) add_paths(x, evidence);
 }
 
-void CollisionCheck::add_normal_motions(const Field& u, StepEvidence& evidence) const {
+void CollisionCheck::add_normal_motions(const Field& x, StepEvidence& evidence) const {
     for (std::size_t p = 0; p < starts_.size(); ++p) {
         const model::ContactPair& pair = contact_[p].pair();
         if (pair.slaves().edges) continue;
         for (Index j = 0; j < pair.size(); ++j) {
             const Start& start = starts_[p][j];
-            if (!speaks_by_normal(p, start) || !sheet_lost(p, j)) continue;
+            if (!speaks_by_normal(p, start) || !sheet_lost(p, j, x)) continue;
             if (start.gap <= -allowed(p, start.facet)) continue; // as in add_trial()
-            const auto moved = [&](Index node) -> Vec3 { return model_.X[node] + u[node] - x_[node]; };
+            const auto moved = [&](Index node) -> Vec3 { return x[node] - x_[node]; };
             const auto around = pair.surface().facet_vertices(start.facet);
             Vec3 motion = moved(pair.slaves().node[j]);
             for (const Index v : around) motion -= moved(pair.master_nodes()[v]) / static_cast<double>(around.size());
@@ -113,8 +124,7 @@ void CollisionCheck::add_normal_motions(const Field& u, StepEvidence& evidence) 
     }
 }
 
-void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
-    const Field x = sum(model_.X, u);
+void CollisionCheck::add_paths(const Field& x, StepEvidence& evidence) {
     for (std::size_t p = 0; p < starts_.size(); ++p) {
         const model::ContactPair& pair = contact_[p].pair();
         if (pair.slaves().edges) {
@@ -134,7 +144,7 @@ void CollisionCheck::add_paths(const Field& u, StepEvidence& evidence) {
             const Index node = pair.slaves().node[j];
             const double motion = (x[node] - x_[node] - mean).norm() + farthest;
             if (start.closed || motion < start.distance) continue;
-            const bool far = motion > reach * pair.finest(), lost = !start.found || sheet_lost(p, j);
+            const bool far = motion > reach * pair.finest(), lost = !start.found || sheet_lost(p, j, x);
             if (far || (lost && !speaks_by_normal(p, start))) slaves.push_back(j);
         }
         if (!slaves.empty()) follow(p, slaves, x, evidence);
@@ -184,7 +194,7 @@ void CollisionCheck::follow(std::size_t p, const std::vector<Index>& slaves, con
             // it ends behind facets of a sheet that it sees: what counts is the gap, that of a smooth surface perhaps
             const std::vector<Index> around = pair.surface().vertex_neighbours(entry.facet);
             const bool here = point.facet == entry.facet || std::ranges::count(around, point.facet) > 0;
-            const bool told = starts_[p][j].found && !sheet_lost(p, j);
+            const bool told = starts_[p][j].found && !sheet_lost(p, j, x);
             if (here && (told || point.gap >= -tolerated(entry.facet))) continue;
         }
         // as (27) and (28): on to the surface, or from near it to what is allowed

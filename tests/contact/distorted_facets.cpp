@@ -99,7 +99,9 @@ TEST(DistortedFacet, DoesNotTurnRoundWhereItIsWarped) {
         for (int i = 0; i < 50; ++i) {
             const Vec3 s(random.uniform(-2, 3), random.uniform(-2, 3), random.uniform(-0.1, 0.1));
             const ContactPoint point = facet.at(s);
-            if (point.found) EXPECT_GT(point.normal.dot(N), 0.5) << s.transpose();
+            if (point.found) {
+                EXPECT_GT(point.normal.dot(N), 0.5) << s.transpose();
+            }
         }
     }
 }
@@ -108,7 +110,7 @@ TEST(DistortedFacet, HasExactVariationsPastItsFold) {
     Random random(94);
     std::vector<Vec3> warped = trapezoid();
     warped[1].z() = 0.03;
-    for (const Vec3 s : {Vec3(0.52, 1.3, 0.05), Vec3(0.4, 1.8, -0.1)}) {
+    for (const Vec3& s : {Vec3(0.52, 1.3, 0.05), Vec3(0.4, 1.8, -0.1)}) {
         const Vec3 ds = random.vector();
         std::vector<Vec3> dx;
         for (int i = 0; i < 4; ++i) dx.push_back(random.vector());

@@ -56,12 +56,13 @@ private:
         Index facet = -1;
     };
     [[nodiscard]] bool speaks_by_normal(std::size_t p, const Start& start) const;
-    [[nodiscard]] bool sheet_lost(std::size_t p, Index j) const;
+    /// Whether a node, at positions x, sees another sheet of its master than at the start, or none.
+    [[nodiscard]] bool sheet_lost(std::size_t p, Index j, const Field& x) const;
     /// GapEvidence::length at a facet, and the allowed interpenetration there, m.
     [[nodiscard]] double length(std::size_t p, Index facet) const;
     [[nodiscard]] double allowed(std::size_t p, Index facet) const;
-    void add_normal_motions(const Field& u, StepEvidence& evidence) const;
-    void add_paths(const Field& u, StepEvidence& evidence);
+    void add_normal_motions(const Field& x, StepEvidence& evidence) const;
+    void add_paths(const Field& x, StepEvidence& evidence);
     /// Paths of edges that had no crossing with each other at the start.
     void add_edge_paths(std::size_t p, const Field& x, StepEvidence& evidence) const;
     void follow(std::size_t p, const std::vector<Index>& slaves, const Field& x, StepEvidence& evidence);

@@ -241,6 +241,26 @@ TEST(SurfaceAudit, SeesABodyThatPassesThroughItself) {
     EXPECT_EQ(found.worst()->body, found.worst()->other);
 }
 
+TEST(SurfaceAudit, TellsTheSideAtFacetsThatAreNotConvex) {
+    Bodies bodies;
+    // a prism, counterclockwise from above
+    const std::vector<Vec3> base{{0.3, 0.3, 0}, {-0.2, 1, 0}, {-1, -1, 0}, {1, -0.2, 0}};
+    for (const double z : {0.0, 1.0})
+        for (const Vec3& corner : base) bodies.X.push_back(corner + Vec3(0, 0, z));
+    std::vector<mesh::Facet>& facets = bodies.facets.emplace_back();
+    for (const std::array<Index, 4>& nodes :
+         {std::array<Index, 4>{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}) {
+        mesh::Facet& facet = facets.emplace_back();
+        facet.nodes = nodes;
+        facet.count = 4;
+    }
+    bodies.X[0].head<2>() = bodies.X[4].head<2>() = Vec2(-0.3, -0.3); // hollow: base and top are darts
+    bodies.add(box({0.1, 0.1, 0.6}, {1, 1, 3}), Mat3::Identity(), {0.2, 0.2, -0.1});
+    EXPECT_EQ(bodies.examine().worst(), nullptr) << "in the hollow, above and below the plane of the dart";
+    bodies.X[0].head<2>() = bodies.X[4].head<2>() = Vec2(0.5, 0.5);
+    EXPECT_NE(bodies.examine().worst(), nullptr) << "filled";
+}
+
 TEST(SurfaceAudit, FindsTheSameWhereBodiesAreMovedTurnedSwappedOrScaled) {
     const Vec3 size(1, 1, 1);
     const mesh::Mesh one = box(size, {2, 3, 2}), other = box(size, {3, 2, 2});

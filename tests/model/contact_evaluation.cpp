@@ -117,6 +117,38 @@ TEST_P(FlatPair, HasTheExactVariationOfTheDrift) {
     }
 }
 
+TEST_P(FlatPair, HeldGeometryIsThatOfTheStartAndLinear) {
+    Random random(82);
+    for (Vec3& p : x) p += random.vector(0.02);
+    evaluation->evaluate(x, timings, 1);
+    const contact::ContactPoint before = evaluation->point(0);
+    contact::ContactVariation variation;
+    evaluation->vary(0, variation);
+    evaluation->hold_geometry();
+    std::vector<Vec3> moved = x;
+    for (Vec3& p : moved) p += random.vector(0.3); // beyond its facet
+    evaluation->evaluate(moved, timings, 1);
+    const contact::ContactPoint& held = evaluation->point(0);
+    EXPECT_EQ(held.normal, before.normal);
+    EXPECT_EQ(held.weights, before.weights);
+    double gap = before.gap + variation.dg.head<3>().dot(moved[slave(0)] - x[slave(0)]);
+    for (std::size_t i = 0; i < evaluation->point_nodes(0).size(); ++i) {
+        const Index node = evaluation->point_nodes(0)[i];
+        gap += variation.dg.segment<3>(3 + 3 * static_cast<Index>(i)).dot(moved[node] - x[node]);
+    }
+    EXPECT_NEAR(held.gap, gap, round_off);
+    contact::ContactVariation of_held;
+    evaluation->vary(0, of_held);
+    EXPECT_EQ(of_held.dg, variation.dg);
+    EXPECT_EQ(of_held.dn.norm(), 0);
+    EXPECT_EQ(of_held.dweights.norm(), 0);
+    model::ContactEvaluation now = *evaluation; // copies follow the master again
+    now.evaluate(moved, timings, 1);
+    EXPECT_NE(now.point(0).normal, before.normal);
+    evaluation->begin_step(moved, pair->initial_history(), timings, 1);
+    EXPECT_FALSE(evaluation->holds_geometry());
+}
+
 TEST_P(FlatPair, FollowsASlidingSlaveFromFacetToFacet) {
     const Index before = evaluation->facets()[0];
     x[slave(0)].x() += 0.5;

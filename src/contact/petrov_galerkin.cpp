@@ -20,7 +20,8 @@ constexpr double least_cover = 1e-3;
 ///     weights      W_ji of the unfiltered vertices: a force lambda on j loads vertex i with -W_ji lambda
 /// The forces are not the work conjugates of the gaps, hence the name. Where a slave node is beyond the master's boundary,
 /// but some of its facets are above the master, its gap is that over the closest facet, extended. Where it is above the
-/// master, but none of its facets is (a vertex on a vertex), it loads the closest facet: W_ji = N_i at the closest point.
+/// master, but none of its facets is (a vertex on a vertex), its force is that of the smooth surface, W_ji = Q_vi Phi_v: the
+/// closest facet may be either of two.
 ///
 /// ContactPoint::nodes: the vertices that carry force, ascending; the other slave nodes of j's facets, on which the
 /// weights depend, numbered from surface.vertex_count() on; then the vertices on which only the gap depends.
@@ -43,7 +44,6 @@ public:
 
     void begin(const PairPositions& at, const FacetTracking& tracking, int threads) override {
         nodes_->begin(at, tracking, threads);
-        filter_.begin(at.vertices);
         weights_.begin(at);
         parallel_for(threads, weights_.facet_count(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f)
@@ -83,15 +83,14 @@ public:
                 alone_[j] = raw_[j].found && !(share > 0);
                 points[j].facet = raw_[j].facet;
                 points[j].side = raw_[j].side;
-                ContactPoint below;
-                if (alone_[j]) extended_->evaluate(at.slaves[j], onto_facet(tracking.hits[j]), at.vertices, below);
-                gather(j, share, at.vertices, below, points[j]);
+                gather(j, at.vertices, points[j]);
             }
         });
         return changed;
     }
 
     void prepare_variations(const PairPositions& at, std::span<const char> wanted, int threads) override {
+        if (filter_.active()) filter_.differentiate(at.vertices);
         parallel_for(threads, weights_.facet_count(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f)
                 if (std::ranges::any_of(weights_.corners(f), [&](Index j) { return wanted[j] != 0; }))
@@ -102,7 +101,7 @@ public:
     void vary(Index j, const PairPositions& at, const FacetHit& hit, const ContactPoint& point,
               ContactVariation& variation) const override {
         static thread_local ContactVariation own;
-        own.form = VariationForm::gap;
+        own.form = alone_[j] ? VariationForm::matrices : VariationForm::gap;
         own.patches.clear();
         const PairPositions smooth = filtered(at);
         if (outside_[j])
@@ -114,23 +113,18 @@ public:
         variation.dn.setZero(3, columns);
         variation.dg.leftCols<3>() = own.dg.leftCols<3>();
         variation.dn.leftCols<3>() = own.dn.leftCols<3>();
-        const Columns column(point.nodes, carriers_[j], moving_[j]);
         static thread_local std::vector<Index> place; // first columns of vertices
         place.resize(std::max(place.size(), at.vertices.size()));
         for (Index i = 0; i < static_cast<Index>(point.nodes.size()); ++i)
             if (point.nodes[i] < surface_.vertex_count()) place[point.nodes[i]] = 3 + 3 * i;
         for (std::size_t i = 0; i < raw_[j].nodes.size(); ++i) {
-            const Index from = 3 + 3 * static_cast<Index>(i), v = raw_[j].nodes[i];
+            const Index from = 3 + 3 * static_cast<Index>(i);
             const Eigen::RowVector3d dg = own.dg.middleCols<3>(from);
             const Mat3 dn = own.dn.middleCols<3>(from);
-            const auto add = [&](Index to, double share) {
-                variation.dg.middleCols<3>(to) += share * dg;
-                variation.dn.middleCols<3>(to) += share * dn;
-            };
-            if (!filter_.active())
-                add(place[v], 1);
-            else
-                for (const MasterFilter::Entry& e : filter_.row(v)) add(place[e.vertex], e.share);
+            through_filter(raw_[j].nodes[i], [&](Index v, double, const Mat3& by) {
+                variation.dg.middleCols<3>(place[v]).noalias() += dg * by;
+                variation.dn.middleCols<3>(place[v]).noalias() += dn * by;
+            });
         }
         if (!in_plane_.empty()) {
             const Vec3& n = point.normal;
@@ -140,7 +134,8 @@ public:
         // nothing else moves the weights: these are the first columns
         variation.dweights.setZero(carriers_[j], 3 + 3 * moving_[j]);
         variation.dpressing.resize(0, 0);
-        if (alone_[j]) return vary_alone(j, at, hit, column, variation.dweights);
+        if (alone_[j]) return vary_alone(j, own, place, variation.dweights);
+        const Columns column(point.nodes, carriers_[j], moving_[j]);
         weights_.add_variations(
             j, point.weights, [&](Index v) { return column.carrier(v); },
             [&](Index slave) { return slave == j ? 0 : column.of_slave(surface_.vertex_count() + slave); },
@@ -239,31 +234,40 @@ private:
         return {at.master, at.search, at.slaves, filtered_, at.slave_tails, filtered_tails_};
     }
 
+    /// Calls use(i, Q_vi, dx~_v/dx_i) for the vertices i on which the filtered position of v depends.
+    template <class Use> void through_filter(Index v, Use&& use) const {
+        if (!filter_.active()) return use(v, 1.0, Mat3::Identity());
+        const auto row = filter_.row(v);
+        for (std::size_t k = 0; k < row.size(); ++k) use(row[k], filter_.Q(v)[k], filter_.derivatives(v)[k]);
+    }
+
     /// Variations of the weights of a slave node that no facet of its own carries.
-    void vary_alone(Index j, const PairPositions& at, const FacetHit& hit, const Columns& column,
-                    Matrix& dweights) const {
-        ContactPoint below;
-        ContactVariation own;
-        extended_->evaluate(at.slaves[j], onto_facet(hit), at.vertices, below, &own);
-        for (std::size_t i = 0; i < below.nodes.size(); ++i) {
-            const auto row = static_cast<Index>(i);
-            const Index carrier = column.carrier(below.nodes[i]);
-            dweights.row(carrier).head<3>() = own.dweights.row(row).head<3>();
-            for (std::size_t k = 0; k < below.nodes.size(); ++k)
-                dweights.row(carrier).segment<3>(3 + 3 * column.carrier(below.nodes[k])) =
-                    own.dweights.row(row).segment<3>(3 + 3 * static_cast<Index>(k));
+    /// @param own    variations of its point over the filtered surface
+    /// @param place  (vertices) first columns
+    void vary_alone(Index j, const ContactVariation& own, const std::vector<Index>& place, Matrix& dweights) const {
+        Eigen::RowVectorXd dphi(dweights.cols());
+        for (std::size_t i = 0; i < raw_[j].nodes.size(); ++i) {
+            const auto from = own.dweights.row(static_cast<Index>(i));
+            dphi.setZero();
+            dphi.head<3>() = from.head<3>();
+            for (Index column = 3; column < from.cols(); column += 3)
+                through_filter(raw_[j].nodes[static_cast<std::size_t>(column / 3 - 1)],
+                               [&](Index v, double, const Mat3& by) {
+                                   dphi.segment<3>(place[v]) += from.segment<3>(column) * by;
+                               });
+            through_filter(raw_[j].nodes[i],
+                           [&](Index v, double Q, const Mat3&) { dweights.row(place[v] / 3 - 1) += Q * dphi; });
         }
     }
 
-    /// @param below  the closest facet, for a slave node that no facet of its own carries
-    void gather(Index j, double share, const std::vector<Vec3>& x, const ContactPoint& below, ContactPoint& point) {
+    void gather(Index j, const std::vector<Vec3>& x, ContactPoint& point) {
         const ContactPoint& raw = raw_[j];
         point.found = false;
         point.behind = raw.behind;
         point.gap = raw.gap;
         point.nodes.clear();
         carriers_[j] = moving_[j] = 0;
-        if (!raw.found || (!below.found && !(share > 0))) return;
+        if (!raw.found) return;
         point.normal = raw.normal;
         if (!in_plane_.empty()) {
             const Vec3 in_plane = in_plane_[j] * raw.normal;
@@ -274,30 +278,30 @@ private:
         point.found = true;
 
         std::vector<Index> carrying, slaves, sensing;
-        if (below.found)
-            carrying = below.nodes;
-        else
-            weights_.add_vertices(j, carrying);
-        sort_unique(carrying);
-        if (!below.found)
-            for (const auto& [f, c] : weights_.around(j))
-                for (const Index k : weights_.corners(f))
-                    if (k != j) slaves.push_back(surface_.vertex_count() + k);
-        sort_unique(slaves);
         if (!filter_.active())
             sensing = raw.nodes;
         else {
             static thread_local std::vector<char> listed; // all 0 in between
             listed.resize(std::max(listed.size(), x.size()), 0);
             for (const Index v : raw.nodes)
-                for (const MasterFilter::Entry& e : filter_.row(v))
-                    if (char& known = listed[static_cast<std::size_t>(e.vertex)]; known == 0) {
+                for (const Index i : filter_.row(v))
+                    if (char& known = listed[static_cast<std::size_t>(i)]; known == 0) {
                         known = 1;
-                        sensing.push_back(e.vertex);
+                        sensing.push_back(i);
                     }
             for (const Index v : sensing) listed[static_cast<std::size_t>(v)] = 0;
         }
         std::sort(sensing.begin(), sensing.end());
+        if (alone_[j])
+            carrying = sensing;
+        else {
+            weights_.add_vertices(j, carrying);
+            for (const auto& [f, c] : weights_.around(j))
+                for (const Index k : weights_.corners(f))
+                    if (k != j) slaves.push_back(surface_.vertex_count() + k);
+        }
+        sort_unique(carrying);
+        sort_unique(slaves);
         point.nodes = carrying;
         point.nodes.insert(point.nodes.end(), slaves.begin(), slaves.end());
         carriers_[j] = static_cast<Index>(carrying.size());
@@ -306,9 +310,11 @@ private:
                             std::back_inserter(point.nodes));
 
         point.weights = Vector::Zero(static_cast<Index>(point.nodes.size()));
-        if (below.found)
-            for (std::size_t i = 0; i < below.nodes.size(); ++i)
-                point.weights(place_in(carrying, below.nodes[i])) = below.weights(static_cast<Index>(i));
+        if (alone_[j])
+            for (std::size_t i = 0; i < raw.nodes.size(); ++i)
+                through_filter(raw.nodes[i], [&](Index v, double Q, const Mat3&) {
+                    point.weights(place_in(carrying, v)) += Q * raw.weights(static_cast<Index>(i));
+                });
         else
             weights_.add_weights(j, carrying, point.weights);
         point.pressing = -point.weights * point.normal.transpose();

@@ -78,10 +78,12 @@ stages:
       core: {x: {expression: "0.02 + 0.049*cos(pi/2*t)", unit: m}, y: 0 m, z: {expression: "-0.05 + 0.049*sin(pi/2*t)", unit: m}}
 )yaml";
 
-TEST(EdgeContact, OfARollerRoundACornerIsThatOfAPotential) {
+class RollerRoundACorner : public testing::TestWithParam<std::string> {};
+
+TEST_P(RollerRoundACorner, HasForcesThatAreTheSameOutAndBack) {
     constexpr double same = 1e-6;        // of the largest force
     constexpr int steps = 10, first = 3; // states before the corner
-    const Outcome found = run(roller);
+    const Outcome found = run(roller, {{"contact.general.discretisation", GetParam()}});
     ASSERT_EQ(found.diary.states.size(), static_cast<std::size_t>(first + 2 * steps));
     const auto force = [&](int k) { return found.force("roller", found.diary.states[static_cast<std::size_t>(k)]); };
     double largest = 0;
@@ -98,6 +100,8 @@ TEST(EdgeContact, OfARollerRoundACornerIsThatOfAPotential) {
     const Vec3 middle = force(first - 1 + steps / 2);
     EXPECT_LT(std::abs(middle.x() - middle.z()), same * largest); // symmetric about 45 degrees
 }
+
+INSTANTIATE_TEST_SUITE_P(EdgeContact, RollerRoundACorner, testing::Values("node", "petrov_galerkin"));
 
 /// Two bars, ridge on ridge: a crossing between nodes, at a node of one, and at nodes of both.
 const std::string ridges = R"(

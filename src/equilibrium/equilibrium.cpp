@@ -25,7 +25,7 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
       timings_(timings), bodies_(model, dynamics, follower_pressure, timings, threads),
       contact_(pairs_, constraints, unknowns_, timings, threads),
       rigid_(model.rigid.empty() ? nullptr : std::make_unique<RigidTerm>(model, constraints, dynamics)),
-      terms_(list_of_terms()), tangent_(model, pairs_, constraints, unknowns_, terms_, bodies_, contact_,
+      terms_(list_of_terms()), tangent_(model, constraints, unknowns_, terms_, bodies_, contact_,
                                         rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
       factorisable_(choice.factorisable) {
     if (dynamics != nullptr) contact_.set_recovery_time(dynamics->recovery_time);

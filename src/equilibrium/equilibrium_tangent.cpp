@@ -18,24 +18,11 @@ bool loose(const model::Body& body, const Field& X, const Constraints& constrain
             if (constraints.constraint(node, k) != nullptr) hold.hold(X[node], constraints.frame(node).col(k));
     return hold.free() > 0;
 }
-
-/// Nodes of all pairs, global, ascending.
-std::vector<Index> contact_nodes(const model::ContactPairs& pairs) {
-    std::vector<Index> nodes;
-    for (const auto& pair : pairs) {
-        nodes.insert(nodes.end(), pair->slaves().node.begin(), pair->slaves().node.end());
-        nodes.insert(nodes.end(), pair->master_nodes().begin(), pair->master_nodes().end());
-    }
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    return nodes;
-}
 } // namespace
 
-EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
-                                       const linear::Constraints& constraints, const linear::Unknowns& unknowns,
-                                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact,
-                                       const linear::Dependence* dependence, const Iterate& at,
+EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::Constraints& constraints,
+                                       const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
+                                       ContactTerm& contact, const linear::Dependence* dependence, const Iterate& at,
                                        const TangentChoice& choice, Timings& timings, int threads)
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact),
       dependence_(dependence), at_(at), timings_(timings),
@@ -67,7 +54,7 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const model::C
             {body.first_node, body.nodes(), !bodies_.bodies().dynamic() && loose(body, model.X, constraints_)});
     std::vector<Index> slaves;
     for (const linear::Coupling& c : couplings_) slaves.push_back(c.slave);
-    condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, contact_nodes(pairs),
+    condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, choice.nodes,
                                                             std::move(slaves), threads);
 }
 
@@ -185,6 +172,7 @@ bool EquilibriumTangent::solve(const ConstVectorRef& b, VectorRef x, double allo
     // condensation takes for granted that a body's solution balances: where displacements are large and forces small, round-off
     // is in the way, and only the tangent itself tells
     constexpr int most_corrections = 2;
+    if (!condensed_->covers(contact_.bearing())) return false;
     condensed_->set(contact_.bearing());
     const Index size = unknowns_.size();
     Vector left = b, more(size), product(size);

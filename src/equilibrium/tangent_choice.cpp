@@ -1,5 +1,7 @@
 #include "osculate/equilibrium/tangent_choice.hpp"
 
+#include "osculate/model/general_contact.hpp"
+
 #include <algorithm>
 
 namespace osculate::equilibrium {
@@ -10,16 +12,30 @@ bool CondensationCost::pays() const {
     return condensed <= as_fast * factorising && bytes <= most;
 }
 
-CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs) {
+std::vector<Index> contact_nodes(const model::Model& model, const model::ContactPairs& pairs,
+                                 const model::ContactScope* scope) {
+    std::vector<Index> nodes;
+    const auto add = [&](const std::vector<Index>& more) { nodes.insert(nodes.end(), more.begin(), more.end()); };
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        add(pairs[p]->slaves().node);
+        if (scope != nullptr && p >= model.pairs.size())
+            add(model.general->reachable(*scope, *pairs[p]));
+        else
+            add(pairs[p]->master_nodes());
+    }
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+}
+
+CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs,
+                                   const model::ContactScope* scope) {
     constexpr double nested_dissection = 14; // operations of METIS and CHOLMOD over the square of a body's unknowns
     constexpr double laws = 2;               // T's of a solve
     std::vector<char> touched(model.X.size(), 0);
+    for (const Index node : contact_nodes(model, pairs, scope)) touched[node] = 1;
     double forces = 0;
-    for (const auto& pair : pairs) {
-        for (const Index node : pair->slaves().node) touched[node] = 1;
-        for (const Index node : pair->master_nodes()) touched[node] = 1;
-        forces += 3.0 * static_cast<double>(pair->size());
-    }
+    for (const auto& pair : pairs) forces += 3.0 * static_cast<double>(pair->size());
     CondensationCost cost;
     for (const model::Body& body : model.bodies) {
         const double all = 3.0 * static_cast<double>(body.nodes());
@@ -52,9 +68,9 @@ bool goes_by_products(const model::ContactPairs& pairs, LinearSolver asked) {
 } // namespace
 
 TangentChoice choose_tangent(const model::Model& model, const model::ContactPairs& pairs, LinearSolver asked,
-                             bool dynamic, bool follows) {
+                             bool dynamic, bool follows, const model::ContactScope* scope) {
     constexpr Index most = 100000; // nodes: LU takes some 7 GB
-    const bool pays = !model.nonlinear && condensation_cost(model, pairs).pays();
+    const bool pays = !model.nonlinear && condensation_cost(model, pairs, scope).pays();
     const bool couplings = std::ranges::any_of(model.rigid, &model::RigidBody::coupling);
     const bool symmetric = !follows && !couplings && (!dynamic || !model.nonlinear);
     const bool contact = !pairs.empty();
@@ -65,6 +81,7 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     choice.preconditioned = choice.multigrid || ((contact || !symmetric) && asked != LinearSolver::direct);
     choice.condensed = !model.nonlinear && model.rigid.empty() && !follows && !choice.multigrid && choice.products &&
                        (asked == LinearSolver::condensed || (asked == LinearSolver::automatic && pays));
+    if (choice.condensed) choice.nodes = contact_nodes(model, pairs, scope);
     return choice;
 }
 

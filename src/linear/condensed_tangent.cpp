@@ -73,6 +73,14 @@ void CondensedTangent::factorise_bodies() {
         usable_ = body.factorise(all.matrix(), spring_) == solve::FactorStatus::ok && usable_;
 }
 
+bool CondensedTangent::covers(const std::vector<BearingContact>& contacts) const {
+    const auto reached = [&](Index node) { return place_[node] >= 0; };
+    return std::ranges::all_of(contacts, [&](const BearingContact& c) {
+        return reached(c.law.where.slave) && std::ranges::all_of(c.law.where.masters, reached) &&
+               std::ranges::all_of(c.nodes, reached);
+    });
+}
+
 void CondensedTangent::set(const std::vector<BearingContact>& contacts) {
     contacts_ = &contacts;
     const auto same = [](Index coupling, const BearingContact& c) { return coupling == c.law.coupling; };

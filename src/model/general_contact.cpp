@@ -17,26 +17,12 @@ namespace {
 
 /// Factors by which two facets must differ before their order decides; of stiffness, before their sizes do.
 constexpr double clearly = 1.1, much_stiffer = 100;
-/// A facet meets another if it is not farther behind its plane than this, in sizes of the smaller one.
-constexpr double behind = 0.5;
 /// A node points at a surface if no edge that meets there goes deeper into it than this, over its length.
 constexpr double pointing = -0.5;
-/// Behind this part of the thickness of the body a facet's front ends.
-constexpr double into_thickness = 0.15;
-/// How far a surface may move against itself, in mean facet sizes, before pairs within it are looked for anew.
-constexpr double own_sizes = 1.5;
-/// How far a surface may move, in mean facet sizes and in diagonals of its box, before pairs are looked for anew.
-constexpr double sizes = 1, diagonals = 0.15;
 
 double area_of(const mesh::Facet& facet, const std::vector<Vec3>& X) {
     const auto shares = fe::tributary_areas(facet, X);
     return std::accumulate(shares.begin(), shares.end(), 0.0);
-}
-
-Vec3 centre_of(const mesh::Facet& facet, const std::vector<Vec3>& x) {
-    Vec3 sum = Vec3::Zero();
-    for (const Index node : facet) sum += x[node];
-    return sum / facet.count;
 }
 
 } // namespace
@@ -129,62 +115,14 @@ bool GeneralContact::is_slave(Index f, Index g) const {
     return data_[f].surface < data_[g].surface;
 }
 
-ContactScope GeneralContact::scope_at(const Field& x, double expected, std::vector<WatchedNode> watched) const {
-    ContactScope scope{x, {}, {}, std::move(watched)};
-    for (const OuterSurface& surface : surfaces_) {
-        const double size = surface.side->surface().mean_facet_size(), diagonal = diagonal_[scope.margin.size()];
-        scope.margin.push_back(std::max({sizes * size, diagonals * diagonal, 2 * expected}));
-        scope.own.push_back(std::max(own_sizes * size, 2 * expected));
-    }
-    return scope;
-}
-
-bool GeneralContact::covers(const ContactScope& scope, const Field& x, double ahead) const {
-    std::vector<Vec3> mean(surfaces_.size(), Vec3::Zero());
-    std::vector<double> nodes(surfaces_.size(), 0);
-    for (std::size_t node = 0; node < surface_of_.size(); ++node)
-        if (surface_of_[node] >= 0) {
-            mean[static_cast<std::size_t>(surface_of_[node])] += x[node] - scope.x[node];
-            ++nodes[static_cast<std::size_t>(surface_of_[node])];
-        }
-    for (std::size_t node = 0; node < surface_of_.size(); ++node) {
-        if (surface_of_[node] < 0) continue;
-        const auto s = static_cast<std::size_t>(surface_of_[node]);
-        const Vec3 moved = x[node] - scope.x[node];
-        if (!(moved.norm() + ahead <= scope.margin[s])) return false;
-        if (left_out_[s * surfaces_.size() + s] == 0 && !((moved - mean[s] / nodes[s]).norm() + ahead <= scope.own[s]))
-            return false;
-    }
-    return true;
-}
-
 std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std::vector<ContactHistory>& before) const {
     const std::vector<Vec3>& x = scope.x;
     std::vector<double> margin;
     for (const Facet& facet : data_) margin.push_back(scope.margin[static_cast<std::size_t>(facet.surface)]);
-    std::vector<Vec3> normal, centre;
-    std::vector<double> radius; // of a sphere about the centre
-    for (const mesh::Facet& facet : facets_) {
-        normal.push_back(mesh::facet_area_vector(facet, x).normalized());
-        centre.push_back(centre_of(facet, x));
-        double farthest = 0;
-        for (const Index node : facet) farthest = std::max(farthest, (x[node] - centre.back()).norm());
-        radius.push_back(farthest);
-    }
-    const auto in_front_of = [&](Index f, Index g, double depth) {
-        return std::ranges::any_of(facets_[f], [&](Index node) { return normal[g].dot(x[node] - centre[g]) > -depth; });
-    };
-    const auto within = [&](Index f, Index g) { // facets of one surface, which may have the body between them
-        const auto s = static_cast<std::size_t>(data_[f].surface);
-        if ((centre[f] - centre[g]).norm() > 2 * scope.own[s] + radius[f] + radius[g]) return false;
-        const auto depth = [&](Index facet) {
-            return into_thickness * std::min(data_[facet].size, surfaces_[s].side->thickness(facet - first_[s]));
-        };
-        return in_front_of(f, g, depth(g)) && in_front_of(g, f, depth(f));
-    };
-    const auto near = contact::near_facets(facets_, margin, x, [&](Index f, Index g) {
-        return (data_[f].surface != data_[g].surface || within(f, g)) && may_meet(f, g);
-    });
+    const FacetPlaces places_now = places(x);
+    const std::vector<Vec3>&normal = places_now.normal, &centre = places_now.centre;
+    const FacetPairs near = near_pairs(scope, places_now);
+    scope.passed = passed(scope, places_now, near);
     // the nearest facet of every other surface that a facet faces
     std::map<std::pair<Index, Index>, std::pair<double, Index>> nearest; // (facet, other surface)
     std::map<std::pair<Index, Index>, Found> found;                      // (slave, master) surfaces
@@ -192,17 +130,6 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
         const double distance = (centre[f] - centre[g]).norm();
         const auto [at, fresh] = nearest.try_emplace({f, data_[g].surface}, distance, g);
         if (!fresh && distance < at->second.first) at->second = {distance, g};
-    };
-    // faces that look away from each other are back to back
-    const auto missing = [&](Index f, Index g) { // how far f is from being in front of g, m
-        double farthest = -std::numeric_limits<double>::max();
-        for (const Index node : facets_[f]) farthest = std::max(farthest, normal[g].dot(x[node] - centre[g]));
-        return -farthest - behind * std::min(data_[f].size, data_[g].size);
-    };
-    // a facet that goes round an edge comes in front of the face there; pairs are looked for again before it touches
-    const auto limit = [&](Index f, double way) {
-        double& own = scope.margin[static_cast<std::size_t>(data_[f].surface)];
-        own = std::min(own, std::max(0.5 * behind * data_[f].size, 0.5 * way));
     };
     FacetPairs own;
     for (const auto& [f, g] : near)
@@ -218,14 +145,14 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
     };
     const auto points_at = [&](Index node, Index g) {
         const Vec3& n = normal[g];
-        double facets = 0;
-        for (const Index f : node_facets_[node]) facets += normal[f].dot(n);
         const Index its = node_facets_[node][0];
         const double moved = data_[its].surface == data_[g].surface ? 0 : margin[its] + margin[g];
-        return facets < 0 && n.dot(x[node] - centre[g]) > -behind * std::min(data_[its].size, data_[g].size) - moved &&
-               !is_treated(std::array{node}, facets_[g]) && std::ranges::all_of(along_[node], [&](Index end) {
-                   return (x[end] - x[node]).normalized().dot(n) >= pointing;
-               });
+        if (!(n.dot(x[node] - centre[g]) > -behind * std::min(data_[its].size, data_[g].size) - moved)) return false;
+        double facets = 0;
+        for (const Index f : node_facets_[node]) facets += normal[f].dot(n);
+        return facets < 0 && !is_treated(std::array{node}, facets_[g]) &&
+               std::ranges::all_of(along_[node],
+                                   [&](Index end) { return (x[end] - x[node]).normalized().dot(n) >= pointing; });
     };
     for (const auto& [f, g] : near) {
         if (data_[f].surface != data_[g].surface)
@@ -235,14 +162,8 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
                         if (sharp_[node] != 0 && points_at(node, other))
                             found[{data_[one].surface, data_[other].surface}].yielding.push_back(node);
         if (normal[f].dot(normal[g]) < contact::facing) {
-            if (const double way = std::max(missing(f, g), missing(g, f)); way > 0) {
-                const double between = (centre[f] - centre[g]).norm() - radius[f] - radius[g];
-                if (data_[f].surface != data_[g].surface && std::max(way, between) < margin[f] + margin[g]) {
-                    limit(f, std::max(way, between));
-                    limit(g, std::max(way, between));
-                }
-                continue;
-            }
+            // faces that look away from each other are back to back
+            if (missing(f, g, normal[g], centre[g], x) > 0 || missing(g, f, normal[f], centre[f], x) > 0) continue;
             consider(f, g);
             consider(g, f);
         } else { // corners and edges whose facets look past the other

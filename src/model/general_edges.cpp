@@ -54,6 +54,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
     for (const OuterSurface& surface : surfaces_) vertices.push_back(surface.side->vertices(scope.x));
     std::vector<contact::SharpEdge> at;
     std::vector<mesh::Facet> ends;
+    std::vector<Index> surface;
     std::vector<double> margin;
     std::vector<Vec3> x;
     for (const ConvexEdge& edge : convex_edges_) {
@@ -65,18 +66,21 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
             both.nodes[k] = static_cast<Index>(x.size());
             x.push_back(at.back().end[k]);
         }
+        surface.push_back(edge.surface);
         margin.push_back(scope.margin[s]);
     }
+    const auto meet = [&](Index a, Index b) {
+        return a != b && left_out_[static_cast<std::size_t>(a) * surfaces_.size() + static_cast<std::size_t>(b)] == 0;
+    };
     const auto are_watched = [&](const ConvexEdge& one, const ConvexEdge& other) {
         return is_watched(scope.watched, one, other.surface) || is_watched(scope.watched, other, one.surface);
     };
     const auto may_cross = [&](Index e, Index f) {
         const ConvexEdge &one = convex_edges_[static_cast<std::size_t>(e)],
                          &other = convex_edges_[static_cast<std::size_t>(f)];
-        if (one.surface == other.surface || !(one.own || other.own)) return false;
+        if (!(one.own || other.own)) return false;
         if (!((one.sharp && other.blunt) || (one.blunt && other.sharp) || are_watched(one, other))) return false;
         const auto a = static_cast<std::size_t>(one.surface), b = static_cast<std::size_t>(other.surface);
-        if (left_out_[a * surfaces_.size() + b] != 0) return false;
         const contact::SharpEdge &p = at[static_cast<std::size_t>(e)], &q = at[static_cast<std::size_t>(f)];
         const contact::LineCrossing crossing = contact::cross_lines(p.end[0], p.end[1], q.end[0], q.end[1]);
         if (!(crossing.sine > contact::least_sine)) return false;
@@ -101,7 +105,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         list.push_back({slave.half_edge, master.half_edge});
         list.push_back({own.half_edges()[static_cast<std::size_t>(slave.half_edge)].twin, master.half_edge});
     };
-    for (const auto& [e, f] : contact::near_facets(ends, margin, x, may_cross)) {
+    for (const auto& [e, f] : contact::near_facets(ends, surface, margin, x, meet, may_cross)) {
         const ConvexEdge &one = convex_edges_[static_cast<std::size_t>(e)],
                          &other = convex_edges_[static_cast<std::size_t>(f)];
         const double E = surfaces_[static_cast<std::size_t>(one.surface)].E,

@@ -166,6 +166,7 @@ void restore_pairs(Checkpoint& checkpoint, const model::Model& model) {
         model::ContactScope scope{checkpoint.scope_x, checkpoint.scope_margin, checkpoint.scope_own, {}};
         for (std::size_t k = 0; k < checkpoint.watched.size(); k += 2)
             scope.watched.push_back({checkpoint.watched[k], checkpoint.watched[k + 1]});
+        scope.passed = model.general->passed(scope);
         state.scope = std::make_shared<const model::ContactScope>(std::move(scope));
     }
     for (std::size_t p = 0; p < model.pairs.size(); ++p) state.contact[p].pair = model.pairs[p];

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 namespace osculate::time {
@@ -218,6 +219,17 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
     LadderOptions now = options;
     const bool predicted = z != unpredicted;
     LadderResult result;
+    struct Sprung {
+        LadderResult result;
+        Vector z;
+        equilibrium::Statuses statuses;
+    };
+    std::optional<Sprung> sprung; // through another body: the first such solution
+    const auto admitted = [&](const LadderResult& found) {
+        if (!options.admissible || options.admissible(equilibrium.displacements(z))) return true;
+        if (!sprung) sprung = {found, z, equilibrium.statuses()};
+        return false;
+    };
     const auto newton = [&](const char* rung, const Field& from, bool force) {
         equilibrium.set_statuses(start, equilibrium::StatusRule::natural, force);
         equilibrium.linearise_first_about(from);
@@ -228,7 +240,8 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         result = {
             solved.outcome,         result.iterations + solved.iterations, solved.residual, now.reference_force, rung,
             solved.failing_equation};
-        if (result.converged() && !is_solution(equilibrium, z, now)) result.outcome = KinsolOutcome::stopped;
+        if (result.converged() && !(is_solution(equilibrium, z, now) && admitted(result)))
+            result.outcome = KinsolOutcome::stopped;
         return result.converged();
     };
     const auto rungs = [&] {
@@ -247,7 +260,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         LadderResult rubbed = settle_friction(equilibrium, solver, z, start, now);
         rubbed.iterations += result.iterations;
         rubbed.reference_force = now.reference_force;
-        if (rubbed.converged() && is_solution(equilibrium, z, now)) {
+        if (rubbed.converged() && is_solution(equilibrium, z, now) && admitted(rubbed)) {
             result = rubbed;
             return singular;
         }
@@ -266,6 +279,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         settled.iterations += result.iterations;
         settled.reference_force = now.reference_force;
         result = settled;
+        if (result.converged() && !admitted(result)) result.outcome = KinsolOutcome::stopped;
         if (result.converged() || !options.settles) return singular || found_singular();
         const Vector failed = z;
         z = unpredicted;
@@ -287,16 +301,26 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
     equilibrium.set_impatient(false);
     result.worst_element = equilibrium.worst_element();
     result.astray = !(largest_component(equilibrium.displacements(z)) <= options.farthest);
+    const auto first_sprung = [&] {
+        z = sprung->z;
+        equilibrium.set_statuses(sprung->statuses, equilibrium::StatusRule::frozen, false);
+        Vector F(z.size());
+        (void)equilibrium.residual(z, F);
+        sprung->result.iterations = result.iterations;
+        return sprung->result;
+    };
     const StabilisationOptions& how = options.stabilisation;
-    if (result.converged() || !how.share || !(singular || options.last_chance)) return result;
+    if (result.converged() || !how.share || !(singular || options.last_chance))
+        return sprung && !result.converged() ? first_sprung() : result;
     const Vector last = z;
     const equilibrium::Statuses last_statuses = equilibrium.statuses();
     z = first;
     LadderResult held = stabilise(equilibrium, solver, z, start, force_first, now);
     held.reference_force = now.reference_force;
     held.iterations += result.iterations;
+    result.iterations = held.iterations;
+    if (sprung && !(held.converged() && admitted(held))) return first_sprung();
     if (!held.converged() && held.adrift < 0) { // what failed without springs says more
-        result.iterations = held.iterations;
         z = last;
         equilibrium.set_statuses(last_statuses, equilibrium::StatusRule::frozen, false);
         return result;

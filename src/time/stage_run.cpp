@@ -17,11 +17,19 @@ namespace {
 std::vector<model::ContactHistory> of_general_contact(const model::State& state, const model::Model& model) {
     return {state.contact.begin() + static_cast<std::ptrdiff_t>(model.pairs.size()), state.contact.end()};
 }
+
+equilibrium::TangentChoice tangent_choice(const model::Model& model, const Stage& stage, const model::State& state) {
+    if (!model.general || !state.scope) return stage.tangent;
+    return equilibrium::choose_tangent(model, model::pairs_of(state.contact), stage.linear_solver,
+                                       stage.dynamics.has_value(), !stage.follower_pressures.empty(),
+                                       state.scope.get());
+}
 } // namespace
 
 Machinery::Machinery(RunContext& context, const Stage& stage, const equilibrium::Dynamics* dynamics,
                      const linear::Constraints& constraints, const model::State& state)
-    : equilibrium(context.model, model::pairs_of(state.contact), constraints, dynamics, stage.tangent, context.timings,
+    : choice(tangent_choice(context.model, stage, state)),
+      equilibrium(context.model, model::pairs_of(state.contact), constraints, dynamics, choice, context.timings,
                   context.options.threads, !stage.follower_pressures.empty()),
       solver(equilibrium.size(), context.timings),
       collisions(context.model, equilibrium.contact(), stage.limits, stage.follow_paths, context.timings,
@@ -130,15 +138,24 @@ StepAttempt StageRun::prepare() {
     ladder.farthest = context_.characteristic_length + largest_component(state.u);
     ladder.settles = stage_.limits.inelastic_impacts;
     ladder.last_chance = cannot_be_cut(stage_.limits, attempt.dt, repeats_);
+    const bool hard = repeats_ > 0 || ladder.last_chance;
     if (context_.model.nonlinear) {
         ladder.predicted = u;
         ladder.unpredicted = state.u;
     }
     equilibrium().set_reference_force(reference > 0 ? reference : 1);
     if (!dynamics_) // inertia holds what nothing touches
-        attempt.forced = starting_statuses(context_, equilibrium().bodies(), state, start, attempt.statuses);
+        attempt.forced = starting_statuses(context_, equilibrium().bodies(), state, start, hard, attempt.statuses);
     else
         for (const model::ContactHistory& history : state.contact) attempt.statuses.push_back(history.status);
+    if (!dynamics_ && hard && bounded())
+        ladder.admissible = [this](const Field& next) {
+            StepEvidence evidence;
+            machinery_->collisions.add_solution(next, evidence);
+            return std::ranges::all_of(evidence.gaps, [&](const GapEvidence& gap) {
+                return gap.g1 >= -stage_.limits.allowed_interpenetration * gap.length;
+            });
+        };
     if (!dynamics_ && options.stabilisation) ladder.stabilisation = stabilisation_options(context_, state, start);
     if (reference == 0) {
         equilibrium::Equilibrium alone(context_.model, model::pairs_of(state.contact), constraints_, dynamics(), {},
@@ -281,7 +298,8 @@ void StageRun::commit(StepAttempt& attempt) {
         const model::ContactScope& scope = *progress_.state.scope;
         std::vector<model::WatchedNode> watched = scope.watched;
         if (attempt.audit != nullptr) watched = general->watched(watched, attempt.audit->places);
-        if (watched != scope.watched || !general->covers(scope, sum(context_.model.X, progress_.state.u), moved))
+        const Field x = sum(context_.model.X, progress_.state.u);
+        if (watched != scope.watched || !general->covers(scope, x, moved) || general->comes_round(scope, x, moved))
             find_pairs(moved, std::move(watched));
     }
     attempts_.clear();
@@ -349,7 +367,16 @@ void StageRun::find_pairs(double expected, std::vector<model::WatchedNode> watch
     const model::State& state = progress_.state;
     const model::GeneralContact& general = *context_.model.general;
     model::ContactScope scope = general.scope_at(sum(context_.model.X, state.u), expected, std::move(watched));
-    std::vector<model::ContactHistory> found = general.near(scope, of_general_contact(state, context_.model));
+    const std::vector<model::ContactHistory> before = of_general_contact(state, context_.model);
+    std::vector<model::ContactHistory> found = general.near(scope, before);
+    const auto alike = [](const model::ContactHistory& a, const model::ContactHistory& b) {
+        return model::GeneralContact::alike(*a.pair, *b.pair);
+    };
+    if (std::ranges::equal(found, before, alike)) {
+        progress_.state.scope = std::make_shared<const model::ContactScope>(std::move(scope));
+        if (machinery_->choice == tangent_choice(context_.model, stage_, state)) return; // as it would be made anew
+        scope = *state.scope;
+    }
     install(std::move(found), std::move(scope));
 }
 

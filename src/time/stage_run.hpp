@@ -41,6 +41,7 @@ struct StepAttempt {
 
 /// What solves and judges steps, for one list of contact pairs.
 struct Machinery {
+    equilibrium::TangentChoice choice;
     equilibrium::Equilibrium equilibrium;
     solve::KinsolSolver solver;
     CollisionCheck collisions;

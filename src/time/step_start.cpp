@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace osculate::time {
 
@@ -115,10 +117,85 @@ model::ContactEvaluation evaluated(RunContext& context, std::size_t p, const mod
 }
 } // namespace
 
-bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies, const model::State& state,
-                       const Field& u, equilibrium::Statuses& statuses) {
-    statuses.clear();
+namespace {
+/// Contact of all pairs at displacements u, each evaluated when it is first asked for.
+class ContactAhead {
+public:
+    ContactAhead(RunContext& context, const model::State& state, const Field& u)
+        : context_(context), state_(state), u_(u), pairs_(state.contact.size()) {}
+    const model::ContactEvaluation& operator[](std::size_t p) {
+        if (!pairs_[p]) pairs_[p].emplace(evaluated(context_, p, state_, u_));
+        return *pairs_[p];
+    }
+    /// Whether some nodes of the pair touch, and whether all of these have gone past what they touched.
+    [[nodiscard]] bool touches(std::size_t p) const {
+        return std::ranges::any_of(state_.contact[p].status, contact::is_closed);
+    }
+    [[nodiscard]] bool lost(std::size_t p) {
+        const std::vector<Status>& status = state_.contact[p].status;
+        for (std::size_t j = 0; j < status.size(); ++j)
+            if (contact::is_closed(status[j]) && (*this)[p].point(static_cast<Index>(j)).found) return false;
+        return touches(p);
+    }
+
+private:
+    RunContext& context_;
+    const model::State& state_;
+    const Field& u_;
+    std::vector<std::optional<model::ContactEvaluation>> pairs_;
+};
+
+/// Closes the nodes of a pair whose gaps are within the closing tolerance of the least; none if that is larger than `near`
+/// facet sizes, or than the tolerance if this is larger.
+bool close_nearest(const model::ContactEvaluation& evaluation, double least, double near,
+                   std::vector<Status>& statuses) {
+    const model::ContactPair& pair = evaluation.pair();
     bool any = false;
+    for (Index j = 0; j < pair.size(); ++j) {
+        const contact::ContactPoint& point = evaluation.point(j);
+        if (!point.found) continue;
+        const double size = pair.surface().facet_size(point.facet), tolerance = pair.options().closing_tolerance * size;
+        if (least > std::max(tolerance, near * size) || point.gap > std::max(least, 0.0) + tolerance) continue;
+        statuses[static_cast<std::size_t>(j)] = pair.options().friction > 0 ? Status::stick : Status::glide;
+        any = true;
+    }
+    return any;
+}
+
+/// Bodies of a pair, in an order that does not tell slave from master.
+std::pair<Index, Index> bodies_of(const model::Model& model, const model::ContactPair& pair) {
+    const auto first_node = [&](Index node) {
+        const model::Body* const body = model::body_of(model, node);
+        return body != nullptr ? body->first_node : node; // an exact surface has none
+    };
+    return std::minmax({first_node(pair.slaves().node.front()), first_node(pair.master_nodes().front())});
+}
+
+/// Where all that two bodies touch at goes past an edge or a corner in the step, what is nearest takes over: else they would
+/// spring through one another.
+bool hand_over(const model::Model& model, const model::State& state, ContactAhead& ahead,
+               equilibrium::Statuses& statuses) {
+    constexpr double near = 0.1; // facet sizes
+    bool forced = false;
+    for (std::size_t p = 0; p < statuses.size(); ++p) {
+        if (!ahead.lost(p)) continue;
+        const auto bodies = bodies_of(model, *state.contact[p].pair);
+        std::vector<std::size_t> alike;
+        for (std::size_t q = 0; q < statuses.size(); ++q)
+            if (bodies_of(model, *state.contact[q].pair) == bodies) alike.push_back(q);
+        if (std::ranges::any_of(alike, [&](std::size_t q) { return ahead.touches(q) && !ahead.lost(q); })) continue;
+        double least = std::numeric_limits<double>::infinity();
+        for (const std::size_t q : alike) least = std::min(least, ahead[q].least_gap());
+        for (const std::size_t q : alike) forced = close_nearest(ahead[q], least, near, statuses[q]) || forced;
+    }
+    return forced;
+}
+} // namespace
+
+bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies, const model::State& state,
+                       const Field& u, bool again, equilibrium::Statuses& statuses) {
+    statuses.clear();
+    bool any = again;
     for (const auto& history : state.contact) {
         statuses.push_back(history.status);
         any = any || std::none_of(history.status.begin(), history.status.end(), contact::is_closed);
@@ -127,23 +204,12 @@ bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodie
     Field unused;
     if (!bodies.evaluate(u, unused).admissible()) return false;
 
+    ContactAhead ahead(context, state, u);
+    // "closed where g < 0" would start a smooth master, which leaves a small gap everywhere, without any support
     bool forced = false;
-    for (std::size_t p = 0; p < statuses.size(); ++p) {
-        if (std::any_of(statuses[p].begin(), statuses[p].end(), contact::is_closed)) continue;
-        const model::ContactEvaluation evaluation = evaluated(context, p, state, u);
-        const model::ContactPair& pair = evaluation.pair();
-        // "closed where g < 0" would start a smooth master, which leaves a small gap everywhere, without any support
-        const double least = evaluation.least_gap();
-        for (Index j = 0; j < pair.size(); ++j) {
-            const contact::ContactPoint& point = evaluation.point(j);
-            if (!point.found) continue;
-            const double tolerance = pair.options().closing_tolerance * pair.surface().facet_size(point.facet);
-            if (least > tolerance || point.gap > std::max(least, 0.0) + tolerance) continue;
-            statuses[p][j] = pair.options().friction > 0 ? Status::stick : Status::glide;
-            forced = true;
-        }
-    }
-    return forced;
+    for (std::size_t p = 0; p < statuses.size(); ++p)
+        if (!ahead.touches(p)) forced = close_nearest(ahead[p], ahead[p].least_gap(), 0, statuses[p]) || forced;
+    return (again && hand_over(context.model, state, ahead, statuses)) || forced;
 }
 
 StabilisationOptions stabilisation_options(RunContext& context, const model::State& state, const Field& u) {

@@ -18,9 +18,10 @@ namespace osculate::time {
 /// Moves every driven body rigidly by the increment of its held components, where one rigid motion fits them all.
 void predict(const model::Model& model, const linear::Constraints& constraints, const Field& prescribed, Field& u);
 /// Statuses to start from at displacements u; true where a pair is brought into contact by hand because nothing of it is
-/// closed yet.
+/// closed yet or, if the step is tried `again`, nothing of what is closed will be any more.
 [[nodiscard]] bool starting_statuses(RunContext& context, const equilibrium::BodyForces& bodies,
-                                     const model::State& state, const Field& u, equilibrium::Statuses& statuses);
+                                     const model::State& state, const Field& u, bool again,
+                                     equilibrium::Statuses& statuses);
 /// What forces are measured by, N; 0 where nothing acts yet.
 [[nodiscard]] double reference_force(const RunContext& context, const Stage& stage,
                                      const linear::Constraints& constraints, const model::State& state,

@@ -2,6 +2,7 @@
 /// Builds from a scene the objects that run it, and nothing else.
 
 #include "osculate/core/timing.hpp"
+#include "osculate/model/general_contact.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/output/probe.hpp"
 #include "osculate/scene/scene.hpp"
@@ -47,7 +48,8 @@ struct Plan {
     std::vector<PairChoice> choices;              ///< of each of them
     std::optional<scene::GeneralContact> general; ///< the scene's, with its discretisation
     PairChoice general_choice;
-    std::vector<model::ContactHistory> near_at_start; ///< pairs that general contact finds there
+    std::vector<model::ContactHistory> near_at_start;  ///< pairs that general contact finds there
+    std::optional<model::ContactScope> scope_at_start; ///< of these; none: no general contact
     std::vector<time::Stage> stages;
     time::StepperOptions stepper;
     std::vector<Index> constrained_sets; ///< of model.sets, in the scene's order
@@ -57,6 +59,8 @@ struct Plan {
 
     /// The scene's pairs, then those that general contact finds at the start.
     [[nodiscard]] model::ContactPairs pairs_at_start() const;
+    /// Scope of the latter, null without general contact.
+    [[nodiscard]] const model::ContactScope* scope() const;
 };
 
 /// Meshes of the scene's bodies, in its order. Throws SceneError for a mesh that cannot be generated or read.

@@ -22,11 +22,10 @@ public:
     /// @param terms  of the residual, including `bodies` and `contact`; all arguments must outlive this object
     /// @param dependence  what dependent nodes follow; null: there are none
     /// @param at     iterate at which the residual was last evaluated
-    EquilibriumTangent(const model::Model& model, const model::ContactPairs& pairs,
-                       const linear::Constraints& constraints, const linear::Unknowns& unknowns,
-                       std::span<Term* const> terms, BodyTerm& bodies, ContactTerm& contact,
-                       const linear::Dependence* dependence, const Iterate& at, const TangentChoice& choice,
-                       Timings& timings, int threads);
+    EquilibriumTangent(const model::Model& model, const linear::Constraints& constraints,
+                       const linear::Unknowns& unknowns, std::span<Term* const> terms, BodyTerm& bodies,
+                       ContactTerm& contact, const linear::Dependence* dependence, const Iterate& at,
+                       const TangentChoice& choice, Timings& timings, int threads);
 
     /// Opens an attempt, see BodyForces::mass_factor(); changed: the bodies' stiffness has new values.
     void begin(double mass_factor, bool changed);

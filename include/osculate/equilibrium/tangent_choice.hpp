@@ -4,6 +4,8 @@
 #include "osculate/core/choices.hpp"
 #include "osculate/model/model.hpp"
 
+#include <vector>
+
 namespace osculate::equilibrium {
 
 /// Estimates of the cost of condensation, in floating-point operations, and of the memory for its dense matrices.
@@ -14,7 +16,12 @@ struct CondensationCost {
     /// Whether condensation pays off within a few iterations and its matrices fit into memory.
     [[nodiscard]] bool pays() const;
 };
-[[nodiscard]] CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs);
+/// @param scope  of the pairs that general contact has found; null: there are none, or nothing is known about them
+[[nodiscard]] CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs,
+                                                 const model::ContactScope* scope = nullptr);
+/// Nodes that contact may reach, global, ascending: slaves and masters, of pairs of general contact only as far as the scope goes.
+[[nodiscard]] std::vector<Index> contact_nodes(const model::Model& model, const model::ContactPairs& pairs,
+                                               const model::ContactScope* scope = nullptr);
 
 /// How to solve linear systems with the tangent of a stage.
 struct TangentChoice {
@@ -23,13 +30,16 @@ struct TangentChoice {
     bool multigrid = false;      ///< multigrid inverts this preconditioner
     bool condensed = false;      ///< linear::CondensedTangent first
     bool factorisable = true;    ///< the whole tangent may be factorised if GMRES fails
+    std::vector<Index> nodes{};  ///< contact_nodes() where condensed
 
     [[nodiscard]] bool operator==(const TangentChoice&) const = default;
 };
 
-/// Made once for a stage, from the model, the pairs in force and the user's request.
+/// Made for a stage, from the model, the pairs in force and the user's request; with general contact again for other pairs.
 /// @param follows  whether a pressure follows its faces
+/// @param scope    see condensation_cost()
 [[nodiscard]] TangentChoice choose_tangent(const model::Model& model, const model::ContactPairs& pairs,
-                                           LinearSolver asked, bool dynamic, bool follows);
+                                           LinearSolver asked, bool dynamic, bool follows,
+                                           const model::ContactScope* scope = nullptr);
 
 } // namespace osculate::equilibrium

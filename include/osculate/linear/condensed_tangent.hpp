@@ -52,7 +52,9 @@ public:
     /// Contact laws of the last kept T, null if T must be computed; and restore() sets T back to that of such laws.
     [[nodiscard]] const ContactLaws* kept() const { return kept_.get(); }
     void restore(const ContactLaws& laws) { schur_ = kept_ = std::make_shared<SchurComplement>(laws); }
-    /// Sets the contacts of the next solve(): every coupling in contact, in their order. They must outlive it.
+    /// Whether contacts reach none but the nodes that contact may reach.
+    [[nodiscard]] bool covers(const std::vector<BearingContact>& contacts) const;
+    /// Sets the contacts of the next solve(): every coupling in contact, in their order. They must outlive it. @pre covers()
     void set(const std::vector<BearingContact>& contacts);
     /// Number of factorisations so far: of all bodies together, and of T.
     [[nodiscard]] int factorisations() const { return factorisations_; }

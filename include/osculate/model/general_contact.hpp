@@ -23,12 +23,23 @@ struct WatchedNode {
     auto operator<=>(const WatchedNode&) const = default;
 };
 
+/// Facets of two surfaces, by their numbers over all surfaces, of which one is behind the other.
+struct PassedFacets {
+    double between = 0; ///< least distance between them, m; they may overlap if it is negative
+    Index one = -1, other = -1;
+
+    auto operator<=>(const PassedFacets&) const = default;
+};
+
 /// Where pairs of general contact were looked for, and how long they are all there are.
 struct ContactScope {
     Field x;                    ///< (nodes) positions, m
     std::vector<double> margin; ///< (surfaces) how far nodes of each may move before others could meet, m
     std::vector<double> own; ///< (surfaces) how far they may move against their mean before the surface meets itself, m
     std::vector<WatchedNode> watched{}; ///< ascending
+    /// Facets within the margins that turned to each other but are not in front of each other there: as soon as they are, there
+    /// may be more pairs. Ascending. It follows from the other members, see GeneralContact::passed().
+    std::vector<PassedFacets> passed{};
 };
 
 /// The outer surface of a body, as far as it takes part.
@@ -66,10 +77,15 @@ public:
     /// @param expected  largest motion of a node that the next step may make, m
     /// @param watched  ascending; near() keeps those that are still near their surface
     [[nodiscard]] ContactScope scope_at(const Field& x, double expected, std::vector<WatchedNode> watched = {}) const;
-    /// Whether pairs found for a scope are all that may touch at positions x, and after nodes have moved on by `ahead`, m.
+    /// Whether pairs found for a scope are all that may touch at positions x, and after nodes have moved on by `ahead`, m, as
+    /// far as margins tell.
     [[nodiscard]] bool covers(const ContactScope& scope, const Field& x, double ahead = 0) const;
+    /// Whether facets that were not in front of each other are so at x, and could touch after nodes have moved on by `ahead`, m.
+    [[nodiscard]] bool comes_round(const ContactScope& scope, const Field& x, double ahead) const;
+    /// Facets that a scope with these positions and margins has passed over.
+    [[nodiscard]] std::vector<PassedFacets> passed(const ContactScope& scope) const;
     /// The pairs for a scope with their histories: those of `before` where a slave node is in the same pair as there, which
-    /// it is if it is closed. Margins of the scope become smaller where facets come to face each other within them.
+    /// it is if it is closed. Sets `watched` and `passed` of the scope.
     /// @param before  of pairs found earlier
     [[nodiscard]] std::vector<ContactHistory> near(ContactScope& scope,
                                                    const std::vector<ContactHistory>& before) const;
@@ -97,6 +113,11 @@ public:
     /// @param edges  half-edges of the slave's and of the master's surface, ascending
     [[nodiscard]] std::shared_ptr<const ContactPair> make_edges(const ContactScope& scope, Index slave, Index master,
                                                                 const std::vector<std::array<Index, 2>>& edges) const;
+    /// Whether two pairs of general contact are the same in all that they were made of.
+    [[nodiscard]] static bool alike(const ContactPair& one, const ContactPair& other);
+    /// Nodes of the master of a pair that its slaves may come to while the scope lasts, and those of the patches there, global,
+    /// ascending.
+    [[nodiscard]] std::vector<Index> reachable(const ContactScope& scope, const ContactPair& pair) const;
     /// Surfaces of a pair that near() or make_pair() has made: slave and master.
     [[nodiscard]] std::pair<Index, Index> sides_of(const ContactPair& pair) const;
 
@@ -119,6 +140,21 @@ private:
         std::vector<Index> yielding; ///< nodes of sharp edges of what is otherwise the master
     };
     using FacetPairs = std::vector<std::pair<Index, Index>>;
+    /// A facet meets another if it is not farther behind its plane than this, in sizes of the smaller one.
+    static constexpr double behind = 0.5;
+    /// Facets at positions x.
+    struct FacetPlaces {
+        std::vector<Vec3> normal, centre;
+        std::vector<double> radius; ///< of a sphere about the centre, m
+    };
+    [[nodiscard]] FacetPlaces places(const std::vector<Vec3>& x) const;
+    /// How far facet f is from being in front of g, m, whose normal and centre these are.
+    [[nodiscard]] double missing(Index f, Index g, const Vec3& normal, const Vec3& centre,
+                                 const std::vector<Vec3>& x) const;
+    /// Facets that are near each other for a scope, ascending.
+    [[nodiscard]] FacetPairs near_pairs(const ContactScope& scope, const FacetPlaces& at) const;
+    [[nodiscard]] std::vector<PassedFacets> passed(const ContactScope& scope, const FacetPlaces& at,
+                                                   const FacetPairs& near) const;
     /// For every vertex of a surface its facets that are near along the surface, ascending.
     [[nodiscard]] std::vector<std::vector<Index>> neighbourhoods(const OuterSurface& surface) const;
     /// Whether facets of one surface are near each other along it.

@@ -33,6 +33,9 @@ struct LadderOptions {
     bool settles = false;
     bool last_chance = false; ///< the step cannot be cut: rung 3 may take long, and any failure leads to rung 4
     StabilisationOptions stabilisation{};
+    /// Whether displacements u, at which contact was last evaluated, may be those of a solution: where bodies have sprung through
+    /// one another the next rung is tried. If none does better the first such solution is the result. Empty: all may.
+    std::function<bool(const Field& u)> admissible{};
 };
 
 struct LadderResult {

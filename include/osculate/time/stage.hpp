@@ -38,13 +38,15 @@ struct Stage {
     std::string name;
     double duration = 1; ///< s
     int steps = 1;
-    std::optional<equilibrium::Dynamics> dynamics;   ///< absent: static
-    equilibrium::TangentChoice tangent;              ///< method for its linear systems
-    StepLimits limits;                               ///< g_p in facet sizes; dt_max is the stage's step
-    bool follow_paths = false;                       ///< follow paths of slave nodes, see CollisionCheck
-    bool ramp = true;                                ///< linear from the last value; false: full value at once
-    std::vector<linear::NodeConstraint> constraints; ///< every direction held during this stage
-    Field force_start, force_end;                    ///< (nodes) external forces at its two ends, N
+    std::optional<equilibrium::Dynamics> dynamics; ///< absent: static
+    equilibrium::TangentChoice
+        tangent; ///< method for its linear systems; with general contact, for the pairs at the start
+    LinearSolver linear_solver = LinearSolver::automatic; ///< asked for
+    StepLimits limits;                                    ///< g_p in facet sizes; dt_max is the stage's step
+    bool follow_paths = false;                            ///< follow paths of slave nodes, see CollisionCheck
+    bool ramp = true;                                     ///< linear from the last value; false: full value at once
+    std::vector<linear::NodeConstraint> constraints;      ///< every direction held during this stage
+    Field force_start, force_end;                         ///< (nodes) external forces at its two ends, N
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< added to these forces
     std::vector<FollowerPressure> follower_pressures;

@@ -31,9 +31,12 @@ void check_supports(Draft& draft) {
 
 void choose_tangents(Draft& draft) {
     const model::ContactPairs pairs = draft.plan.pairs_at_start();
-    for (time::Stage& stage : draft.plan.stages)
-        stage.tangent = equilibrium::choose_tangent(draft.plan.model, pairs, draft.scene.solver.linear_solver,
-                                                    stage.dynamics.has_value(), !stage.follower_pressures.empty());
+    for (time::Stage& stage : draft.plan.stages) {
+        stage.linear_solver = draft.scene.solver.linear_solver;
+        stage.tangent =
+            equilibrium::choose_tangent(draft.plan.model, pairs, stage.linear_solver, stage.dynamics.has_value(),
+                                        !stage.follower_pressures.empty(), draft.plan.scope());
+    }
 }
 
 } // namespace
@@ -42,6 +45,10 @@ model::ContactPairs Plan::pairs_at_start() const {
     model::ContactPairs pairs = model.pairs;
     for (const model::ContactHistory& history : near_at_start) pairs.push_back(history.pair);
     return pairs;
+}
+
+const model::ContactScope* Plan::scope() const {
+    return scope_at_start ? &*scope_at_start : nullptr;
 }
 
 Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings) {

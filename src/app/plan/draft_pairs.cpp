@@ -103,7 +103,7 @@ void add_general_contact(Draft& draft) {
         return;
     }
     const model::GeneralContact& general = *draft.plan.model.general;
-    model::ContactScope scope = general.scope_at(draft.plan.model.X, 0);
+    model::ContactScope& scope = draft.plan.scope_at_start.emplace(general.scope_at(draft.plan.model.X, 0));
     draft.plan.near_at_start = general.near(scope, {});
 }
 

@@ -88,7 +88,7 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
     if (multigrid) return sum + by_multigrid * unknowns;
     if (!condensed) return sum + factor_bytes(unknowns);
     for (const model::Body& body : plan.model.bodies) sum += factor_bytes(3.0 * body.nodes());
-    return sum + equilibrium::condensation_cost(plan.model, plan.pairs_at_start()).bytes;
+    return sum + equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope()).bytes;
 }
 
 } // namespace
@@ -97,7 +97,7 @@ std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
     const bool condensed = std::ranges::all_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
     const bool changing = plan.model.nonlinear != nullptr || !plan.model.pairs.empty() || plan.model.general;
-    const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start());
+    const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope());
     const double all = steps(plan, false) + steps(plan, true), solves = iterations(plan);
     const double nodes = plan.model.nodes(), blocks = plan.model.K.row_end(plan.model.K.rows() - 1);
     const Slaves s = slaves(scene, plan);

@@ -42,7 +42,7 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
                couplings = std::ranges::any_of(plan.model.rigid, &model::RigidBody::coupling);
     const bool unsymmetric = couplings || contact || follows || (nonlinear && dynamic_stages(plan) > 0);
     const LinearSolver asked = scene.solver.linear_solver;
-    const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start());
+    const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope());
     const bool condensed = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
     const bool direct = (unsymmetric && asked == LinearSolver::direct) || (rigid && !couplings && !contact && !follows);

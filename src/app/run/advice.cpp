@@ -201,7 +201,9 @@ private:
     void larger_tolerance() {
         constexpr double near = 100; // times the tolerance
         constexpr double harmless = 1e-6;
-        if (found_.residual < std::max(near * failed_.ladder.tolerance, harmless)) tolerance_above_residual();
+        const double tolerance = failed_.ladder.tolerance;
+        if (found_.residual > tolerance && found_.residual < std::max(near * tolerance, harmless))
+            tolerance_above_residual();
     }
     void tolerance_above_residual() {
         change("solver.tolerance", rounded(margin * found_.residual),

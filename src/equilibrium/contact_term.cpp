@@ -231,9 +231,12 @@ bool ContactTerm::rows_within(const Iterate& at, const Field& sums, const ConstV
                       no_gap * evaluations_[p].pair().surface().facet_size(point.facet)))
                     return false;
             }
-            Vec3 terms = law_magnitudes(at, p, j);
-            if (!contact::is_closed(statuses_[p][j])) // what the solution of a linear system leaves of other forces
-                terms += constraints_.frame(slave).cwiseAbs().transpose() * sums[slave];
+            // what the solution of a linear system leaves of the other forces at the nodes that contact joins
+            Vec3 others = sums[slave];
+            if (point.found)
+                for (Index i = 0; i < evaluations_[p].carriers(j); ++i)
+                    others += std::abs(point.weights(i)) * sums[evaluations_[p].point_nodes(j)[i]];
+            const Vec3 terms = law_magnitudes(at, p, j) + constraints_.frame(slave).cwiseAbs().transpose() * others;
             for (int k = 0; k < 3; ++k)
                 if (!(std::abs(F[unknowns_.contact_row(first_[p] + j, k)]) <= share * terms(k))) return false;
         }

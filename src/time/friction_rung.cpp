@@ -2,6 +2,9 @@
 
 #include "time/solve_once.hpp"
 
+#include <algorithm>
+#include <limits>
+
 namespace osculate::time {
 
 using equilibrium::StatusRule;
@@ -9,11 +12,14 @@ using solve::KinsolOutcome;
 
 LadderResult settle_friction(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                              const equilibrium::Statuses& statuses, LadderOptions& options) {
+    constexpr int most_idle = 6; // rounds in a row that have not halved the residual: those that gain do so sooner
     LadderResult result;
     result.rung = "exact friction";
     result.outcome = KinsolOutcome::stopped;
     Vector F(z.size());
     equilibrium::Statuses last;
+    double best = std::numeric_limits<double>::infinity();
+    int idle = 0;
     // each has a cycle watch of its own: what went round before does not count
     const auto evaluate = [&](equilibrium::Statuses from) {
         equilibrium.set_statuses(std::move(from), StatusRule::natural, false);
@@ -29,6 +35,9 @@ LadderResult settle_friction(equilibrium::Equilibrium& equilibrium, solve::Kinso
             result.outcome = KinsolOutcome::converged;
             return result;
         }
+        idle = result.residual < 0.5 * best ? 0 : idle + 1;
+        best = std::min(best, result.residual);
+        if (idle > most_idle) return result;
         if (k > 0 && equilibrium.statuses() == last) {
             Vector newton = z;
             const auto solved = solve_once(equilibrium, solver, newton, StatusRule::natural, options);

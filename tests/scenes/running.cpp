@@ -119,6 +119,7 @@ TEST_F(Run, CountsEveryAttempt) {
     EXPECT_GE(accepted, 1);
     EXPECT_GE(rejected, 1);
     EXPECT_EQ(steps.text(steps.rows.size() - 1, "verdict"), "give_up");
+    EXPECT_EQ(steps.text(steps.rows.size() - 1, "reason"), "solver") << "nothing holds the cap";
     EXPECT_EQ(iterations.text(iterations.rows.size() - 1, "attempt"), steps.text(steps.rows.size() - 1, "attempt"));
 
     EXPECT_EQ(static_cast<long>(history.rows.size()), accepted);

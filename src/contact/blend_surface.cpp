@@ -96,6 +96,7 @@ public:
         for (const Index facet : across_crease(hit)) {
             FacetHit there;
             there.facet = facet;
+            there.distance = hit.distance;
             Side other = seen_from(s, there, x, placement);
             // beyond a crease both sides are planes, more or less, through it: the one s is farther from faces s. For
             // a convex edge that is the larger gap, for a concave one the smaller; a tie keeps the closest facet
@@ -131,6 +132,9 @@ public:
 
 private:
     static constexpr double tie = 1e-9; ///< of coordinates and gaps, of the facet size
+    /// How much farther than its facet a foot may be from s, in facet sizes: smooth surfaces leave their facets by a tenth. What is
+    /// farther is another place of a patch that is folded.
+    static constexpr double farther = 0.25;
 
     /// Patches where the vertices are now.
     struct Placed : Placement {
@@ -172,7 +176,7 @@ private:
                 own->place(patch, x);
                 placed = own.get();
             }
-            activate(patch, *placed, s, side.active);
+            activate(patch, *placed, s, hit.distance + farther * surface_.facet_size(hit.facet), side.active);
         }
         if (!side.active.empty()) {
             blend(side.active, x, side.point);
@@ -247,8 +251,8 @@ private:
         return u;
     }
 
-    /// Adds the patch to `active` when s has a foot on it within its bump.
-    static void activate(const VertexPatch& patch, const PlacedPatch& placed, const Vec3& s,
+    /// Adds the patch to `active` when s has a foot on it within its bump, no farther from it than `most`.
+    static void activate(const VertexPatch& patch, const PlacedPatch& placed, const Vec3& s, double most,
                          std::vector<ActivePatch>& active) {
         const Vec3 from_origin = s - placed.x[0];
         const auto begin = start(patch, placed.at_vertex, from_origin);
@@ -269,7 +273,7 @@ private:
         if (!(a.tau < 1)) return;
         a.normal = a.foot.point.normal();
         a.gap = a.normal.dot(from_origin - a.foot.point.X);
-        if (!unique(a.foot.point, a.normal, a.gap)) return;
+        if (std::abs(a.gap) > most || !unique(a.foot.point, a.normal, a.gap)) return;
         a.psi = (1 - a.tau) * (1 - a.tau) * (1 - a.tau);
         first_variation(a);
         a.foot.point.X += placed.x[0];

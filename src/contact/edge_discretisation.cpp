@@ -197,13 +197,15 @@ private:
         hit = {};
         hit.distance = std::numeric_limits<double>::max();
         point.found = point.behind = false;
+        point.gap = std::numeric_limits<double>::infinity();
         if (start.side == 0) return;
         const std::array<Vec3, 4> at = ends(j, positions);
         const LineCrossing crossing = cross_lines(at[0], at[1], at[2], at[3]);
         const double s = crossing.s, t = crossing.t;
-        if (!(crossing.sine > 0.5 * least_sine) || s < -start.overshoot || s > farthest || t < -start.overshoot ||
-            t > 1 + start.overshoot)
-            return;
+        if (!(crossing.sine > 0.5 * least_sine)) return;
+        point.normal = start.side * crossing.across;
+        point.gap = point.normal.dot(crossing.offset);
+        if (s < -start.overshoot || s > farthest || t < -start.overshoot || t > 1 + start.overshoot) return;
         if (start.flat && std::abs(s) < at_end) return;
         const auto [b0, b1] = master_ends(edge);
         hit.facet = surface_.half_edges()[static_cast<std::size_t>(edge.half_edge)].facet;
@@ -211,8 +213,6 @@ private:
         point.found = true;
         point.facet = hit.facet;
         point.side = -1;
-        point.normal = start.side * crossing.across;
-        point.gap = point.normal.dot(crossing.offset);
         point.foot = at[2] + t * (at[3] - at[2]);
         point.nodes = {surface_.vertex_count() + edge.end, b0, b1};
         point.weights.resize(3);

@@ -1,5 +1,6 @@
 #include "osculate/equilibrium/friction_step.hpp"
 
+#include "osculate/solve/by_components.hpp"
 #include "osculate/solve/friction_problem.hpp"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ bool FrictionStep::factorise(const Iterate& at) {
     stiffness_.use(folded_ ? folded_->matrix() : bodies_.bodies().tangent());
     stiffness_.set_springs({});
     const auto done = [&](std::unique_ptr<solve::DirectSolver>& solver, auto&& make) {
-        if (!solver) solver = make();
+        if (!solver) solver = solve::make_by_components(make);
         solver_ = solver.get();
         ++factorisations_;
         return solver_->factorise(stiffness_.matrix()) == solve::FactorStatus::ok;

@@ -74,8 +74,9 @@ bool ContactEvaluation::is_left_to_slaves(Index j) const {
 
 bool ContactEvaluation::looks_past(Index j) const {
     const contact::FacetHit& hit = tracking_.hits[j];
-    return hit.facet >= 0 && hit.overhang > beside * hit.distance &&
-           hit.overhang > at_edge * (in_force_[j] != 0 ? 1 + slack : 1) * pair_->surface().facet_size(hit.facet);
+    const bool held = in_force_[j] != 0;
+    return hit.facet >= 0 && hit.overhang > (held ? 1 - slack * (1 - beside) : beside) * hit.distance &&
+           hit.overhang > at_edge * (held ? 1 + slack : 1) * pair_->surface().facet_size(hit.facet);
 }
 
 bool ContactEvaluation::may_touch(Index j, Index facet) const {
@@ -149,7 +150,8 @@ void ContactEvaluation::keep_depths(double part, const std::vector<Vec3>& x, Tim
     std::vector<double> depth(points_.size(), unknown);
     for (Index j = 0; j < pair_->size(); ++j) {
         const contact::ContactPoint& point = points_[j];
-        if (!point.found) continue;
+        // edges that cross beyond their ends may come to cross within them, as deep as their lines are
+        if (!point.found && !slaves.edges) continue;
         const Vec3& lambda = lambda_start_[j];
         depth[j] = part * std::min(0.0, states_[j].gap + law(j).normal_compliance() * lambda.dot(point.normal));
     }

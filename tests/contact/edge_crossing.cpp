@@ -94,6 +94,14 @@ TEST(EdgeCrossing, IsThatOfTheNearerEndAndOfConesThatMeet) {
     EXPECT_FALSE(upright.begin_and_evaluate().found);
 }
 
+TEST(EdgeCrossing, BesideTheEdgesHasTheGapOfTheirLines) {
+    Roofs roofs(-0.01, -0.1);
+    const ContactPoint& point = roofs.begin_and_evaluate();
+    EXPECT_FALSE(point.found);
+    EXPECT_NEAR(point.gap, -0.01, 1e-15);
+    EXPECT_EQ(Roofs(0.01, 0.51).begin_and_evaluate().gap, std::numeric_limits<double>::infinity());
+}
+
 TEST(EdgeCrossing, ThatIsDeepIsOneThatWasThereBefore) {
     Roofs roofs(-0.05);
     EXPECT_FALSE(roofs.begin_and_evaluate().found); // the lines cross, but the edges have not met

@@ -253,17 +253,35 @@ private:
                     text += "  " + fresh_name(slave + "_on_" + master, taken) + ":\n    slave: " + slave +
                             "\n    master: {set: " + master + (mortar ? "" : ", surface: facets") + "}\n";
                     if (!mortar) text += "    discretisation: node  # node to surface\n";
-                    if (const auto mu = model_.friction.find(pair.interaction);
-                        mu == model_.friction.end() && !pair.interaction.empty())
-                        model_.lose(pair.place, "friction of " + pair.slave + " and " + pair.master,
-                                    "no *SURFACE INTERACTION is called " + pair.interaction);
-                    else if (mu != model_.friction.end() && mu->second > 0)
-                        text += "    friction: " + number(mu->second) + "\n";
+                    text += law_of(pair);
                 }
             if (!any)
                 model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
                             "no two pieces of the mesh have them: a body in contact with itself has no counterpart");
         }
+        return text;
+    }
+
+    std::string law_of(const DeckPair& pair) {
+        const auto at = model_.interactions.find(pair.interaction);
+        if (at == model_.interactions.end()) {
+            if (!pair.interaction.empty())
+                model_.lose(pair.place, "the law of " + pair.slave + " and " + pair.master,
+                            "no *SURFACE INTERACTION is called " + pair.interaction);
+            return "";
+        }
+        const DeckInteraction& law = at->second;
+        const double per_length = units_.stress / units_.length;
+        std::string text;
+        if (law.friction > 0) {
+            text += "    friction: " + number(law.friction) + "\n";
+            if (law.stick > 0) text += "    stick_stiffness: " + number(per_length * law.stick) + "\n";
+        }
+        if (law.stiffness > 0 && std::ranges::none_of(model_.steps, &DeckStep::dynamic))
+            text += "    pressure_overclosure: {linear: {stiffness: " + number(per_length * law.stiffness) + "}}\n";
+        else if (law.stiffness > 0)
+            model_.note(pair.place, "the law of overclosure of " + pair.slave + " and " + pair.master,
+                        "contact is exact where a step is dynamic");
         return text;
     }
 
@@ -318,6 +336,7 @@ private:
         map("pressure", stages_[s].pressure, false);
         map("follower_pressure", stages_[s].follower_pressure, false);
         map("body_force", stages_[s].body_force, false);
+        map("nodal_force", stages_[s].nodal_force, false);
         return text;
     }
 

@@ -14,6 +14,19 @@ namespace {
 
 const char* const on_elements = "DLOAD";
 const char* const on_surfaces = "DSLOAD";
+const char* const on_nodes = "CLOAD";
+
+/// Components as a list, empty where none of them has a load in the step.
+std::string end_components(std::array<LoadHistory, 3>& components, const DeckStep& step) {
+    std::array<std::string, 3> courses;
+    bool any = false;
+    for (std::size_t d = 0; d < 3; ++d) {
+        courses[d] = components[d].end_step(step.duration, step.ramps());
+        any = any || !courses[d].empty();
+        if (courses[d].empty()) courses[d] = number(components[d].standing());
+    }
+    return any ? fmt::format("[{}]", fmt::join(courses, ", ")) : "";
+}
 
 } // namespace
 
@@ -41,6 +54,7 @@ void DeckLoads::write(std::vector<StageLoads>& stages) {
         end_step(s, stages[s]);
     }
     write_pressures(stages);
+    write_forces(stages);
 }
 
 void DeckLoads::forget(const DeckStep& step) {
@@ -51,11 +65,9 @@ void DeckLoads::forget(const DeckStep& step) {
     if (step.forget_on_elements)
         for (auto& body : gravity_)
             for (LoadHistory& component : body) component.remove_all();
-    if (step.forget_forces) {
-        for (const PressedForces& pressed : pressed_)
-            for (const Index f : pressed.facets) facets_.at({false, pressed.body, f}).history.remove(pressed.origin);
-        pressed_.clear();
-    }
+    if (step.forget_forces)
+        for (auto& [point, force] : forces_)
+            for (LoadHistory& component : force.components) component.remove_all();
 }
 
 DeckLoads::FacetLoad& DeckLoads::facet_load(const FacetKey& key, const std::string& name, const std::string& place) {
@@ -113,8 +125,6 @@ void DeckLoads::add_pressures(const DeckStep& step) {
 
 /// Forces that a step gives take the place of those before it, node by node and component by component.
 void DeckLoads::add_forces(const DeckStep& step) {
-    std::map<std::pair<std::size_t, std::string>, Forces> groups; // by body and amplitude
-    std::map<std::pair<std::size_t, Index>, std::array<bool, 3>> given;
     for (const DeckValues& f : step.forces) {
         std::size_t without = 0;
         for (const Index p : f.points) {
@@ -122,86 +132,17 @@ void DeckLoads::add_forces(const DeckStep& step) {
                 ++without;
                 continue;
             }
-            const auto b = static_cast<std::size_t>(sets_.body_of(p));
-            const Index node = sets_.node_of(p);
-            Forces& group = groups[{b, f.amplitude}];
-            if (group.place.empty()) group.place = f.place;
-            group.at.try_emplace(node, Vec3::Zero()).first->second[f.first] += f.value;
-            given[{b, node}][static_cast<std::size_t>(f.first)] = true;
+            NodeForce& force = forces_[p];
+            if (force.place.empty()) {
+                force.place = f.place;
+                force.courses.resize(model_.steps.size());
+            }
+            force.components[static_cast<std::size_t>(f.first)].add(on_nodes, units_.force() * f.value,
+                                                                    model_.amplitude(f.amplitude));
         }
         if (without > 0 && f.value != 0)
             model_.lose(f.place, fmt::format("*CLOAD on {} nodes", without), "no element has them");
     }
-    std::vector<PressedForces> kept;
-    for (PressedForces& pressed : pressed_) {
-        const bool touched = std::ranges::any_of(pressed.at, [&](const auto& entry) {
-            return given.contains({pressed.body, entry.first});
-        });
-        if (!touched) {
-            kept.push_back(std::move(pressed));
-            continue;
-        }
-        for (const Index f : pressed.facets) facets_.at({false, pressed.body, f}).history.remove(pressed.origin);
-        Forces& rest = groups[{pressed.body, ""}];
-        if (rest.place.empty()) rest.place = step.place;
-        for (const auto& [node, force] : pressed.at) {
-            Vec3& sum = rest.at.try_emplace(node, Vec3::Zero()).first->second;
-            const auto now = given.find({pressed.body, node});
-            for (Index d = 0; d < 3; ++d)
-                if (now == given.end() || !now->second[static_cast<std::size_t>(d)]) sum[d] += force[d];
-        }
-    }
-    pressed_ = std::move(kept);
-    for (const auto& [key, forces] : groups) press_like(forces, key.first, key.second, step.duration);
-}
-
-/// Forces on nodes that are those of one pressure on facets.
-void DeckLoads::press_like(const Forces& forces, std::size_t b, const std::string& amplitude, double duration) {
-    const DeckBody& body = bodies_[b];
-    std::vector<Index> facets;
-    std::map<Index, Vec3> unit;
-    std::vector<mesh::Facet> loaded;
-    for (std::size_t f = 0; f < body.exterior.size(); ++f) {
-        const mesh::SurfaceFace face = mesh::surface_faces(body.mesh, {body.exterior[f]}).front();
-        // a deck may leave out the corners of six-node faces, which carry nothing where these are straight
-        const auto* first = face.begin() + (face.count == 6 ? 3 : 0);
-        if (!std::all_of(first, face.end(), [&](Index n) { return forces.at.contains(n); })) continue;
-        facets.push_back(static_cast<Index>(f));
-        loaded.push_back(body.exterior[f]);
-    }
-    for (const mesh::SurfaceFace& face : mesh::surface_faces(body.mesh, loaded)) {
-        const auto share = fe::pressure_forces(face, body.mesh.nodes, 1);
-        for (std::size_t c = 0; c < static_cast<std::size_t>(face.count); ++c)
-            unit.try_emplace(face.nodes[c], Vec3::Zero()).first->second += share[c];
-    }
-    double both = 0, square = 0, largest = 0, worst = 0;
-    for (const auto& [node, force] : forces.at) {
-        const auto at = unit.find(node);
-        if (at != unit.end()) {
-            both += force.dot(at->second);
-            square += at->second.squaredNorm();
-        }
-        largest = std::max(largest, force.norm());
-    }
-    if (largest == 0) return; // taken away
-    const double pressure = square > 0 ? both / square : 0;
-    for (const auto& [node, force] : forces.at) {
-        const auto at = unit.find(node);
-        worst = std::max(worst, (force - (at != unit.end() ? Vec3(pressure * at->second) : Vec3(Vec3::Zero()))).norm());
-    }
-    for (const auto& [node, share] : unit)
-        if (!forces.at.contains(node)) worst = std::max(worst, (pressure * share).norm());
-    constexpr double same = 1e-4; // of the largest force: decks have five digits or so
-    if (facets.empty() || worst > same * largest)
-        return model_.lose(forces.place, fmt::format("*CLOAD on {} nodes of body {}", forces.at.size(), body.name),
-                           "forces on nodes have a counterpart only where they are those of one pressure");
-    PressedForces pressed{b, forces.at, facets, fmt::format("CLOAD {}", ++pressed_so_far_)};
-    const Amplitude* course = model_.amplitude(amplitude);
-    for (const Index f : facets)
-        facet_load({false, b, f}, "loaded", forces.place).history.add(pressed.origin, units_.stress * pressure, course);
-    if (course != nullptr)
-        for (auto& [node, force] : pressed.at) force *= factor_at(*course, duration);
-    pressed_.push_back(std::move(pressed));
 }
 
 double DeckLoads::density(const DeckBody& body) const {
@@ -270,16 +211,20 @@ void DeckLoads::add_acceleration(std::size_t b, const std::string& origin, const
 void DeckLoads::end_step(std::size_t s, StageLoads& stage) {
     const DeckStep& step = model_.steps[s];
     for (auto& [key, load] : facets_) load.courses[s] = load.history.end_step(step.duration, step.ramps());
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        std::array<std::string, 3> courses;
-        bool any = false;
-        for (std::size_t d = 0; d < 3; ++d) {
-            courses[d] = gravity_[b][d].end_step(step.duration, step.ramps());
-            any = any || !courses[d].empty();
-            if (courses[d].empty()) courses[d] = number(gravity_[b][d].standing());
-        }
-        if (any) stage.body_force[bodies_[b].name] = fmt::format("[{}]", fmt::join(courses, ", "));
-    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        if (const std::string course = end_components(gravity_[b], step); !course.empty())
+            stage.body_force[bodies_[b].name] = course;
+    for (auto& [point, force] : forces_) force.courses[s] = end_components(force.components, step);
+}
+
+/// Nodes of a body with the same history are a set.
+void DeckLoads::write_forces(std::vector<StageLoads>& stages) {
+    std::map<std::pair<int, std::vector<std::string>>, std::vector<Index>> groups;
+    for (const auto& [point, force] : forces_) groups[{sets_.body_of(point), force.courses}].push_back(point);
+    for (const auto& [key, points] : groups)
+        for (const std::string& set : sets_.of_points(static_cast<std::size_t>(key.first), points, "loaded"))
+            for (std::size_t s = 0; s < stages.size(); ++s)
+                if (!key.second[s].empty()) stages[s].nodal_force[set] = key.second[s];
 }
 
 void DeckLoads::write_pressures(std::vector<StageLoads>& stages) {

@@ -19,11 +19,12 @@ namespace osculate::deck {
 struct Units {
     double length, stress, density;
     const char* words;
+    [[nodiscard]] double force() const { return stress * length * length; } ///< N
 };
 
 /// Entries of a stage: name of a set or a body -> value as a scene has it.
 struct StageLoads {
-    std::map<std::string, std::string> displacement, pressure, follower_pressure, body_force;
+    std::map<std::string, std::string> displacement, pressure, follower_pressure, body_force, nodal_force;
 };
 
 /// Pressures are kept face by face and gravity body by body over all steps, so that what a step changes on some faces stays on
@@ -49,17 +50,10 @@ private:
         std::set<std::string> names;      ///< for a set
         std::string place;                ///< of the first load
     };
-    /// Forces of one amplitude on nodes of a body.
-    struct Forces {
-        std::map<Index, Vec3> at;
-        std::string place;
-    };
-    /// Forces on nodes that are those of a pressure, as they stand after their step.
-    struct PressedForces {
-        std::size_t body;
-        std::map<Index, Vec3> at;
-        std::vector<Index> facets;
-        std::string origin;
+    struct NodeForce {
+        std::array<LoadHistory, 3> components;
+        std::vector<std::string> courses; ///< by step, of all three; empty where the step leaves them
+        std::string place;                ///< of the first force
     };
 
     /// Faces that are loaded more than once, and where the first of these loads stands.
@@ -75,7 +69,6 @@ private:
     void add_pressures(const DeckStep& step);
     [[nodiscard]] std::set<std::pair<std::size_t, Index>> facets_of(const DeckPressure& p);
     void add_forces(const DeckStep& step);
-    void press_like(const Forces& forces, std::size_t body, const std::string& amplitude, double duration);
     void add_gravity(const DeckStep& step);
     /// Gravity on some elements of a body each, that add up to the same in all of them.
     void add_partial_gravity(std::size_t body, const std::vector<const DeckGravity*>& parts);
@@ -84,6 +77,7 @@ private:
     FacetLoad& facet_load(const FacetKey& key, const std::string& name, const std::string& place);
     void end_step(std::size_t s, StageLoads& stage);
     void write_pressures(std::vector<StageLoads>& stages);
+    void write_forces(std::vector<StageLoads>& stages);
     [[nodiscard]] double density(const DeckBody& body) const;
 
     DeckModel& model_;
@@ -94,8 +88,7 @@ private:
     std::map<std::array<Index, 4>, std::pair<std::size_t, Index>> exterior_; ///< by corners: body and facet
     std::map<FacetKey, FacetLoad> facets_;
     std::vector<std::array<LoadHistory, 3>> gravity_; ///< by body, N/m^3
-    std::vector<PressedForces> pressed_;
-    int pressed_so_far_ = 0;
+    std::map<Index, NodeForce> forces_;               ///< by point of the deck
 };
 
 } // namespace osculate::deck

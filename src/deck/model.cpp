@@ -124,7 +124,7 @@ private:
         if (word == "SOLIDSECTION") return section(card);
         if (word == "SURFACEINTERACTION") {
             interaction_ = capitals_of(card, "NAME");
-            model_.friction.try_emplace(interaction_, 0.0);
+            model_.interactions.try_emplace(interaction_);
             return;
         }
         if (word == "FRICTION") return friction(card);
@@ -233,14 +233,14 @@ private:
 
     void friction(const DeckCard& card) {
         if (step_ != nullptr) return lose(card, "friction belongs to all stages: it stays what it is before the steps");
-        if (card.first == card.last || !model_.friction.contains(interaction_))
+        if (card.first == card.last || !model_.interactions.contains(interaction_))
             return lose(card, "no coefficient, or no *SURFACE INTERACTION before it");
         const std::vector<double> v = numbers(*deck_.begin(card), 1);
         if (v[0] < 0) return lose(card, "a negative coefficient");
         for (const char* name : {"ROUGH", "TAUMAX"})
             if (card.parameter(name) != nullptr) lose(card, std::string(name) + " has no counterpart");
-        model_.friction[interaction_] = v[0];
-        if (v.size() > 1 && v[1] != 0) note(card, "its stick slope: nodes stick exactly");
+        model_.interactions[interaction_].friction = v[0];
+        if (v.size() > 1 && v[1] > 0) model_.interactions[interaction_].stick = v[1];
     }
 
     void pair(const DeckCard& card) {
@@ -268,10 +268,16 @@ private:
         }
     }
 
-    /// Contact is exact whatever the law of overclosure; what keeps surfaces together is another matter.
+    /// Contact is linear or exact; what keeps surfaces together is another matter.
     void surface_behavior(const DeckCard& card) {
         const std::string law = without_blanks(capitals_of(card, "PRESSURE-OVERCLOSURE"));
         if (law == "TIED" || card.parameter("NOSEPARATION") != nullptr) return lose(card, "surfaces part and slide");
+        if (law == "LINEAR" && card.first != card.last && model_.interactions.contains(interaction_)) {
+            const std::vector<double> v = numbers(*deck_.begin(card), 1);
+            if (!(v[0] > 0)) return lose(card, "a slope that is not positive");
+            model_.interactions[interaction_].stiffness = v[0];
+            return;
+        }
         if (law != "HARD") note(card, "contact is exact: no penetration, no law of overclosure");
     }
 

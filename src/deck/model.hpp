@@ -33,6 +33,12 @@ struct DeckSection {
     std::string place;
 };
 
+/// Law of an interface.
+struct DeckInteraction {
+    double friction = 0, stick = 0; ///< coefficient; stick slope, 0: not given
+    double stiffness = 0;           ///< pressure over overclosure; 0: exact
+};
+
 struct DeckPair {
     std::string slave, master, interaction; ///< in capitals
     bool mortar = false;                    ///< surface to surface, and mortar
@@ -83,7 +89,7 @@ struct DeckModel {
     mesh::DeckMesh mesh;
     std::map<std::string, DeckMaterial> materials; ///< by names in capitals
     std::vector<DeckSection> sections;
-    std::map<std::string, double> friction; ///< by interaction
+    std::map<std::string, DeckInteraction> interactions; ///< by names in capitals
     std::vector<DeckPair> pairs;
     std::vector<DeckValues> held; ///< in all steps
     std::map<std::string, Amplitude> amplitudes;

@@ -14,6 +14,10 @@ namespace {
 constexpr double held_stick_stiffness = 100;
 /// Part of its own compliance by which a contact yields that may hold the same place as others.
 constexpr double shared_yield = 0.01;
+/// The same at most for pairs that are soft: c, which results do not depend on, is no more than this part of their stiffness.
+constexpr double most_yield = 0.5;
+/// Least area that a force of a soft pair presses on, of the node's: at the edge of the master it goes to zero.
+constexpr double least_area = 1e-6;
 } // namespace
 
 ContactEvaluation::ContactEvaluation(const ContactPair& pair)
@@ -218,12 +222,28 @@ double ContactEvaluation::unseen_gap(Index j) const {
     return (point.found || point.behind) && points_at_[j] != 0 ? point.gap : nowhere;
 }
 
+double ContactEvaluation::soft_area(Index j) const {
+    return std::max(area(j), least_area * pair_->slaves().area[j]);
+}
+
+double ContactEvaluation::stiffness(Index j) const {
+    const double c = pair_->slaves().stiffness[j] + inertia_[j], K = pair_->options().stiffness;
+    return K > 0 ? std::min(c, most_yield * K * soft_area(j)) : c;
+}
+
 contact::Coulomb ContactEvaluation::law(Index j) const {
-    const double c = stiffness(j), friction = pair_->options().friction;
-    const bool yields = this->yields(j);
-    if (!yields && held_[j] == 0) return {friction, c};
-    contact::Coulomb law = contact::Coulomb::elastic(friction, c, held_stick_stiffness * c, lambda_start_[j]);
-    if (yields) law.yield(shared_yield);
+    const ContactOptions& options = pair_->options();
+    const double c = stiffness(j), friction = options.friction;
+    const bool yields = this->yields(j), soft = options.stiffness > 0, slips = options.stick_stiffness > 0;
+    if (!yields && !soft && !slips && held_[j] == 0) return {friction, c};
+    const bool sticks_exactly = soft && !slips && held_[j] == 0;
+    const double spring = slips ? options.stick_stiffness * soft_area(j) : held_stick_stiffness * c;
+    contact::Coulomb law = sticks_exactly ? contact::Coulomb(friction, c)
+                                          : contact::Coulomb::elastic(friction, c, spring, lambda_start_[j]);
+    if (yields)
+        law.yield(shared_yield);
+    else if (soft)
+        law.yield(c / (options.stiffness * soft_area(j))); // lambda . n = -stiffness area g
     return law;
 }
 

@@ -68,7 +68,7 @@ std::string text_of(const OutlineItem& group, const std::string& key) {
 std::string loads(const OutlineItem& stage) {
     std::string list;
     for (const char* kind :
-         {"displacement", "pressure", "follower_pressure", "body_force", "motion", "force", "moment"}) {
+         {"displacement", "pressure", "follower_pressure", "body_force", "nodal_force", "motion", "force", "moment"}) {
         const OutlineItem* group = stage.find(kind);
         if (group == nullptr) continue;
         for (const OutlineItem& target : group->items) {
@@ -120,8 +120,9 @@ std::string pairs(const OutlineItem& all) {
 std::string stages(const OutlineItem& all) {
     std::string list;
     for (const OutlineItem& stage : all.items) {
-        std::string more = others(stage, {"analysis", "duration", "steps", "displacement", "pressure",
-                                          "follower_pressure", "body_force", "motion", "force", "moment"});
+        std::string more =
+            others(stage, {"analysis", "duration", "steps", "displacement", "pressure", "follower_pressure",
+                           "body_force", "nodal_force", "motion", "force", "moment"});
         list +=
             element("li", element("b", escaped(stage.key)) + ": " + escaped(phrases(stage.find("analysis"))) + ", " +
                               escaped(text_of(stage, "duration")) + " in " + escaped(text_of(stage, "steps")) +

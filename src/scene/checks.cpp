@@ -161,6 +161,20 @@ public:
         if (surface.R == 0 && surface.q < 1) fault(q, "more than 1 with R = 0", number_text(surface.q));
     }
 
+    /// The energy of soft contact is in no ledger.
+    void check_overclosure(const Scene& scene) {
+        const auto dynamic = std::ranges::find_if(scene.stages, [](const auto& stage) {
+            return std::holds_alternative<DynamicAnalysis>(stage.second.analysis);
+        });
+        for (const auto& [name, pair] : scene.contact) {
+            if (dynamic != scene.stages.end() && std::holds_alternative<LinearOverclosure>(pair.pressure_overclosure))
+                fault({"contact", name, "pressure_overclosure"}, "exact where a stage is dynamic",
+                      "linear, with the dynamic stage " + dynamic->first);
+            if (pair.stick_stiffness && !(pair.friction > 0))
+                fault({"contact", name, "stick_stiffness"}, "friction above 0 beside it", "no friction");
+        }
+    }
+
     /// Masses are made once for all dynamic stages.
     void check_contact_mass(const Named<Stage>& stages) {
         const DynamicAnalysis* first = nullptr;
@@ -366,9 +380,10 @@ public:
         for (const auto& [key, named] :
              {std::pair{"pressure", &stage.pressure}, std::pair{"follower_pressure", &stage.follower_pressure}})
             for (const auto& [set, pressure] : *named) check_course({"stages", name, key, set}, pressure, stage, {});
-        for (const auto& [body, force] : stage.body_force)
-            for (std::size_t a = 0; a < 3; ++a)
-                check_course({"stages", name, "body_force", body}, force[a], stage, {}, a);
+        for (const auto& [key, named] :
+             {std::pair{"body_force", &stage.body_force}, std::pair{"nodal_force", &stage.nodal_force}})
+            for (const auto& [on, force] : *named)
+                for (std::size_t a = 0; a < 3; ++a) check_course({"stages", name, key, on}, force[a], stage, {}, a);
     }
 
     /// Values of an expression at the ends of the stage's steps, in dynamics at its start too.
@@ -438,6 +453,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
             break;
         }
     rules.check_contact_mass(scene.stages);
+    rules.check_overclosure(scene);
     for (const auto& [name, pair] : scene.contact) rules.check_pair(name, pair);
     if (scene.general) rules.check_general(*scene.general, scene.bodies);
     for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);

@@ -82,6 +82,17 @@ void describe(Visitor& v, MasterSpec& master) {
             });
 }
 
+void describe(Visitor&, ExactContact&) {}
+
+void describe(Visitor& v, LinearOverclosure& law) {
+    v.number({.name = "stiffness",
+              .meaning = "Contact pressure over overclosure.",
+              .unit = dimension::force_per_volume,
+              .range = range::positive,
+              .required = true},
+             law.stiffness);
+}
+
 } // namespace
 
 void describe(Visitor& v, Pair& pair) {
@@ -111,6 +122,20 @@ void describe(Visitor& v, Pair& pair) {
            discretisations, index);
     pair.discretisation = index == 0 ? std::nullopt : std::optional(static_cast<Discretisation>(index - 1));
     v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
+    v.group({.name = "pressure_overclosure",
+             .meaning = "How deep the surfaces give way under pressure.",
+             .bare_word = true},
+            [&] {
+                static const Words tags{"exact", "linear"};
+                one_of(v, tags, {"They touch and do not overlap.", "As springs would, in statics."}, true,
+                       pair.pressure_overclosure, [&v](auto& alternative) { describe(v, alternative); });
+            });
+    v.optional_number(
+        {.name = "stick_stiffness",
+         .meaning = "Friction over elastic slip before it reaches Coulomb's bound; without it nodes stick exactly.",
+         .unit = dimension::force_per_volume,
+         .range = range::positive},
+        pair.stick_stiffness);
     v.number({.name = "closing_tolerance",
               .meaning = "The first solve closes nodes whose gap is smaller than this fraction of the facet size.",
               .range = range::fraction},
@@ -353,6 +378,18 @@ void describe(Visitor& v, Stage& stage) {
               v.courses({.name = body,
                          .meaning = "Force per reference volume.",
                          .unit = dimension::force_per_volume,
+                         .required = true},
+                        value);
+          });
+    named(v,
+          {.name = "nodal_force",
+           .meaning = "Force on the nodes of sets, reached at the end of the stage.",
+           .names = Names::set,
+           .item = "set"},
+          stage.nodal_force, [&](const std::string& set, std::array<Course, 3>& value) {
+              v.courses({.name = set,
+                         .meaning = "On each node of the set; it keeps its direction.",
+                         .unit = dimension::force,
                          .required = true},
                         value);
           });

@@ -108,9 +108,11 @@ TEST_F(ImportedLoads, OnNodesAreReplacedNodeByNode) {
                       rest = "*CLOAD\n12,3,-2.\n13,3,-2.\n16,3,-2.\n17,3,-2.\n14,3,-1.\n18,3,-1.\n";
     EXPECT_NEAR(at_end(plan(step(left) + step(rest)), 1).z(), -12, round_off) << "nodes 11 and 15 keep theirs";
     EXPECT_NEAR(at_end(plan(step("*CLOAD\n11,3,0.\n")), 0).z(), 0, round_off);
+    EXPECT_NEAR(at_end(plan(step(all) + step("*CLOAD\n11,3,-9.\n")), 1).z(), -20, round_off);
+    const app::Plan along = plan(step("*CLOAD\n11,1,2.\n11,1,3.\n") + step("*CLOAD, AMPLITUDE=Up\n11,3,4.\n"));
+    EXPECT_NEAR(at_end(along, 0).x(), 5, round_off) << "of one step they add";
+    EXPECT_NEAR((at_time(along, 1, .5) - Vec3(5, 0, 2)).norm(), 0, round_off);
     EXPECT_THAT(imported.lost, IsEmpty());
-    (void)plan(step(all) + step("*CLOAD\n11,3,-9.\n"));
-    EXPECT_THAT(imported.lost, SizeIs(1)) << "no longer one pressure";
 }
 
 TEST_F(ImportedLoads, OfSeveralGravitiesAddAsVectors) {

@@ -30,7 +30,8 @@ TEST(BadScene, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(faults[0].column, 5);
     EXPECT_EQ(faults[0].key, "contact.joint.frcition");
     EXPECT_EQ(faults[0].expected,
-              "one of the keys slave, master, between, discretisation, friction, closing_tolerance, "
+              "one of the keys slave, master, between, discretisation, friction, pressure_overclosure, "
+              "stick_stiffness, closing_tolerance, "
               "initial_overlap_limit, stiffness_scale");
     EXPECT_EQ(faults[0].found, "unknown key 'frcition'");
     EXPECT_EQ(faults[0].nearest, "friction");
@@ -220,7 +221,8 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
             "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
             "for both",
             "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, control, ramp, "
-            "displacement, pressure, follower_pressure, body_force, motion, force, moment, found unknown key 'stpes' "
+            "displacement, pressure, follower_pressure, body_force, nodal_force, motion, force, moment, found unknown "
+            "key 'stpes' "
             "(did "
             "you mean 'steps'?)",
             "bad.yaml:24:16: stages.load.pressure.tpo: expected the name of a set: bed, ground, under, "
@@ -241,7 +243,8 @@ TEST(BadScene, FaultInAnOverride) {
                           "--set: contact..friction: expected key.path=value, found 'contact..friction'");
     expect_override_fault({"contact.joint.ring", "1"},
                           "--set: contact.joint.ring: expected one of the keys slave, master, between, discretisation, "
-                          "friction, closing_tolerance, "
+                          "friction, pressure_overclosure, "
+                          "stick_stiffness, closing_tolerance, "
                           "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
 }
 
@@ -273,6 +276,21 @@ TEST(BadScene, SupportsThatContradict) {
     expect_fault(replaced(small_scene, "top: {x: 1 mm}", "bed: {x: 1 mm}"),
                  "bad.yaml:26:29: stages.load.displacement.bed.x: expected a component that supports.bed leaves free, "
                  "found x, which is held");
+}
+
+TEST(BadScene, InterfacesThatCannotBe) {
+    using testing::Contains;
+    using testing::HasSubstr;
+    EXPECT_THAT(messages(faults_of(replaced(small_scene, "friction: 0.3", "stick_stiffness: 1e9 N/m^3"))),
+                ElementsAre(HasSubstr(
+                    "contact.joint.stick_stiffness: expected friction above 0 beside it, found no friction")));
+    const std::string soft =
+        replaced(small_scene, "friction: 0.3", "pressure_overclosure: {linear: {stiffness: 1e9 N/m^3}}");
+    EXPECT_THAT(messages(faults_of(soft)), IsEmpty());
+    EXPECT_THAT(messages(faults_of(soft, {{"stages.load.analysis", "dynamic"}})),
+                Contains(HasSubstr(
+                    "contact.joint.pressure_overclosure: expected exact where a stage is dynamic, found linear, with "
+                    "the dynamic stage load")));
 }
 
 TEST(BadScene, ShapesThatCannotBe) {

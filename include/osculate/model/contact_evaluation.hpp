@@ -77,7 +77,7 @@ public:
         return state;
     }
     /// c of the complementarity function of slave j, N/m: its stiffness and, in dynamics, its inertia.
-    [[nodiscard]] double stiffness(Index j) const { return pair_->slaves().stiffness[j] + inertia_[j]; }
+    [[nodiscard]] double stiffness(Index j) const;
     /// Sets the inertia of the slave nodes, N/m: about mass over the square of the time step.
     void set_inertia(std::vector<double> inertia) { inertia_ = std::move(inertia); }
     /// Declares which slave nodes are held or driven along some direction: their stick is elastic, see
@@ -161,6 +161,8 @@ private:
     void drop_what_is_beside();
     /// Facets to look for slave j on.
     [[nodiscard]] contact::FacetSearch::Choice choice(Index j) const;
+    /// area() of a pair that gives way, m^2, > 0.
+    [[nodiscard]] double soft_area(Index j) const;
     /// Gap that contact keeps in this attempt, m, <= 0, see keep_depths().
     [[nodiscard]] double kept_depth(Index j) const;
     /// state() of slave j without the force.

@@ -71,8 +71,10 @@ struct SlaveNodes {
 };
 
 struct ContactOptions {
-    double friction = 0;      ///< Coulomb's mu
-    double hysteresis = 0.03; ///< of the facet size, see contact::FacetSearch::track
+    double friction = 0;        ///< Coulomb's mu
+    double stiffness = 0;       ///< pressure over overclosure, Pa/m; 0: contact is exact
+    double stick_stiffness = 0; ///< friction over elastic slip, Pa/m; 0: stick is exact
+    double hysteresis = 0.03;   ///< of the facet size, see contact::FacetSearch::track
     int changes_before_latch =
         4; ///< facet changes of a node in one attempt after which it keeps its facet: it is on an edge
     double closing_tolerance = 0.02; ///< of the facet size: largest distance that counts as touching before any contact

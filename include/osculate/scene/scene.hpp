@@ -247,14 +247,24 @@ struct MasterSpec {
     bool operator==(const MasterSpec&) const = default;
 };
 
+struct ExactContact {
+    bool operator==(const ExactContact&) const = default;
+};
+struct LinearOverclosure {
+    double stiffness = 0; ///< Pa/m
+    bool operator==(const LinearOverclosure&) const = default;
+};
+
 struct Pair {
     std::string slave; ///< set
     MasterSpec master;
     std::array<std::string, 2> between{};         ///< sets, in place of slave and master.set; empty: not given
     std::optional<Discretisation> discretisation; ///< none: automatic
     double friction = 0;                          ///< Coulomb's coefficient mu
-    double closing_tolerance = 0.02;    ///< of the facet size: the first solve closes nodes with a smaller gap
-    double initial_overlap_limit = 0.1; ///< of the facet size: a deeper initial overlap is a fault
+    std::variant<ExactContact, LinearOverclosure> pressure_overclosure;
+    std::optional<double> stick_stiffness; ///< Pa/m; none: nodes stick exactly
+    double closing_tolerance = 0.02;       ///< of the facet size: the first solve closes nodes with a smaller gap
+    double initial_overlap_limit = 0.1;    ///< of the facet size: a deeper initial overlap is a fault
     double stiffness_scale =
         1; ///< factor on the estimated c of the complementarity function; results do not depend on it
     bool operator==(const Pair&) const = default;
@@ -353,7 +363,8 @@ struct Stage {
     Named<std::array<std::optional<Course>, 3>> displacement; ///< set -> components along the support's axes, m
     Named<Course> follower_pressure; ///< set -> pressure on the current area, along the current normal, Pa
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
-    Named<std::array<Course, 3>> body_force; ///< body -> N/m^3
+    Named<std::array<Course, 3>> body_force;  ///< body -> N/m^3
+    Named<std::array<Course, 3>> nodal_force; ///< set -> on each of its nodes, N
     Named<std::array<std::optional<Course>, 6>>
         motion; ///< rigid body or coupling -> displacement and rotation components, m, rad
     Named<std::array<Course, 3>> force, moment; ///< rigid body or coupling -> at its reference point, N, N m

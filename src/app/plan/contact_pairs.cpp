@@ -209,6 +209,9 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     model::ContactOptions options;
     options.discretisation = spec.discretisation.value();
     options.friction = spec.friction;
+    if (const auto* law = std::get_if<scene::LinearOverclosure>(&spec.pressure_overclosure))
+        options.stiffness = law->stiffness;
+    options.stick_stiffness = spec.stick_stiffness.value_or(0);
     options.closing_tolerance = spec.closing_tolerance;
     const contact::ExactShape* shape = shape_of(model, master);
     std::shared_ptr<const model::MasterSide> side =

@@ -19,6 +19,7 @@ void Driving::update(const scene::Stage& stage) {
     for (const auto& [set, value] : stage.pressure) pressure[set] = value;
     for (const auto& [set, value] : stage.follower_pressure) follower_pressure[set] = value;
     for (const auto& [body, value] : stage.body_force) body_force[body] = value;
+    for (const auto& [set, value] : stage.nodal_force) nodal_force[set] = value;
     for (const auto& [body, components] : stage.motion)
         for (std::size_t k = 0; k < components.size(); ++k)
             if (components[k]) motion[body][k] = components[k];
@@ -32,7 +33,7 @@ void Driving::settle(double duration) {
             if (component) settle_one(*component, duration);
     for (auto& [set, value] : pressure) settle_one(value, duration);
     for (auto& [set, value] : follower_pressure) settle_one(value, duration);
-    for (auto* vectors : {&body_force, &force, &moment})
+    for (auto* vectors : {&body_force, &nodal_force, &force, &moment})
         for (auto& [body, components] : *vectors)
             for (auto& component : components) settle_one(component, duration);
     for (auto& [body, components] : motion)
@@ -47,7 +48,7 @@ bool Driving::has_load_courses() const {
                                    [&](const auto& entry) { return std::ranges::any_of(entry.second, varies); });
     };
     return std::ranges::any_of(pressure, [&](const auto& entry) { return varies(entry.second); }) || any(body_force) ||
-           any(force) || any(moment);
+           any(nodal_force) || any(force) || any(moment);
 }
 
 Driving Driving::without_courses_of(const Driving& next) const {
@@ -60,6 +61,7 @@ Driving Driving::without_courses_of(const Driving& next) const {
                 if (!then.at(body)[k].is_value()) components[k] = 0.0;
     };
     drop(kept.body_force, next.body_force);
+    drop(kept.nodal_force, next.nodal_force);
     drop(kept.force, next.force);
     drop(kept.moment, next.moment);
     return kept;

@@ -63,6 +63,9 @@ Field ramped_forces(const Draft& draft, const Driving& driving) {
     for (const auto& [body, b] : driving.body_force)
         model::add_body_force(draft.plan.model.bodies[draft.body_index(body)],
                               {ramped(b[0]), ramped(b[1]), ramped(b[2])}, force);
+    for (const auto& [set_name, f] : driving.nodal_force)
+        for (const Index node : draft.set(set_name).nodes)
+            force[static_cast<std::size_t>(node)] += Vec3(ramped(f[0]), ramped(f[1]), ramped(f[2]));
     for (const auto& [body, f] : driving.force)
         force[static_cast<std::size_t>(draft.rigid(body).reference)] += Vec3(ramped(f[0]), ramped(f[1]), ramped(f[2]));
     for (const auto& [body, m] : driving.moment) // moments are forces at the radius
@@ -84,6 +87,12 @@ void add_course_forces(const Draft& draft, const Driving& driving, CourseList& c
             if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value())
                 model::add_body_force(draft.plan.model.bodies[draft.body_index(body)], Vec3::Unit(k),
                                       pattern("body_force." + body + "." + std::string(1, "xyz"[k]), course));
+    for (const auto& [set_name, components] : driving.nodal_force)
+        for (int k = 0; k < 3; ++k)
+            if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value()) {
+                Field& one = pattern("nodal_force." + set_name + "." + std::string(1, "xyz"[k]), course);
+                for (const Index node : draft.set(set_name).nodes) one[static_cast<std::size_t>(node)] = Vec3::Unit(k);
+            }
     const auto add_at_point = [&](const std::string& key, const auto& vectors, bool moment) {
         for (const auto& [body, components] : vectors)
             for (int k = 0; k < 3; ++k)

@@ -434,7 +434,7 @@ private:
 void advise_on_load(PostMortem& found) {
     const auto& [course, elapsed, duration] = *found.missing_load;
     std::string key = course; // components of a body force have no key of their own
-    for (const char* vector : {"body_force.", "force.", "moment."})
+    for (const char* vector : {"body_force.", "nodal_force.", "force.", "moment."})
         if (key.starts_with(vector)) key = key.substr(0, key.rfind('.'));
     found.advice.push_back({"stages." + found.stage + "." + key,
                             "give it a finite value at every time from 0 to " + number(duration) +

@@ -32,13 +32,17 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
 
 void RunChecks::add_penetration(const time::AcceptedStep& step) {
     const time::StepLimits& limits = step.stage.limits;
+    std::size_t p = 0;
     for (const model::ContactEvaluation& evaluation : step.equilibrium.contact()) {
         const model::ContactPair& pair = evaluation.pair();
+        const std::vector<Vec3>& lambda = step.state.contact[p++].lambda;
         for (Index j = 0; j < pair.size(); ++j) {
             const contact::ContactPoint& point = evaluation.point(j);
             // what has no partner and only seems to be behind a surface is for the audit to judge
             const bool seen = point.found || (point.behind && step.audit == nullptr);
-            const double gap = seen ? point.gap : evaluation.unseen_gap(j);
+            double gap = seen ? point.gap : evaluation.unseen_gap(j);
+            if (point.found && pair.options().stiffness > 0) // beyond what the pair gives way
+                gap += evaluation.law(j).normal_compliance() * lambda[static_cast<std::size_t>(j)].dot(point.normal);
             const Index facet = seen ? point.facet : evaluation.facets()[j];
             if (facet < 0 || !(gap < 0)) continue;
             const double size = pair.surface().facet_size(facet), depth = -gap / size;

@@ -251,7 +251,7 @@ private:
         return u;
     }
 
-    /// Adds the patch to `active` when s has a foot on it within its bump, no farther from it than `most`.
+    /// Adds the patch to `active` when s has a foot on it within its bump, no farther from it than `most`, m.
     static void activate(const VertexPatch& patch, const PlacedPatch& placed, const Vec3& s, double most,
                          std::vector<ActivePatch>& active) {
         const Vec3 from_origin = s - placed.x[0];

@@ -272,16 +272,16 @@ private:
         }
         const DeckInteraction& law = at->second;
         const double per_length = units_.stress / units_.length;
+        const bool gives_way = std::ranges::none_of(model_.steps, &DeckStep::dynamic);
         std::string text;
-        if (law.friction > 0) {
-            text += "    friction: " + number(law.friction) + "\n";
-            if (law.stick > 0) text += "    stick_stiffness: " + number(per_length * law.stick) + "\n";
-        }
-        if (law.stiffness > 0 && std::ranges::none_of(model_.steps, &DeckStep::dynamic))
+        if (law.friction > 0) text += "    friction: " + number(law.friction) + "\n";
+        if (law.friction > 0 && law.stick > 0 && gives_way)
+            text += "    stick_stiffness: " + number(per_length * law.stick) + "\n";
+        if (law.stiffness > 0 && gives_way)
             text += "    pressure_overclosure: {linear: {stiffness: " + number(per_length * law.stiffness) + "}}\n";
-        else if (law.stiffness > 0)
-            model_.note(pair.place, "the law of overclosure of " + pair.slave + " and " + pair.master,
-                        "contact is exact where a step is dynamic");
+        if ((law.stiffness > 0 || law.stick > 0) && !gives_way)
+            model_.note(pair.place, "overclosure and stick slope of " + pair.slave + " and " + pair.master,
+                        "contact and stick are exact where a step is dynamic");
         return text;
     }
 

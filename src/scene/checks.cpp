@@ -161,7 +161,7 @@ public:
         if (surface.R == 0 && surface.q < 1) fault(q, "more than 1 with R = 0", number_text(surface.q));
     }
 
-    /// The energy of soft contact is in no ledger.
+    /// The energy of what gives way, in pressure or in stick, is in no ledger.
     void check_overclosure(const Scene& scene) {
         const auto dynamic = std::ranges::find_if(scene.stages, [](const auto& stage) {
             return std::holds_alternative<DynamicAnalysis>(stage.second.analysis);
@@ -170,6 +170,9 @@ public:
             if (dynamic != scene.stages.end() && std::holds_alternative<LinearOverclosure>(pair.pressure_overclosure))
                 fault({"contact", name, "pressure_overclosure"}, "exact where a stage is dynamic",
                       "linear, with the dynamic stage " + dynamic->first);
+            if (dynamic != scene.stages.end() && pair.stick_stiffness)
+                fault({"contact", name, "stick_stiffness"}, "none where a stage is dynamic",
+                      "one, with the dynamic stage " + dynamic->first);
             if (pair.stick_stiffness && !(pair.friction > 0))
                 fault({"contact", name, "stick_stiffness"}, "friction above 0 beside it", "no friction");
         }

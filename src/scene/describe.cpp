@@ -130,12 +130,12 @@ void describe(Visitor& v, Pair& pair) {
                 one_of(v, tags, {"They touch and do not overlap.", "As springs would, in statics."}, true,
                        pair.pressure_overclosure, [&v](auto& alternative) { describe(v, alternative); });
             });
-    v.optional_number(
-        {.name = "stick_stiffness",
-         .meaning = "Friction over elastic slip before it reaches Coulomb's bound; without it nodes stick exactly.",
-         .unit = dimension::force_per_volume,
-         .range = range::positive},
-        pair.stick_stiffness);
+    v.optional_number({.name = "stick_stiffness",
+                       .meaning = "Friction over elastic slip before it reaches Coulomb's bound, in statics; without "
+                                  "it nodes stick exactly.",
+                       .unit = dimension::force_per_volume,
+                       .range = range::positive},
+                      pair.stick_stiffness);
     v.number({.name = "closing_tolerance",
               .meaning = "The first solve closes nodes whose gap is smaller than this fraction of the facet size.",
               .range = range::fraction},

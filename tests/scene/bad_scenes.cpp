@@ -291,6 +291,10 @@ TEST(BadScene, InterfacesThatCannotBe) {
                 Contains(HasSubstr(
                     "contact.joint.pressure_overclosure: expected exact where a stage is dynamic, found linear, with "
                     "the dynamic stage load")));
+    const std::string slips = replaced(small_scene, "friction: 0.3", "friction: 0.3\n    stick_stiffness: 1e9 N/m^3");
+    EXPECT_THAT(messages(faults_of(slips)), IsEmpty());
+    EXPECT_THAT(messages(faults_of(slips, {{"stages.load.analysis", "dynamic"}})),
+                Contains(HasSubstr("contact.joint.stick_stiffness: expected none where a stage is dynamic")));
 }
 
 TEST(BadScene, ShapesThatCannotBe) {

@@ -80,7 +80,8 @@ template <class At> [[nodiscard]] SharpEdge slave_edge(Index j, const EdgesThatM
 /// The force lambda is that on a0. So a1 carries s/(1 - s) of it, and b0, b1 carry -(1 - t)/(1 - s) and -t/(1 - s): all that
 /// ContactPoint asks for, with Phi = (-s, 1 - t, t)/(1 - s). What presses on the edge is lambda/(1 - s), and drifts are those of
 /// the crossing over 1 - s. An edge has one item from each end: that of the nearer end at the start of the attempt is in force,
-/// and remains so until the other is clearly nearer. The side and whether the cones meet are those of the start, too.
+/// and remains so until the other is clearly nearer. The side and whether the cones meet are those of the start, too. Without a
+/// contact point, gap and normal are those of the lines, m; infinite where the edges cannot meet.
 /// @param surface  topology of the master; the discretisation refers to it
 [[nodiscard]] std::unique_ptr<Discretisation> make_edge_discretisation(const mesh::HalfEdgeSurface& surface,
                                                                        std::vector<EdgesThatMeet> edges);

@@ -59,6 +59,10 @@ public:
         const int changed = nodes_->evaluate(smooth, tracking, raw_, threads);
         parallel_for(threads, weights_.facet_count(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f) {
+                if (is_far(f, tracking)) {
+                    weights_.leave_out(f);
+                    continue;
+                }
                 below_[f] = at.search.track(centre(f, at), below_[f], at.vertices, 0).facet;
                 std::vector<Index> seeds;
                 const auto add = [&](Index facet) {
@@ -77,7 +81,7 @@ public:
         parallel_for(threads, static_cast<Index>(points.size()), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
                 const double share = weights_.share(j);
-                outside_[j] = !raw_[j].found && !raw_[j].behind && share > 0;
+                outside_[j] = !raw_[j].found && !raw_[j].behind && share > 0 && tracking.hits[j].facet >= 0;
                 if (outside_[j])
                     extended_->evaluate(at.slaves[j], onto_facet(tracking.hits[j]), smooth.vertices, raw_[j]);
                 alone_[j] = raw_[j].found && !(share > 0);
@@ -213,6 +217,11 @@ private:
         for (int round = 0; round < rounds; ++round)
             for (const Mat3& R : reflections) metric = ((metric + R * metric * R) / 2).eval();
         return metric;
+    }
+
+    [[nodiscard]] bool is_far(Index f, const FacetTracking& tracking) const {
+        return !tracking.far.empty() &&
+               std::ranges::all_of(weights_.corners(f), [&](Index j) { return tracking.far[j] != 0; });
     }
 
     /// A hit as if the surface did not end at its boundary.

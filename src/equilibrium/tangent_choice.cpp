@@ -35,7 +35,8 @@ CondensationCost condensation_cost(const model::Model& model, const model::Conta
     std::vector<char> touched(model.X.size(), 0);
     for (const Index node : contact_nodes(model, pairs, scope)) touched[node] = 1;
     double forces = 0;
-    for (const auto& pair : pairs) forces += 3.0 * static_cast<double>(pair->size());
+    for (const auto& pair : pairs)
+        if (!pair->slaves().edges) forces += 3.0 * static_cast<double>(pair->size()); // few edges of many cross
     CondensationCost cost;
     for (const model::Body& body : model.bodies) {
         const double all = 3.0 * static_cast<double>(body.nodes());

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace osculate::model {
 
@@ -37,11 +38,12 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
     : pair_(other.pair_), discretisation_(other.discretisation_->clone()), search_(other.search_),
       master_(other.master_), inertia_(other.inertia_), held_(other.held_), lambda_start_(other.lambda_start_),
       start_(other.start_), now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_),
-      vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), facets_(other.facets_), faces_(other.faces_),
-      tracking_(other.tracking_), in_force_(other.in_force_), in_force_start_(other.in_force_start_),
-      points_(other.points_), points_at_(other.points_at_), depth_(other.depth_), kept_part_(other.kept_part_),
-      vertices_start_(other.vertices_start_), states_(other.states_), point_nodes_(other.point_nodes_),
-      facet_changes_(other.facet_changes_) {
+      vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), facets_(other.facets_), bulge_(other.bulge_),
+      faces_(other.faces_), tracking_(other.tracking_), in_force_(other.in_force_),
+      in_force_start_(other.in_force_start_), points_(other.points_), points_at_(other.points_at_),
+      depth_(other.depth_), kept_part_(other.kept_part_), vertices_start_(other.vertices_start_),
+      passes_over_(other.passes_over_), clearance_(other.clearance_), left_(other.left_), states_(other.states_),
+      point_nodes_(other.point_nodes_), facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -85,7 +87,7 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
     }
     let_go();
     place(x, tails);
-    start_ = now_;
+    const Places before = std::exchange(start_, now_);
     tails_start_ = tails_;
     tracking_.facet = history.facet;
     lambda_start_ = history.lambda;
@@ -97,19 +99,35 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
         discretisation_->begin(positions(), tracking_, threads);
         return;
     }
-    search_.build(vertices_);
-    const std::optional<OwnSurface>& own = pair_->slaves().own;
-    const double reach = own ? own->reach : std::numeric_limits<double>::max();
-    if (!pair_->slaves().around.empty()) place_facets(x);
-    parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
-        for (Index j = begin; j < end; ++j)
-            if (tracking_.facet[j] < 0 || !contact::is_closed(history.status[j]))
-                tracking_.facet[j] = search_.global(now_.slaves[j], vertices_, reach, choice(j)).facet;
-    });
+    find_facets(x, history, before, threads);
+    clearance_.clear();
+    tracking_.far.clear();
+    if (passes_over_) find_clearances(history);
     facet_start_ = tracking_.facet;
     for (Index j = 0; j < pair_->size(); ++j) in_force_[j] = contact::is_closed(history.status[j]);
     in_force_start_ = in_force_;
     discretisation_->begin(positions(), tracking_, threads);
+}
+
+void ContactEvaluation::find_facets(const std::vector<Vec3>& x, const ContactHistory& history, const Places& before,
+                                    int threads) {
+    if (facet_before_ == history.facet && status_start_ == history.status && before.slaves == start_.slaves &&
+        before.masters == start_.masters) {
+        tracking_.facet = facet_start_;
+        return;
+    }
+    facet_before_ = history.facet;
+    status_start_ = history.status;
+    closest_.assign(points_.size(), {});
+    search_.build(vertices_);
+    if (!pair_->slaves().around.empty()) place_facets(x);
+    parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j)
+            if (tracking_.facet[j] < 0 || !contact::is_closed(history.status[j])) {
+                closest_[j] = search_.global(now_.slaves[j], vertices_, reach(), choice(j));
+                tracking_.facet[j] = closest_[j].facet;
+            }
+    });
 }
 
 void ContactEvaluation::forget_path() {
@@ -139,9 +157,15 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     } else {
         const ScopedTimer timer(timings, Part::search);
         place(x, tails);
+        if (!clearance_.empty()) find_far_nodes();
         const int latch = tracking_.changes_before_latch;
         parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
+                if (is_far(j)) {
+                    hits[j] = {};
+                    hits[j].distance = clearance_[j];
+                    continue;
+                }
                 const Vec3& s = now_.slaves[j];
                 hits[j] = tracking_.changes[j] < latch || facet[j] < 0
                               ? search_.track(s, facet[j], vertices_, tracking_.hysteresis, choice(j))
@@ -151,12 +175,13 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
             }
         });
         for (Index j = 0; j < pair_->size(); ++j)
-            if (hits[j].facet != facet[j]) {
+            if (!is_far(j) && hits[j].facet != facet[j]) {
                 tracking_.changes[j] +=
                     facet[j] < 0 || hits[j].facet < 0 || master_->tells_apart(facet[j], hits[j].facet);
                 facet[j] = hits[j].facet;
                 ++facet_changes_;
             }
+        if (!clearance_.empty()) pass_over_clear_nodes();
     }
     const ScopedTimer timer(timings, Part::contact);
     facet_changes_ += discretisation_->evaluate(positions(), tracking_, points_, threads);
@@ -210,7 +235,10 @@ double ContactEvaluation::moved_since_held(Index j) const {
 double ContactEvaluation::least_gap() const {
     double least = std::numeric_limits<double>::infinity();
     for (Index j = 0; j < pair_->size(); ++j)
-        if (points_[j].found) least = std::min(least, points_[j].gap - kept_depth(j));
+        if (points_[j].found)
+            least = std::min(least, points_[j].gap - kept_depth(j));
+        else if (is_far(j))
+            least = std::min(least, left_[j]);
     return least;
 }
 

@@ -25,6 +25,17 @@ constexpr double deepest_edge = -0.42;
 /// What a contact in force is allowed beyond these bounds, so that it does not end where it holds and begin where it does
 /// not: parts of them, and of the facet size at a boundary.
 constexpr double slack = 0.5, past_end = 0.05;
+/// How far a smooth surface may rise above a facet, in sizes of the largest facet around: where they turn away from each other by
+/// an angle, this part of its tangent, twice what an arc would; and in any case.
+constexpr double bulging = 0.25, always = 0.01;
+/// The same of a filter, which flattens the master over a slave facet of area A: of the tangent, either way, times A over the size.
+constexpr double flattened = 0.25;
+/// Clearance of nodes that are never passed over.
+constexpr double at_once = -std::numeric_limits<double>::max();
+/// A node whose distance to the facet is more than this part above its plane is in front of it.
+constexpr double above = 0.7;
+/// One that is more than this part below it may be inside the master.
+constexpr double below = 0.1;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 } // namespace
 
@@ -48,6 +59,24 @@ void ContactEvaluation::place_facets(const std::vector<Vec3>& x) {
         }
         facets_.normal[f] = n.normalized();
         facets_.centre[f] = c / static_cast<double>(v.size());
+    }
+    const double area = pair_->size() > 0 ? std::ranges::max(pair_->slaves().area) : 0;
+    bulge_.assign(count, 0);
+    for (std::size_t f = 0; f < count; ++f) {
+        const Vec3& n = facets_.normal[f];
+        double size = 0, away = 0, any = 0;
+        for (const Index v : surface.facet_vertices(static_cast<Index>(f)))
+            for (const Index g : surface.vertex_facets(v)) {
+                size = std::max(size, surface.facet_size(g));
+                const Vec3& m = facets_.normal[static_cast<std::size_t>(g)];
+                const double tangent = n.cross(m).norm() < n.dot(m) ? n.cross(m).norm() / n.dot(m) : 1;
+                any = std::max(any, tangent);
+                if (n.dot(facets_.centre[static_cast<std::size_t>(g)] - facets_.centre[f]) < 0)
+                    away = std::max(away, tangent);
+            }
+        bulge_[f] = size * (always + bulging * away);
+        if (averages(pair_->options().discretisation))
+            bulge_[f] += flattened * any * area / surface.facet_size(static_cast<Index>(f));
     }
 }
 
@@ -133,6 +162,57 @@ void ContactEvaluation::end_at_bounds(Index j) {
         hit.beyond = hit.overhang;
     else if (in_force_[j] != 0 && hit.beyond > 0)
         hit.beyond = std::max(0.0, hit.beyond - past_end * pair_->surface().facet_size(hit.facet));
+}
+
+double ContactEvaluation::height(Index j, Index facet) const {
+    const auto around = pair_->surface().facet_vertices(facet);
+    Vec3 n = Vec3::Zero();
+    for (std::size_t c = 2; c < around.size(); ++c)
+        n += (vertices_[around[c - 1]] - vertices_[around[0]]).cross(vertices_[around[c]] - vertices_[around[0]]);
+    return (now_.slaves[j] - vertices_[around[0]]).dot(n.normalized());
+}
+
+void ContactEvaluation::pass_over_clear_nodes() {
+    for (Index j = 0; j < pair_->size(); ++j) {
+        contact::FacetHit& hit = tracking_.hits[j];
+        if (is_far(j) || hit.facet < 0 || clearance_[j] == at_once) continue;
+        const double clear = hit.distance - bulge_[hit.facet];
+        if (!(clear > 0) || !(height(j, hit.facet) > above * hit.distance)) continue;
+        left_[j] = clear;
+        tracking_.far[j] = 1;
+        hit = {};
+        hit.distance = clear;
+    }
+}
+
+void ContactEvaluation::find_clearances(const ContactHistory& history) {
+    const SlaveNodes& slaves = pair_->slaves();
+    // averages of gaps look for facets by themselves
+    if (slaves.around.empty() || pair_->options().discretisation == Discretisation::mortar) return;
+    for (Index j = 0; j < pair_->size(); ++j) {
+        const contact::FacetHit& hit = closest_[j];
+        const bool closed = contact::is_closed(history.status[j]), none = hit.facet < 0;
+        if (closed || watched(j) || (!none && height(j, hit.facet) < -below * hit.distance))
+            clearance_.push_back(at_once);
+        else
+            clearance_.push_back(none ? reach() : hit.distance - bulge_[hit.facet]);
+    }
+    left_ = clearance_;
+    vertices_start_ = vertices_;
+}
+
+void ContactEvaluation::find_far_nodes() {
+    Vec3 mean = Vec3::Zero(); // motion of the master
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+        mean += (vertices_[v] - vertices_start_[v]) / static_cast<double>(vertices_.size());
+    double farthest = 0;
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+        farthest = std::max(farthest, (vertices_[v] - vertices_start_[v] - mean).norm());
+    tracking_.far.assign(clearance_.size(), 0);
+    for (std::size_t j = 0; j < clearance_.size(); ++j) {
+        left_[j] = clearance_[j] - farthest - (now_.slaves[j] - start_.slaves[j] - mean).norm();
+        tracking_.far[j] = left_[j] > 0;
+    }
 }
 
 void ContactEvaluation::drop_what_is_beside() {

@@ -15,7 +15,7 @@ constexpr double into_thickness = 0.15;
 /// How far a surface may move against itself, in mean facet sizes, before pairs within it are looked for anew.
 constexpr double own_sizes = 1.5;
 /// How far a surface may move, in mean facet sizes and in diagonals of its box, before pairs are looked for anew.
-constexpr double sizes = 1, diagonals = 0.15;
+constexpr double sizes = 1, diagonals = 0.05;
 
 Vec3 centre_of(const mesh::Facet& facet, const std::vector<Vec3>& x) {
     Vec3 sum = Vec3::Zero();

@@ -32,8 +32,10 @@ void CollisionCheck::begin_step(const model::State& state) {
     for (std::size_t p = 0; p < contact_.size(); ++p) {
         model::ContactEvaluation& evaluation = contact_[p];
         const model::ContactPair& pair = evaluation.pair();
+        evaluation.pass_over_far_nodes(paths_); // without paths, their gaps at the start tell what they went through
         evaluation.begin_step(x_, state.contact[p], timings_, threads_);
         evaluation.evaluate(x_, timings_, threads_);
+        evaluation.pass_over_far_nodes(true);
         auto& list = starts_.emplace_back(static_cast<std::size_t>(pair.size()));
         for (Index j = 0; j < pair.size(); ++j) {
             const contact::ContactPoint& point = evaluation.point(j);

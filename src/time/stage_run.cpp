@@ -33,7 +33,9 @@ Machinery::Machinery(RunContext& context, const Stage& stage, const equilibrium:
                   context.options.threads, !stage.follower_pressures.empty()),
       solver(equilibrium.size(), context.timings),
       collisions(context.model, equilibrium.contact(), stage.limits, stage.follow_paths, context.timings,
-                 context.options.threads) {}
+                 context.options.threads) {
+    for (model::ContactEvaluation& evaluation : equilibrium.contact()) evaluation.pass_over_far_nodes(true);
+}
 
 StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, StepObserver& observer,
                    const Checkpoint* from)

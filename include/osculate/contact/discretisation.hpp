@@ -29,6 +29,9 @@ struct FacetTracking {
     std::vector<Index> facet;     ///< (slaves) -1: none
     std::vector<int> changes;     ///< (slaves)
     std::vector<FacetHit> hits;   ///< (slaves) closest point on that facet
+    /// (slaves) Whether a node is too far from the master to touch it: it has no hit, and no point. Averages over facets all
+    /// of whose nodes are may be left out. Empty: none is.
+    std::vector<char> far;
 };
 
 /// Contact points of all slave nodes at one set of positions, and their variations. The object made by compile holds

@@ -86,6 +86,8 @@ public:
     /// Finds what of the master slave facet f lies above, and its dual functions there.
     /// @param seeds  master facets to begin with, in any order; the search goes on to neighbours as long as they overlap
     void update(Index f, const PairPositions& at, std::vector<Index> seeds);
+    /// As if slave facet f were above nothing.
+    void leave_out(Index f) { facets_[static_cast<std::size_t>(f)].dual.usable = false; }
     /// D_j, m^2: the area for which slave j stands; 0 where it is not above the master.
     [[nodiscard]] double share(Index j) const;
     /// Appends the vertices that carry the force on j, some of them more than once.

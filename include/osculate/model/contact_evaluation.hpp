@@ -4,6 +4,7 @@
 #include "osculate/core/timing.hpp"
 #include "osculate/model/contact_pair.hpp"
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,6 +30,10 @@ public:
     /// @param tails  (nodes) rounding errors of x, the digits that x lacks, m; empty: none
     void begin_step(const std::vector<Vec3>& x, const ContactHistory& history, Timings& timings, int threads,
                     const std::vector<Vec3>& tails = {});
+    /// Of general contact: from the next begin_step() on, nodes that cannot have touched anything, by how far they and the
+    /// master have moved or by how far they are in front of a facet, have no point. Their gaps stay unknown, all else is as it
+    /// would be.
+    void pass_over_far_nodes(bool on) { passes_over_ = on; }
     /// Facets as at the start of the step again, none latched: what a solve that failed went through does not count.
     void forget_path();
     /// Keeps partners, normals and weights of the last evaluate() from now on, until let_go() or begin_step(): gaps are then linear in
@@ -45,7 +50,8 @@ public:
     /// Area that the force on slave j presses on, m^2: of the reference configuration, and only the part above the
     /// master where the discretisation knows it.
     [[nodiscard]] double area(Index j) const { return discretisation_->loaded_area(j, pair_->slaves().area[j]); }
-    /// Smallest gap of all slave nodes with a contact partner, m, over depths that are kept; infinite if none has one.
+    /// Smallest gap of all slave nodes with a contact partner, m, over depths that are kept; infinite if none has one. A node
+    /// that is passed over counts with what it may move before it is not.
     [[nodiscard]] double least_gap() const;
     /// What presses on the slave side over the force on slave j: 1, and for an edge, whose two ends share it, 1/(1 - s), see
     /// contact::make_edge_discretisation(). Drifts are those of the contact point times this.
@@ -158,6 +164,22 @@ private:
     [[nodiscard]] bool looks_past(Index j) const;
     /// Ends contact of slave j where its facet does, by what the closest point tells; and where general contact ends it.
     void end_at_bounds(Index j);
+    /// How far from a node facets are looked for, m.
+    [[nodiscard]] double reach() const {
+        return pair_->slaves().own ? pair_->slaves().own->reach : std::numeric_limits<double>::max();
+    }
+    /// Facets at the start of an attempt, and closest_: what they were if nothing has changed.
+    /// @param before  positions that these were found for
+    void find_facets(const std::vector<Vec3>& x, const ContactHistory& history, const Places& before, int threads);
+    /// Computes clearance_ from these.
+    void find_clearances(const ContactHistory& history);
+    /// Computes tracking_.far at the positions of the moment.
+    void find_far_nodes();
+    /// Adds nodes in front of their closest facets, by more than that, to tracking_.far.
+    void pass_over_clear_nodes();
+    /// How far slave j is in front of the plane of a facet, m.
+    [[nodiscard]] double height(Index j, Index facet) const;
+    [[nodiscard]] bool is_far(Index j) const { return !tracking_.far.empty() && tracking_.far[j] != 0; }
     void drop_what_is_beside();
     /// Facets to look for slave j on.
     [[nodiscard]] contact::FacetSearch::Choice choice(Index j) const;
@@ -180,12 +202,18 @@ private:
     std::vector<char> held_;      ///< (slaves) in the current stage
     std::vector<Vec3> lambda_start_;
     std::vector<Index> facet_start_;            ///< (slaves) at the start of the step, see forget_path()
-    Places start_, now_;                        ///< positions, m
-    Places tails_start_, tails_;                ///< their rounding errors, m; empty: none
+    std::vector<Index> facet_before_;           ///< (slaves) of the history then
+    std::vector<contact::Status> status_start_; ///< (slaves)
+    std::vector<contact::FacetHit>
+        closest_;                ///< (slaves) closest point of all facets then, of nodes that are not closed
+    Places start_, now_;         ///< positions, m
+    Places tails_start_, tails_; ///< their rounding errors, m; empty: none
     std::vector<Vec3> vertices_, vertex_tails_; ///< current, of the master surface
     struct {
         std::vector<Vec3> normal, centre;
     } facets_; ///< of the master surface at the start of the attempt; empty: not needed, see SlaveNodes::around
+    /// (facets) How far the master surface may rise above each then, m.
+    std::vector<double> bulge_;
     std::vector<std::vector<Vec3>> faces_; ///< (slaves) normals of the facets around each node then
     contact::FacetTracking tracking_;
     /// (slaves) General contact: whether the contact had a point at the last evaluation, or was closed when the attempt
@@ -195,7 +223,12 @@ private:
     std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along
     std::vector<double> depth_;   ///< (slaves) see kept_depth(), NaN for nodes that had no partner then; empty: none
     double kept_part_ = 0;
-    std::vector<Vec3> vertices_start_; ///< of the master surface at the start of the attempt, if depths are kept
+    std::vector<Vec3> vertices_start_; ///< of the master surface at the start of the attempt, of general contact
+    bool passes_over_ = false;         ///< see pass_over_far_nodes()
+    /// (slaves) How far the node and the master may move in the attempt, together, before they could touch, m; negative if they
+    /// may touch. Empty: no node is passed over.
+    std::vector<double> clearance_;
+    std::vector<double> left_;                  ///< (slaves) what is left of it at the last evaluation, m
     std::vector<contact::ContactState> states_; ///< without forces
     std::vector<std::vector<Index>> point_nodes_;
     int facet_changes_ = 0;

@@ -30,7 +30,9 @@ std::string formulation_of(const DeckModel& model, const std::vector<Index>& cel
     std::map<std::string, std::size_t> count;
     for (const Index c : cells)
         ++count[model.mesh.types[static_cast<std::size_t>(model.mesh.type[static_cast<std::size_t>(c)])]];
-    const std::size_t plain = count["C3D8"], modes = count["C3D8I"] + count["C3D8R"];
+    const std::size_t plain = count["C3D8"] + count["C3D20"], modes = count["C3D8I"] + count["C3D8R"];
+    const std::size_t reduced = count["C3D20R"];
+    if (reduced > plain + modes) return "reduced";
     return modes > plain ? "incompatible_modes" : "full";
 }
 

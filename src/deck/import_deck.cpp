@@ -42,7 +42,8 @@ public:
             throw mesh::MeshError(model_.mesh.raw.file,
                                   "no *STEP with *STATIC or *DYNAMIC, which alone have counterparts");
         stages_.resize(model_.steps.size());
-        const std::string bodies = write_bodies(), supports = write_supports(), contact = write_contact();
+        const std::string bodies = write_bodies(), supports = write_supports(), contact = write_contact(),
+                          ties = write_ties();
         DeckLoads(model_, bodies_, sets_, units_, nlgeom_).write(stages_);
         check_strains();
         ImportedScene scene;
@@ -64,6 +65,7 @@ public:
         text += "bodies:\n" + bodies;
         if (!sets_.yaml().empty()) text += "sets:\n" + sets_.yaml();
         if (!supports.empty()) text += "supports:\n" + supports;
+        if (!ties.empty()) text += "ties:\n" + ties;
         if (!contact.empty()) text += "contact:\n" + contact;
         text += "stages:\n";
         for (std::size_t s = 0; s < model_.steps.size(); ++s) text += write_stage(s);
@@ -223,6 +225,7 @@ private:
         std::string text;
         std::set<std::string> taken;
         for (const DeckPair& pair : model_.pairs) {
+            if (is_tied(pair)) continue;
             bool any = false;
             for (std::size_t a = 0; a < bodies_.size(); ++a)
                 for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -258,6 +261,42 @@ private:
             if (!any)
                 model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
                             "no two pieces of the mesh have them: a body in contact with itself has no counterpart");
+        }
+        return text;
+    }
+
+    [[nodiscard]] bool is_tied(const DeckPair& pair) const {
+        const auto law = model_.interactions.find(pair.interaction);
+        return pair.tied || (law != model_.interactions.end() && law->second.tied);
+    }
+
+    std::string write_ties() {
+        std::string text;
+        std::set<std::string> taken;
+        std::vector<DeckPair> ties = model_.ties;
+        std::ranges::copy_if(model_.pairs, std::back_inserter(ties),
+                             [&](const DeckPair& pair) { return is_tied(pair); });
+        for (const DeckPair& tie : ties) {
+            bool any = false;
+            for (std::size_t a = 0; a < bodies_.size(); ++a)
+                for (std::size_t b = 0; b < bodies_.size(); ++b) {
+                    if (a == b || sets_.of_surface(a, tie.slave).empty() || sets_.of_surface(b, tie.master).empty())
+                        continue;
+                    any = true;
+                    if (facets_of(a, tie.slave).empty() || facets_of(b, tie.master).empty()) {
+                        model_.lose(tie.place, "tie of " + tie.slave + " and " + tie.master,
+                                    "nodes that cover no facet of their body cannot be tied");
+                        continue;
+                    }
+                    const std::string slave = sets_.of_surface(a, tie.slave), master = sets_.of_surface(b, tie.master);
+                    text += "  " + fresh_name(slave + "_to_" + master, taken) + ": {slave: " + slave +
+                            ", master: " + master;
+                    if (tie.tolerance > 0) text += ", distance: " + number(units_.length * tie.tolerance) + " m";
+                    text += "}\n";
+                }
+            if (!any)
+                model_.lose(tie.place, "tie of " + tie.slave + " and " + tie.master,
+                            "no two pieces of the mesh have them: surfaces of one body are not tied");
         }
         return text;
     }

@@ -53,7 +53,7 @@ const std::map<std::string, Reason> reasons{
     {"SOLVERCONTROLS", settings},
     {"EQUATION", equations},
     {"MPC", equations},
-    {"TIE", {"there is no tied contact", true}},
+    {"TIE", {"there is no cyclic symmetry", true}},
     {"RIGIDBODY", elastic_only},
     {"PLASTIC", elastic_only},
     {"CYCLICHARDENING", elastic_only},
@@ -129,6 +129,9 @@ private:
         }
         if (word == "FRICTION") return friction(card);
         if (word == "CONTACTPAIR") return pair(card);
+        if (word == "TIE" && given(card, "CYCLICSYMMETRY") == nullptr && given(card, "MULTISTAGE") == nullptr &&
+            given(card, "FLUIDPERIODIC") == nullptr && given(card, "FLUIDCYCLIC") == nullptr)
+            return tie(card);
         if (word == "AMPLITUDE") return amplitude(card);
         if (word == "BOUNDARY") return boundary(card);
         if (word == "CLOAD" && step_ != nullptr) return forces(card);
@@ -253,9 +256,9 @@ private:
             lose(card, "TYPE=" + type + " is not known: node to surface is used instead");
         p.place = deck_.place(card);
         for (const char* name : {"ADJUST", "SMALLSLIDING"})
-            if (card.parameter(name) != nullptr)
+            if (given(card, name) != nullptr)
                 note(card, std::string(name) + ": nodes stay where they are, and slide as far as they do");
-        if (card.parameter("TIED") != nullptr) lose(card, "TIED: surfaces part and slide");
+        p.tied = card.parameter("TIED") != nullptr;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             split_fields(line->text, fields_);
             if (fields_.size() < 2) {
@@ -268,9 +271,32 @@ private:
         }
     }
 
-    /// Contact is linear or exact; what keeps surfaces together is another matter.
+    void tie(const DeckCard& card) {
+        DeckPair p;
+        p.tied = true;
+        p.place = deck_.place(card);
+        double tolerance = 0;
+        if (const std::string* by = given(card, "POSITIONTOLERANCE"); by != nullptr && to_number(*by, tolerance))
+            p.tolerance = tolerance;
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            split_fields(line->text, fields_);
+            if (fields_.size() < 2) {
+                lose(deck_.place(*line), "a tie of one surface", "two surfaces are tied");
+                continue;
+            }
+            p.slave = in_capitals(fields_[0]);
+            p.master = in_capitals(fields_[1]);
+            model_.ties.push_back(p);
+        }
+    }
+
+    /// Contact is linear or exact, or surfaces are tied; what keeps them together, but lets them slide, is another matter.
     void surface_behavior(const DeckCard& card) {
         const std::string law = without_blanks(capitals_of(card, "PRESSURE-OVERCLOSURE"));
+        if (law == "TIED" && model_.interactions.contains(interaction_)) {
+            model_.interactions[interaction_].tied = true;
+            return note(card, "the surfaces are tied exactly");
+        }
         if (law == "TIED" || card.parameter("NOSEPARATION") != nullptr) return lose(card, "surfaces part and slide");
         if (law == "LINEAR" && card.first != card.last && model_.interactions.contains(interaction_)) {
             const std::vector<double> v = numbers(*deck_.begin(card), 1);
@@ -299,11 +325,27 @@ private:
         model_.amplitudes[name] = std::move(rows);
     }
 
+    /// Value of a parameter whose name decks write with blanks or without. @param name  without
+    static const std::string* given(const DeckCard& card, std::string_view name) {
+        for (const auto& [key, value] : card.parameters)
+            if (without_blanks(key) == name) return &value;
+        return nullptr;
+    }
+
     bool amplitude_of(const DeckCard& card, std::string& name) {
         name = capitals_of(card, "AMPLITUDE");
-        if (name.empty() || model_.amplitudes.contains(name)) return true;
-        lose(card, "its amplitude '" + name + "' has no counterpart");
-        return false;
+        const std::string* delay = given(card, "TIMEDELAY");
+        if (name.empty() || (model_.amplitudes.contains(name) && delay == nullptr)) return true;
+        double later = 0;
+        if (!model_.amplitudes.contains(name) || !to_number(*delay, later)) {
+            lose(card, "its amplitude '" + name + "' has no counterpart");
+            return false;
+        }
+        Amplitude rows = model_.amplitudes[name];
+        for (auto& row : rows) row[0] += later;
+        name += " later by " + *delay;
+        model_.amplitudes[name] = std::move(rows);
+        return true;
     }
 
     bool is_new(const DeckCard& card) const { return capitals_of(card, "OP") == "NEW"; }

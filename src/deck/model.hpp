@@ -37,11 +37,14 @@ struct DeckSection {
 struct DeckInteraction {
     double friction = 0, stick = 0; ///< coefficient; stick slope, 0: not given
     double stiffness = 0;           ///< pressure over overclosure; 0: exact
+    bool tied = false;              ///< surfaces do not part
 };
 
 struct DeckPair {
     std::string slave, master, interaction; ///< in capitals
     bool mortar = false;                    ///< surface to surface, and mortar
+    bool tied = false;
+    double tolerance = 0; ///< of a tie's positions; 0: not given
     std::string place;
 };
 
@@ -90,7 +93,7 @@ struct DeckModel {
     std::map<std::string, DeckMaterial> materials; ///< by names in capitals
     std::vector<DeckSection> sections;
     std::map<std::string, DeckInteraction> interactions; ///< by names in capitals
-    std::vector<DeckPair> pairs;
+    std::vector<DeckPair> pairs, ties;
     std::vector<DeckValues> held; ///< in all steps
     std::map<std::string, Amplitude> amplitudes;
     std::vector<DeckStep> steps;

@@ -32,7 +32,18 @@ linear::Dependence coupled_nodes(const model::Model& model, const model::State& 
             dependence.set(node, {{body.reference}, {body.rotation(), -rho, rho}});
         }
     });
+    add_ties(model, dependence);
     return dependence;
+}
+
+void add_ties(const model::Model& model, linear::Dependence& dependence) {
+    for (const model::Tie& tie : model.ties)
+        for (const model::TiedNode& tied : tie.nodes) {
+            std::vector<linear::Dependence::Carrier> carriers;
+            for (const auto& [node, weight] : tied.carriers)
+                carriers.push_back({node, weight * tied.free, weight * tied.free});
+            dependence.set(tied.node, std::move(carriers), Mat3::Identity() - tied.free);
+        }
 }
 
 void start_couplings(const model::Model& model, const linear::Constraints& constraints, model::State& state) {

@@ -24,7 +24,7 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
     : model_(model), pairs_(std::move(pairs)), constraints_(constraints), unknowns_(constraints, slaves_of(pairs_)),
       timings_(timings), bodies_(model, dynamics, follower_pressure, timings, threads),
       contact_(pairs_, constraints, unknowns_, timings, threads),
-      rigid_(model.rigid.empty() ? nullptr : std::make_unique<RigidTerm>(model, constraints, dynamics)),
+      rigid_(model.has_dependent_nodes() ? std::make_unique<RigidTerm>(model, constraints, dynamics) : nullptr),
       terms_(list_of_terms()), tangent_(model, constraints, unknowns_, terms_, bodies_, contact_,
                                         rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
       factorisable_(choice.factorisable) {

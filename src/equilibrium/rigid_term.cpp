@@ -1,5 +1,7 @@
 #include "osculate/equilibrium/rigid_term.hpp"
 
+#include "osculate/equilibrium/coupling_start.hpp"
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <numbers>
@@ -24,6 +26,7 @@ RigidTerm::RigidTerm(const model::Model& model, const linear::Constraints& const
         by_reference_.push_back((body.centre - model.X[place_of(body.reference)]).norm() > apart * body.radius &&
                                 constraints.free_components(body.reference) < 3);
     }
+    add_ties(model, dependence_);
 }
 
 bool RigidTerm::begin(const model::State& state, const Iterate& at, const StepLoad&, double dt) {
@@ -51,6 +54,7 @@ void RigidTerm::place(Field& u) const {
         const Vec3 theta = (u[place_of(body.rotation())] - bodies_[k].angles_start) / body.radius;
         model::spread_displacements(model_, body, model::turned(bodies_[k].start.orientation, theta), u);
     }
+    model::move_tied(model_, u);
 }
 
 Vec3 RigidTerm::centre_arm(const RigidBody& body, const Mat3& R) const {

@@ -76,11 +76,12 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     const bool symmetric = !follows && !couplings && (!dynamic || !model.nonlinear);
     const bool contact = !pairs.empty();
     TangentChoice choice;
-    choice.multigrid = model.rigid.empty() && goes_by_multigrid(model, asked, pays);
+    choice.multigrid = !model.has_dependent_nodes() && goes_by_multigrid(model, asked, pays);
     choice.factorisable = !choice.multigrid || model.nodes() <= most;
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
-    choice.preconditioned = choice.multigrid || ((contact || !symmetric) && asked != LinearSolver::direct);
-    choice.condensed = !model.nonlinear && model.rigid.empty() && !follows && !choice.multigrid && choice.products &&
+    choice.preconditioned = choice.multigrid || ((contact || !symmetric || !model.ties.empty()) && asked != LinearSolver::direct);
+    choice.condensed = !model.nonlinear && !model.has_dependent_nodes() && !follows && !choice.multigrid &&
+                       choice.products &&
                        (asked == LinearSolver::condensed || (asked == LinearSolver::automatic && pays));
     if (choice.condensed) choice.nodes = contact_nodes(model, pairs, scope);
     return choice;

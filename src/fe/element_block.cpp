@@ -12,6 +12,15 @@ namespace osculate::fe {
 
 namespace {
 
+/// Of shapes that are no hexahedra, formulations of these mean nothing.
+template <class E> void refuse(HexFormulation formulation) {
+    if (std::is_same_v<E, Hex8> && formulation == HexFormulation::reduced)
+        throw std::invalid_argument(
+            "reduced is for hex20; a hex8 with one point has no stiffness against hourglass modes");
+    if (std::is_same_v<E, Hex20> && formulation != HexFormulation::full && formulation != HexFormulation::reduced)
+        throw std::invalid_argument("b_bar and incompatible_modes are for hex8; a hex20 is full or reduced");
+}
+
 template <class Material>
 std::unique_ptr<ElementKernel> make(mesh::CellType type, HexFormulation formulation, const Material& material) {
     return with_element(type, [&]<class E>() -> std::unique_ptr<ElementKernel> {
@@ -21,6 +30,10 @@ std::unique_ptr<ElementKernel> make(mesh::CellType type, HexFormulation formulat
                     "incompatible modes are for small strain; at finite strain use b_bar or full");
             if (formulation == HexFormulation::b_bar) return make_finite_strain_kernel<E, Material, true>(material);
         }
+        refuse<E>(formulation);
+        if constexpr (std::is_same_v<E, Hex20>)
+            if (formulation == HexFormulation::reduced)
+                return make_finite_strain_kernel<Hex20Reduced, Material, false>(material);
         return make_finite_strain_kernel<E, Material, false>(material);
     });
 }
@@ -35,6 +48,10 @@ std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation f
             if (formulation == HexFormulation::incompatible_modes)
                 return make_small_strain_kernel<IncompatibleModesHex>(material);
         }
+        refuse<E>(formulation);
+        if constexpr (std::is_same_v<E, Hex20>)
+            if (formulation == HexFormulation::reduced)
+                return make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(material);
         return make_small_strain_kernel<DisplacementStrain<E>>(material);
     });
 }

@@ -4,14 +4,16 @@
 
 namespace osculate::linear {
 
-void Dependence::set(Index node, std::vector<Carrier> carriers) {
+void Dependence::set(Index node, std::vector<Carrier> carriers, const Mat3& rests) {
     Index& place = list_[static_cast<std::size_t>(node)];
     if (place < 0) {
         place = static_cast<Index>(nodes_.size());
         nodes_.push_back(node);
         carriers_.emplace_back();
+        rests_.emplace_back();
     }
     carriers_[static_cast<std::size_t>(place)] = std::move(carriers);
+    rests_[static_cast<std::size_t>(place)] = rests;
 }
 
 void Dependence::move(Field& du) const {
@@ -25,7 +27,7 @@ void Dependence::move(Field& du) const {
 void Dependence::fold(Field& f) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         for (const Carrier& carrier : carriers_[i]) f[carrier.node] += carrier.loads * f[nodes_[i]];
-        f[nodes_[i]].setZero();
+        f[nodes_[i]] = (rests_[i] * f[nodes_[i]]).eval();
     }
 }
 

@@ -110,7 +110,8 @@ struct Filling {
 constexpr Filling fillings[] = {{CellType::tet4, append_tets},
                                 {CellType::wedge6, append_wedges},
                                 {CellType::hex8, append_hex},
-                                {CellType::tet10, append_tets}};
+                                {CellType::tet10, append_tets},
+                                {CellType::hex20, append_hex}};
 
 const Filling& filling_of(CellType type) {
     const auto* const found = std::ranges::find(fillings, type, &Filling::type);
@@ -141,6 +142,29 @@ void name_sides(const StructuredGrid& grid, Mesh& mesh) {
         const auto side = std::find(on.begin(), on.end(), true) - on.begin();
         mesh.surfaces[grid.sides.at(static_cast<std::size_t>(side))].push_back(facet);
     }
+}
+
+/// Removes nodes of the grid that no element has, as those midway in the faces of serendipity elements.
+void remove_unused_nodes(Mesh& mesh) {
+    std::vector<Index> number(mesh.nodes.size(), -1);
+    for (const ElementBlock& block : mesh.blocks)
+        for (const Index node : block.connectivity) number[static_cast<std::size_t>(node)] = 0;
+    if (std::ranges::find(number, -1) == number.end()) return;
+    Index used = 0;
+    for (std::size_t node = 0; node < number.size(); ++node)
+        if (number[node] == 0) {
+            mesh.nodes[static_cast<std::size_t>(used)] = mesh.nodes[node];
+            number[node] = used++;
+        }
+    mesh.nodes.resize(static_cast<std::size_t>(used));
+    for (ElementBlock& block : mesh.blocks)
+        for (Index& node : block.connectivity) node = number[static_cast<std::size_t>(node)];
+    for (auto& [name, facets] : mesh.surfaces)
+        for (Facet& facet : facets)
+            for (int c = 0; c < facet.count; ++c) {
+                Index& node = facet.nodes[static_cast<std::size_t>(c)];
+                node = number[static_cast<std::size_t>(node)];
+            }
 }
 
 } // namespace
@@ -198,6 +222,7 @@ Mesh mesh_grid(const StructuredGrid& grid, CellType element, BlockPattern patter
     for (ElementBlock& block : blocks)
         if (block.size() > 0) mesh.blocks.push_back(std::move(block));
     name_sides(grid, mesh);
+    remove_unused_nodes(mesh);
     return mesh;
 }
 

@@ -276,6 +276,23 @@ public:
         }
     }
 
+    void check_ties(const Scene& scene) {
+        for (const auto& [name, tie] : scene.ties) {
+            for (const auto& [key, set_name] : {std::pair{"slave", tie.slave}, std::pair{"master", tie.master}}) {
+                const SetSpec* set = find(scene.sets, set_name);
+                const Body* body = set != nullptr ? find(scene.bodies, set->body) : nullptr;
+                if (body != nullptr && body->rigid)
+                    fault({"ties", name, key},
+                          "a surface of a body that deforms; couplings and contact hold others to rigid bodies",
+                          "a surface of rigid body '" + set->body + "'");
+            }
+            const SetSpec *slave = find(scene.sets, tie.slave), *master = find(scene.sets, tie.master);
+            if (slave != nullptr && master != nullptr && slave->body == master->body)
+                fault({"ties", name, "master"}, "a surface of another body than the slave's",
+                      "two surfaces of '" + slave->body + "'");
+        }
+    }
+
     void check_motion(const std::string& name, const Stage& stage, const Scene& scene) {
         /// What holds components for the whole run, and where it is written.
         struct Held {
@@ -445,6 +462,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     for (const auto& [name, body] : scene.bodies) rules.check_rigid(name, body);
     rules.check_rigid_sets(scene);
     rules.check_couplings(scene);
+    rules.check_ties(scene);
     rules.check_held(scene);
     rules.check_exact_masters(scene);
     for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene);

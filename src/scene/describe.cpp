@@ -490,6 +490,8 @@ void describe(Visitor& v, Scene& scene) {
            .meaning = "Sets of nodes that follow reference points; stages move and load these by the couplings' names.",
            .item = "coupling"},
           scene.couplings, group);
+    named(v, {.name = "ties", .meaning = "Surfaces that are glued to each other for the whole run.", .item = "tie"},
+          scene.ties, group);
     Entries pairs = entries_of(scene.contact, group);
     bool general = scene.general.has_value();
     GeneralContact all = scene.general.value_or(GeneralContact{});

@@ -350,9 +350,11 @@ void describe(Visitor& v, Body& body) {
     bool has_material = body.has_material;
     v.optional_group(law, has_material, material);
     body.has_material = has_material;
-    static const Words formulations{"full", "b_bar", "incompatible_modes"};
-    word(v, {.name = "hex_formulation", .meaning = "Formulation of the body's hexahedra."}, formulations,
-         body.hex_formulation);
+    static const Words formulations{"full", "b_bar", "incompatible_modes", "reduced"};
+    word(v,
+         {.name = "hex_formulation",
+          .meaning = "Formulation of the body's hexahedra. b_bar and incompatible_modes: of hex8; reduced: of hex20."},
+         formulations, body.hex_formulation);
     v.text({.name = "finish",
             .meaning = "Name of its surface, for the friction between finishes in contact.general.pairs.",
             .names = Names::identifier},

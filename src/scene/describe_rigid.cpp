@@ -1,4 +1,4 @@
-/// Descriptions of what moves as one: rigid bodies and couplings.
+/// Descriptions of what moves as one: rigid bodies, couplings and ties.
 
 #include "scene/describe_parts.hpp"
 
@@ -148,6 +148,23 @@ void describe(Visitor& v, Coupling& coupling) {
                    "Components of the reference point's displacement (x, y, z) and of the rotation (rx, ry, rz) held "
                    "at zero for the whole run.",
                    coupling.fixed);
+}
+
+void describe(Visitor& v, Tie& tie) {
+    v.text({.name = "slave",
+            .meaning = "Surface whose nodes follow the other: that of the finer or softer body.",
+            .required = true,
+            .names = Names::set},
+           tie.slave);
+    v.text({.name = "master", .meaning = "Surface that they follow.", .required = true, .names = Names::set},
+           tie.master);
+    v.optional_number(
+        {.name = "distance",
+         .meaning = "Nodes that are farther from the master are not tied. Others are moved onto it, without strain.",
+         .unit = dimension::length,
+         .range = range::positive,
+         .default_text = "a quarter of the master's facet size"},
+        tie.distance);
 }
 
 } // namespace osculate::scene

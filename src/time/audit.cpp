@@ -39,6 +39,7 @@ Audit::Audit(const model::Model& model)
     for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
     if (model.general)
         std::erase_if(drawn_, [&](const auto& one) { return model.general->meet(one.first.first, one.first.second); });
+    for (const model::Tie& tie : model.ties) tied_.insert(ordered(tie.slave_body, tie.master_body));
     for (const auto& pair : model.pairs) // contact lifts what overlaps
         drawn_.erase(ordered(model::body_index(model, pair->slaves().node.front()),
                              model::body_index(model, pair->master_nodes().front())));
@@ -55,6 +56,7 @@ std::optional<contact::Intrusion> Audit::deepest() const {
     std::optional<contact::Intrusion> worst;
     for (contact::Intrusion one : result_.intrusions) {
         if (model_.general && model_.general->pass_through(one.body, one.other)) continue;
+        if (tied_.contains(ordered(one.body, one.other))) continue;
         const auto drawn = drawn_.find(ordered(one.body, one.other));
         if (drawn != drawn_.end()) one.excess = std::max(0.0, one.excess - drawn->second);
         if (!worst || one.relative() > worst->relative()) worst = one;

@@ -41,9 +41,12 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
         reaction_of[static_cast<std::size_t>(model.rigid[k].body)] += reaction + load[r] - inertia;
         balance.acting += reaction.norm() + load[r].norm() + inertia.norm();
     }
+    const std::vector<Index> group = model::tied_groups(model);
+    std::vector<Vec3> sum_of(model.bodies.size(), Vec3::Zero()); // of a group
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const model::Body& body = model.bodies[b];
-        Vec3 sum = reaction_of[b];
+        Vec3& sum = sum_of[static_cast<std::size_t>(group[b])];
+        sum += reaction_of[b];
         for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node) {
             const auto i = static_cast<std::size_t>(node);
             const Vec3 reaction = equilibrium.constraints().reaction(node, unbalanced[i]);
@@ -51,8 +54,8 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
             sum += reaction + load[i] + other + contact[i];
             balance.acting += reaction.norm() + load[i].norm() + other.norm() + contact[i].norm();
         }
-        balance.left_over = std::max(balance.left_over, sum.norm());
     }
+    for (const Vec3& sum : sum_of) balance.left_over = std::max(balance.left_over, sum.norm());
     balance.acting = std::max(balance.acting, equilibrium.reference_force());
     return balance;
 }

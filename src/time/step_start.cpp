@@ -305,6 +305,7 @@ void start_motion(RunContext& context, const Stage& stage, const linear::Constra
             if (const auto* c = constraints.constraint(node, k); c != nullptr && !c->driven) v(k) = 0;
         state.v[node] = constraints.to_global(node, v);
     }
+    model::move_tied(model, state.v);
     equilibrium::start_couplings(model, constraints, state);
     equilibrium::add_follower_forces(load.pressures, model, state.u, load.force);
     state.a = initial_acceleration(context, stage, constraints, state, load.force);
@@ -389,6 +390,7 @@ double reference_force(const RunContext& context, const Stage& stage, const line
         const Vec3 theta = (u[t] - state.u[t]) / body.radius;
         model::spread_displacements(model, body, model::turned(state.rigid[k].orientation, theta), u);
     }
+    model::move_tied(model, u);
     const double driven = norm(model::internal_force(model, {state.u, u, state.material}, options.threads)) / part;
     return std::max(driven, round_off);
 }

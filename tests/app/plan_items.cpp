@@ -37,6 +37,7 @@ stiffness                    x x x x x x x x x x x x x x
 nonlinear elements           . . . x . . . . . . . . . .
 rigid bodies                 . . . . . . . . . . . . . .
 couplings                    . . . . . . . . . . . . . .
+ties                         . . . . . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .

@@ -74,6 +74,32 @@ TEST_F(Importing, LinearOverclosureAndStickSlopeAreThoseOfTheDeck) {
     ASSERT_TRUE(pair.stick_stiffness);
 }
 
+TEST_F(Importing, DelaysShiftAmplitudes) {
+    const scene::Scene scene = checked(import("*AMPLITUDE, NAME=Up\n0.,0.,1.,2.\n*STEP\n*STATIC\n1.,2.\n"
+                                              "*CLOAD, AMPLITUDE=up, TIME DELAY=0.5\nLid,3,-1.\n*END STEP\n"));
+    const auto& force = scene.stages.at(0).second.nodal_force;
+    ASSERT_FALSE(force.empty());
+    const auto& rows = std::get<scene::Table>(force[0].second[2].form).rows;
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_DOUBLE_EQ(rows[0][0], 0.5);
+    EXPECT_DOUBLE_EQ(rows[1][0], 1.5);
+}
+
+TEST_F(Importing, TiesAndTiedPairsAreTies) {
+    const ImportedScene tie = import("*TIE, NAME=T, POSITION TOLERANCE=0.5\nUnder,Over\n" + pressed);
+    EXPECT_THAT(tie.lost, IsEmpty());
+    const scene::Scene scene = checked(tie);
+    ASSERT_EQ(scene.ties.size(), 1u);
+    EXPECT_EQ(scene.ties[0].second.slave, scene.contact.at(0).second.slave);
+    EXPECT_DOUBLE_EQ(scene.ties[0].second.distance.value(), 0.5e-3);
+    // the pair's own law
+    const ImportedScene law = import("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1E7\n" + pressed);
+    EXPECT_THAT(law.lost, IsEmpty());
+    EXPECT_THAT(law.notes, Contains(HasSubstr("the surfaces are tied exactly")));
+    EXPECT_EQ(checked(law).ties.size(), 1u);
+    EXPECT_TRUE(checked(law).contact.empty());
+}
+
 TEST_F(Importing, DrivenNodesFollowTheirSteps) {
     const scene::Scene scene = checked(import("*AMPLITUDE, NAME=Up\n0.,0.,1.,2.,\n2.,1.\n"
                                               "*STEP\n*STATIC\n1.,2.\n*BOUNDARY, AMPLITUDE=up\n15,3,3,-.5\n*END STEP\n"
@@ -159,9 +185,9 @@ TEST_F(Importing, TellsWhatIsLostFromWhatBodiesDoWithout) {
     const auto lost = [&](const std::string& model_data) { return import(model_data + pressed).lost; };
     EXPECT_THAT(lost(""), IsEmpty());
     for (const char* card :
-         {"*TIE, NAME=T\nUnder,Over\n", "*TEMPERATURE\nAll,20.\n", "*SPRING, ELSET=S\n\n100.\n",
+         {"*TIE, CYCLIC SYMMETRY, NAME=T\nUnder,Over\n", "*TEMPERATURE\nAll,20.\n", "*SPRING, ELSET=S\n\n100.\n",
           "*INITIAL CONDITIONS, TYPE=VELOCITY\nAll,3,-1.\n", "*MATERIAL, NAME=P\n*PLASTIC\n100.,0.\n",
-          "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1E7\n", "*BOUNDARY\nNone,1\n"})
+          "*SURFACE BEHAVIOR, NO SEPARATION\n", "*BOUNDARY\nNone,1\n"})
         EXPECT_EQ(lost(card).size(), 1u) << card;
     for (const char* card : {"*RESTART, WRITE\n", "*TIME POINTS, NAME=T\n1.\n", "*CONTROLS, PARAMETERS=FIELD\n.005\n",
                              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nAll,20.\n"})
@@ -185,7 +211,7 @@ TEST_F(Importing, KeywordsNeedNoBlanks) {
 }
 
 TEST_F(Importing, AScenePutsItsLossesFirst) {
-    const std::string text = import("*TIE, NAME=T\nUnder,Over\n" + pressed).text;
+    const std::string text = import("*TIE, CYCLIC SYMMETRY, NAME=T\nUnder,Over\n" + pressed).text;
     EXPECT_LT(text.find("# Lost:\n#   "), text.find("*TIE"));
     EXPECT_LT(text.find("*TIE"), text.find("# Not as in the deck:\n#   "));
 }

@@ -31,6 +31,8 @@ inline const std::vector<ElementCase> all_cases{
     {"tet4", mesh::CellType::tet4, HexFormulation::full},
     {"wedge6", mesh::CellType::wedge6, HexFormulation::full},
     {"tet10", mesh::CellType::tet10, HexFormulation::full},
+    {"hex20", mesh::CellType::hex20, HexFormulation::full},
+    {"hex20_reduced", mesh::CellType::hex20, HexFormulation::reduced},
 };
 
 inline std::ostream& operator<<(std::ostream& stream, const ElementCase& c) {
@@ -150,6 +152,8 @@ struct Grid {
     [[nodiscard]] Eigen::Matrix3Xd solve(const std::vector<bool>& fixed, const Eigen::Matrix3Xd& u,
                                          const Eigen::Matrix3Xd& f) const {
         Matrix K = stiffness();
+        for (int d = 0; d < X.size(); ++d)
+            if (K.col(d).isZero(0)) K(d, d) = 1; // of a node that no cell has
         Vector rhs = f.reshaped();
         for (int d = 0; d < X.size(); ++d) {
             if (fixed[std::size_t(d)]) rhs -= K.col(d) * u(d % 3, d / 3);

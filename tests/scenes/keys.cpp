@@ -48,6 +48,23 @@ TEST(MeshKeys, ContactorStandsWhereItsSizesSay) {
     EXPECT_EQ(mesh.blocks.front().type, mesh::CellType::tet10);
 }
 
+TEST(MeshKeys, SerendipityHexahedraHaveNoOtherNodes) {
+    // corners and edges of 4 x 2 x 1 and 8 x 2 x 1 elements, and of one
+    for (const auto& [text, nodes] :
+         {std::pair{
+              "{contactor: {radius: 5 m, width: 2 m, length: 3 m, height: 0.5 m, rear: -1 m, divisions: [4, 2, 1], "
+              "element: hex20}}",
+              5 * 3 * 2 + 4 * 3 * 2 + 5 * 2 * 2 + 5 * 3},
+          std::pair{
+              "{half_tube: {inner_radius: 2 m, thickness: 0.5 m, length: 3 m, divisions: [8, 2, 1], element: hex20}}",
+              9 * 3 * 2 + 8 * 3 * 2 + 9 * 2 * 2 + 9 * 3},
+          std::pair{"{block: {size: [1 m, 2 m, 3 m], divisions: [1, 1, 1], element: hex20}}", 20}}) {
+        const mesh::Mesh mesh = mesh_of(text);
+        EXPECT_EQ(mesh.blocks.front().type, mesh::CellType::hex20);
+        EXPECT_EQ(mesh.node_count(), nodes) << text;
+    }
+}
+
 TEST(MeshKeys, HalfTubeHasItsRadii) {
     const mesh::Mesh mesh = mesh_of(
         "{half_tube: {inner_radius: 2 m, thickness: 0.5 m, length: 3 m, divisions: [8, 2, 1], element: tet10}}");

@@ -86,10 +86,10 @@ INSTANTIATE_TEST_SUITE_P(
                 {"36:10: gravity: expected a list of three, each an acceleration (m/s^2) in [-1e+09, 1e+09], found "
                  "'-9.81 m/s^2'"}},
         Refusal{"half_a_step", {"42:12: stages.pull.steps: expected a whole number in [1, 1e+06], found '2.5'"}},
-        Refusal{
-            "key_one_level_too_high",
-            {"46:1: pressure: expected one of the keys name, description, bodies, sets, supports, couplings, contact, "
-             "gravity, stages, solver, output, expect, found unknown key 'pressure'"}},
+        Refusal{"key_one_level_too_high",
+                {"46:1: pressure: expected one of the keys name, description, bodies, sets, supports, couplings, ties, "
+                 "contact, "
+                 "gravity, stages, solver, output, expect, found unknown key 'pressure'"}},
         Refusal{"incompressible",
                 {"9:39: bodies.base.material.linear_elastic.nu: expected a number in (-1, 0.5), found '0.5'"}},
         Refusal{"unit_of_another_kind",

@@ -6,8 +6,9 @@ namespace osculate {
 /// How a hexahedron avoids locking. `full`: not at all. `b_bar`: mean dilatation, against locking in near
 /// incompressibility; a single element through the thickness is too soft in bending; at finite strain this is F-bar.
 /// `incompatible_modes`: internal bending modes, against locking in bending, and also in near incompressibility unless
-/// elements are badly distorted; small strain only.
-enum class HexFormulation { full, b_bar, incompatible_modes };
+/// elements are badly distorted; small strain only. These two are for hex8. `reduced`: 2 x 2 x 2 points for a hex20,
+/// against locking of both kinds.
+enum class HexFormulation { full, b_bar, incompatible_modes, reduced };
 
 /// Where gaps are measured and how forces reach the master. `node`: at the slave nodes, by the weights of the smooth
 /// surface there. `mortar`: both averaged over the slave facets. `petrov_galerkin`: gaps at the slave nodes, forces

@@ -10,6 +10,7 @@ namespace osculate::fe {
 /// possible.
 template <ReferenceElement E> struct StressField { using Element = E; };
 template <> struct StressField<Tet10> { using Element = Tet4; };
+template <> struct StressField<Hex20Reduced> { using Element = Hex8; };
 
 /// Matrix (nodes x points) from point values to nodal values. Exact for a field in the span of the stress field's shape
 /// functions if there are as many points as functions; the mean if there is one point.

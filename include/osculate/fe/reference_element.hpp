@@ -178,6 +178,86 @@ struct Tet10 {
     }
 };
 
+/// Quadratic serendipity hexahedron on the same cube as Hex8, midside nodes on the edges 01, 12, 23, 30, 45, 56, 67, 74, 04,
+/// 15, 26, 37; 3 x 3 x 3 Gauss points.
+struct Hex20 {
+    static constexpr int nodes = 20;
+    static constexpr int degree = 2;
+    static constexpr int points = 27;
+    static constexpr int mass_points = 27;
+    using Shape = Eigen::Matrix<double, nodes, 1>;
+    using Gradient = Eigen::Matrix<double, nodes, 3>;
+    using Positions = Eigen::Matrix<double, 3, nodes>;
+    static constexpr int edges[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                         {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+
+    static Positions node_positions() {
+        Positions c;
+        c.leftCols<8>() = Hex8::node_positions();
+        for (int m = 0; m < 12; ++m) c.col(8 + m) = (c.col(edges[m][0]) + c.col(edges[m][1])) / 2;
+        return c;
+    }
+
+    static bool contains(const Vec3& xi, double tolerance) { return Hex8::contains(xi, tolerance); }
+
+    /// N_a = (1 + xi_a xi) (1 + eta_a eta) (1 + zeta_a zeta) (xi_a xi + eta_a eta + zeta_a zeta - 2) / 8 at a corner; midway
+    /// along xi (1 - xi^2) (1 + eta_a eta) (1 + zeta_a zeta) / 4, the others likewise
+    static Shape shape(const Vec3& xi) {
+        const Positions c = node_positions();
+        Shape N;
+        for (int a = 0; a < nodes; ++a) {
+            const Vec3 along = c.col(a).cwiseProduct(xi);
+            if (a < 8)
+                N[a] = (Vec3::Ones() + along).prod() * (along.sum() - 2) / 8;
+            else {
+                N[a] = 0.25;
+                for (int k = 0; k < 3; ++k) N[a] *= c(k, a) == 0 ? 1 - xi[k] * xi[k] : 1 + along[k];
+            }
+        }
+        return N;
+    }
+
+    static Gradient gradient(const Vec3& xi) {
+        const Positions c = node_positions();
+        Gradient dN;
+        for (int a = 0; a < nodes; ++a) {
+            const Vec3 along = c.col(a).cwiseProduct(xi);
+            Vec3 f, df; // factors and their derivatives
+            for (int k = 0; k < 3; ++k) {
+                f[k] = c(k, a) == 0 ? 1 - xi[k] * xi[k] : 1 + along[k];
+                df[k] = c(k, a) == 0 ? -2 * xi[k] : c(k, a);
+            }
+            const Vec3 others(f[1] * f[2], f[2] * f[0], f[0] * f[1]);
+            if (a < 8)
+                dN.row(a) = (df.cwiseProduct(others) * (along.sum() - 2) + f.prod() * c.col(a)).transpose() / 8;
+            else
+                dN.row(a) = df.cwiseProduct(others).transpose() / 4;
+        }
+        return dN;
+    }
+
+    static std::array<QuadraturePoint, points> quadrature() {
+        const double g = std::sqrt(0.6);
+        const std::array<double, 3> at{-g, 0, g}, weight{5.0 / 9, 8.0 / 9, 5.0 / 9};
+        std::array<QuadraturePoint, points> rule;
+        std::size_t q = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t j = 0; j < 3; ++j)
+                for (std::size_t i = 0; i < 3; ++i)
+                    rule[q++] = {{at[i], at[j], at[k]}, weight[i] * weight[j] * weight[k]};
+        return rule;
+    }
+
+    static std::array<QuadraturePoint, mass_points> mass_quadrature() { return quadrature(); }
+};
+
+/// The same with the points of Hex8 for stiffness and stress: softer in bending and near incompressibility. An element by
+/// itself has six modes without energy, which neighbours or supports hold.
+struct Hex20Reduced : Hex20 {
+    static constexpr int points = Hex8::points;
+    static std::array<QuadraturePoint, points> quadrature() { return Hex8::quadrature(); }
+};
+
 /// Linear wedge: triangle (r, s) times line t in [-1, 1]; 3 x 2 points, exact for its volume and its body forces. In
 /// VTK's order the normal of the triangle (0, 1, 2) points out of the element, so node 1 is on the s axis and node 2 on
 /// r.
@@ -228,6 +308,7 @@ struct Wedge6 {
     static std::array<QuadraturePoint, mass_points> mass_quadrature() { return quadrature(); }
 };
 
-static_assert(ReferenceElement<Hex8> && ReferenceElement<Tet4> && ReferenceElement<Wedge6> && ReferenceElement<Tet10>);
+static_assert(ReferenceElement<Hex8> && ReferenceElement<Tet4> && ReferenceElement<Wedge6> && ReferenceElement<Tet10> &&
+              ReferenceElement<Hex20> && ReferenceElement<Hex20Reduced>);
 
 } // namespace osculate::fe

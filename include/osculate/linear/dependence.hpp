@@ -9,8 +9,8 @@
 namespace osculate::linear {
 
 /// A node i moves with its carriers a, and the forces on it act on them:
-///     du_i = sum_a moves_ia du_a,    f_a += loads_ia f_i.
-/// loads is the transpose of moves where forces and motions belong to the same instant; it differs from it where forces
+///     du_i = sum_a moves_ia du_a,    f_a += loads_ia f_i,    f_i <- rests_i f_i.
+/// What rests is zero, but for nodes that something else holds along some directions. loads is the transpose of moves where forces and motions belong to the same instant; it differs from it where forces
 /// are means over a step.
 class Dependence {
 public:
@@ -22,7 +22,7 @@ public:
     /// @param nodes  number of all nodes, none of which depends on others yet
     explicit Dependence(Index nodes) : list_(static_cast<std::size_t>(nodes), -1) {}
     /// Sets the carriers of a node. They must not depend on others.
-    void set(Index node, std::vector<Carrier> carriers);
+    void set(Index node, std::vector<Carrier> carriers, const Mat3& rests = Mat3::Zero());
 
     [[nodiscard]] bool empty() const { return nodes_.empty(); }
     [[nodiscard]] bool depends(Index node) const { return list_[static_cast<std::size_t>(node)] >= 0; }
@@ -35,7 +35,7 @@ public:
 
     /// Sets the motions of dependent nodes from those of their carriers, (all nodes) global components.
     void move(Field& du) const;
-    /// Moves the forces on dependent nodes to their carriers; nothing remains on them. (all nodes) global components.
+    /// Moves the forces on dependent nodes to their carriers; on them there is what rests. (all nodes) global components.
     void fold(Field& f) const;
     /// The same for sums of absolute values.
     void fold_magnitudes(Field& sums) const;
@@ -44,6 +44,7 @@ private:
     std::vector<Index> list_; ///< (all nodes) number among the dependent nodes, -1: independent
     std::vector<Index> nodes_;
     std::vector<std::vector<Carrier>> carriers_; ///< (dependent nodes)
+    std::vector<Mat3> rests_;                    ///< (dependent nodes)
 };
 
 /// A point of contact between a slave node and master nodes, of which some depend on others: the nodes that take their

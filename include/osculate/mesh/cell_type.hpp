@@ -12,12 +12,13 @@
 
 namespace osculate::mesh {
 
-/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA). Note the
-/// wedge: the right-handed normal of its triangle (0, 1, 2) points out of the element, away from (3, 4, 5). Nodes 4 to
-/// 9 of a tet10 are the midpoints of the edges 01, 12, 20, 03, 13, 23.
-enum class CellType { tet4, wedge6, hex8, tet10 };
+/// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA,
+/// VTK_QUADRATIC_HEXAHEDRON). Note the wedge: the right-handed normal of its triangle (0, 1, 2) points out of the element,
+/// away from (3, 4, 5). Nodes 4 to 9 of a tet10 are the midpoints of the edges 01, 12, 20, 03, 13, 23; nodes 8 to 19 of a
+/// hex20 those of 01, 12, 23, 30, of 45, 56, 67, 74, and of 04, 15, 26, 37.
+enum class CellType { tet4, wedge6, hex8, tet10, hex20 };
 
-inline constexpr int most_nodes_per_cell = 10;
+inline constexpr int most_nodes_per_cell = 20;
 using NodeOrder = std::array<int, most_nodes_per_cell>; ///< entry i: number of our node i in the other order
 
 struct CellInfo {
@@ -36,7 +37,8 @@ struct CellInfo {
     std::span<const LocalFace> deck_faces;     ///< S1, S2, ... by their corners, in our local nodes
     std::span<const std::array<int, 2>> edges; ///< with the midside nodes, in their order
     /// Of every corner, ordered so that the triple product of the edges to them is positive in a well-shaped element.
-    /// One corner of a straight tetrahedron stands for all; none of a tet10, of which mesh::bad_corner sees all nodes.
+    /// One corner of a straight tetrahedron stands for all; none of a tet10, of which mesh::bad_corner sees all nodes. Of a
+    /// hex20 they see the corners alone; fe::bad_jacobians sees the rest.
     std::span<const std::array<int, 3>> corner_neighbours;
 
     [[nodiscard]] constexpr int corners() const { return nodes - static_cast<int>(edges.size()); }
@@ -73,6 +75,9 @@ inline constexpr LocalFace hex_deck_faces[] = {{{0, 1, 2, 3}, 4}, {{4, 7, 6, 5},
 inline constexpr std::array<int, 3> hex_corners[] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
                                                      {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
 
+inline constexpr std::array<int, 2> hex_edges[] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                                   {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+
 constexpr int midway(std::span<const std::array<int, 2>> edges, int corners, int a, int b) {
     for (std::size_t e = 0; e < edges.size(); ++e)
         if ((edges[e][0] == a && edges[e][1] == b) || (edges[e][0] == b && edges[e][1] == a))
@@ -106,6 +111,7 @@ constexpr auto in_pieces(const LocalFace (&faces)[n], std::span<const std::array
     return result;
 }
 inline constexpr auto tet10_facets = in_pieces<4>(tet_faces, tet_edges, 4);
+inline constexpr auto hex20_facets = in_pieces<5>(hex_faces, hex_edges, 8);
 
 // The first triangle of a wedge in decks and in Gmsh faces inward; ours faces outward.
 inline constexpr CellInfo list[] = {
@@ -169,6 +175,21 @@ inline constexpr CellInfo list[] = {
      tet_deck_faces,
      tet_edges,
      {}},
+    {CellType::hex20,
+     "hex20",
+     "hexahedron20",
+     20,
+     25,
+     17,
+     {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15},
+     {"C3D20", "C3D20R"},
+     {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19},
+     {4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11, 16, 17, 18, 19},
+     hex_faces,
+     hex20_facets,
+     hex_deck_faces,
+     hex_edges,
+     hex_corners},
 };
 
 } // namespace cells

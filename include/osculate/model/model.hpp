@@ -36,12 +36,30 @@ struct Set {
     std::vector<mesh::Facet> facets;
 };
 
+/// A node of a tied surface. It moves as the tie says but for the directions along which it is held:
+///     u = free sum_a weight_a u_a
+struct TiedNode {
+    Index node = -1;
+    std::vector<std::pair<Index, double>> carriers; ///< nodes of the other surface, and weights that sum to 1
+    Mat3 free = Mat3::Identity();                   ///< projector on the directions along which nothing holds the node
+};
+
+/// Two surfaces that move as one.
+struct Tie {
+    std::string name;
+    Index slave_body = -1, master_body = -1;
+    std::vector<TiedNode> nodes;
+    double adjusted = 0; ///< largest distance by which a node was moved onto the other surface, m
+    Index left_out = 0;  ///< nodes of the slave that are too far from the master, or beside it
+};
+
 struct Model {
     std::vector<Body> bodies;
     Vec3 origin = Vec3::Zero(); ///< position of X = 0 in the scene's coordinates, m; saves digits far from their zero
     Field X; ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m; at the end the two
              ///< nodes of each rigid body and coupling, both at its reference point
     std::vector<RigidBody> rigid; ///< what is special about the rigid ones of the bodies; then couplings
+    std::vector<Tie> ties;
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
     std::shared_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
@@ -54,9 +72,15 @@ struct Model {
     Field initial_velocity; ///< (nodes) m/s; empty if no stage is dynamic
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
+    /// Whether some nodes follow others, see dependent_nodes().
+    [[nodiscard]] bool has_dependent_nodes() const { return !rigid.empty() || !ties.empty(); }
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
+/// Displacements of tied nodes from those of the nodes that they follow.
+void move_tied(const Model& model, Field& u);
+/// (bodies) A number that bodies share which are tied to each other.
+[[nodiscard]] std::vector<Index> tied_groups(const Model& model);
 /// Number of the body of a global node, and the body; -1 and null for node -1.
 [[nodiscard]] Index body_index(const Model& model, Index node);
 [[nodiscard]] const Body* body_of(const Model& model, Index node);

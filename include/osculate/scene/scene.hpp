@@ -414,6 +414,13 @@ struct Coupling {
     bool operator==(const Coupling&) const = default;
 };
 
+/// Two surfaces that move as one.
+struct Tie {
+    std::string slave, master;      ///< sets
+    std::optional<double> distance; ///< m; none: a part of the master's facet size
+    bool operator==(const Tie&) const = default;
+};
+
 struct Scene {
     std::string name;            ///< valid as file name: letters, digits, _ and -
     std::string description;     ///< free text
@@ -423,6 +430,7 @@ struct Scene {
     Named<SetSpec> sets;
     Named<Support> supports; ///< keyed by set
     Named<Coupling> couplings;
+    Named<Tie> ties;
     std::optional<GeneralContact> general; ///< contact.general
     Named<Pair> contact;                   ///< the other keys of contact
     Named<Stage> stages;

@@ -191,6 +191,13 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
         out, "estimate, mostly within a factor of {:.0f} where no step is cut: {} of one processor, {} of memory\n",
         Estimate::factor, seconds_in_words(check.cost.seconds), bytes_in_words(check.cost.bytes));
     for (const PairCheck& pair : check.pairs) say_pair(plan.model, pair, text);
+    for (const model::Tie& tie : plan.model.ties) {
+        fmt::format_to(out, "tie {}: {} nodes follow, moved by up to {:.3g} m", tie.name, tie.nodes.size(),
+                       tie.adjusted);
+        if (tie.left_out > 0)
+            fmt::format_to(out, "; {} nodes are too far from the master, or beside it", tie.left_out);
+        fmt::format_to(out, "\n");
+    }
     for (const time::Stage& stage : plan.stages)
         fmt::format_to(out, "stage {}: {} step(s) in {:.6g} s\n", stage.name, stage.steps, stage.duration);
     for (std::size_t i = 0; i < check.free.size();) { // a line for what is said of the same bodies

@@ -99,6 +99,7 @@ public:
                 holds_[rigid != nullptr ? static_cast<std::size_t>(rigid->body) : body_of(c.node)]
                     .supports.emplace_back(plan_.model.X[static_cast<std::size_t>(c.node)], c.direction);
         for (const model::ContactEvaluation& evaluation : contact_) add(evaluation);
+        share_among_tied();
         std::vector<FreeMotion> found;
         std::vector<std::vector<std::string>> own;
         for (std::size_t b = 0; b < holds_.size(); ++b) {
@@ -113,6 +114,22 @@ public:
 private:
     [[nodiscard]] std::size_t body_of(Index node) const {
         return static_cast<std::size_t>(model::body_index(plan_.model, node));
+    }
+
+    /// What holds a body holds all that are tied to it.
+    void share_among_tied() {
+        const std::vector<Index> tied = model::tied_groups(plan_.model);
+        const std::vector<Holds> own = holds_;
+        for (std::size_t a = 0; a < own.size(); ++a)
+            for (std::size_t b = 0; b < own.size(); ++b) {
+                if (a == b || tied[a] != tied[b]) continue;
+                Holds& all = holds_[a];
+                all.supports.insert(all.supports.end(), own[b].supports.begin(), own[b].supports.end());
+                all.contact.insert(all.contact.end(), own[b].contact.begin(), own[b].contact.end());
+                all.turning.insert(all.turning.end(), own[b].turning.begin(), own[b].turning.end());
+                all.rubs = all.rubs || own[b].rubs;
+                all.apart = all.apart || own[b].apart;
+            }
     }
 
     void add(const model::ContactEvaluation& evaluation) {

@@ -60,6 +60,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft);
     add_couplings(draft);
     throw_faults(draft);
+    add_ties(draft);
+    throw_faults(draft);
     settle_dynamics(draft.scene);
     settle_pairs(draft);
     add_stages(draft);

@@ -298,6 +298,8 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
     };
     for (const auto& [name, pair] : scene.contact)
         options.treated_elsewhere.emplace_back(nodes_of(pair.slave), nodes_of(master_set(pair.master)));
+    for (const auto& [name, tie] : scene.ties)
+        options.treated_elsewhere.emplace_back(nodes_of(tie.slave), nodes_of(tie.master));
     return options;
 }
 

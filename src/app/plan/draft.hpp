@@ -39,6 +39,8 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes);
 void add_sets(Draft& draft);
 /// Couplings, with the two nodes of each behind those of all bodies.
 void add_couplings(Draft& draft);
+/// Ties, with their nodes moved onto the surfaces that they follow.
+void add_ties(Draft& draft);
 /// Held directions of every stage, and external forces at its ends but for gravity.
 void add_stages(Draft& draft);
 /// Contact pairs of the scene.

@@ -92,6 +92,25 @@ void add_rigid_bodies(Draft& draft) {
     }
 }
 
+struct Unfit {
+    std::string expected, found;
+};
+
+/// What is wrong with a formulation if elements of the mesh do not have it.
+std::optional<Unfit> unfit_formulation(const mesh::Mesh& mesh, HexFormulation formulation) {
+    const auto has = [&](mesh::CellType type) {
+        return std::ranges::any_of(mesh.blocks, [&](const mesh::ElementBlock& block) { return block.type == type; });
+    };
+    if (formulation == HexFormulation::reduced && has(mesh::CellType::hex8))
+        return Unfit{
+            "full, b_bar or incompatible_modes for hex8 elements, which by one point alone resist no hourglass modes",
+            "reduced"};
+    if (has(mesh::CellType::hex20) && formulation != HexFormulation::full && formulation != HexFormulation::reduced)
+        return Unfit{"full or reduced for hex20 elements",
+                     formulation == HexFormulation::b_bar ? "b_bar" : "incompatible_modes"};
+    return {};
+}
+
 std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation formulation,
                                           const scene::Material& spec) {
     const material::LinearElastic elastic{scene::elastic(spec).E, scene::elastic(spec).nu};
@@ -189,6 +208,10 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
         body.rigid = spec.rigid.has_value();
         body.mesh = std::move(meshes[b]);
         body.first_node = draft.plan.model.nodes();
+        if (const auto unfit = unfit_formulation(body.mesh, spec.hex_formulation)) {
+            draft.faults.push_back(fault("bodies." + name + ".hex_formulation", unfit->expected, unfit->found));
+            return;
+        }
         for (const mesh::ElementBlock& block : body.mesh.blocks)
             body.kernels.push_back(kernel(block.type, spec.hex_formulation, spec.material));
         auto& X = draft.plan.model.X.values();

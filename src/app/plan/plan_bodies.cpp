@@ -73,6 +73,18 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
                             : fmt::format("{} of {:.0f} nodes, six unknowns each", couplings, following(true).count),
              following(true));
 
+    double tied = 0, carriers = 0;
+    for (const model::Tie& tie : model.ties)
+        for (const model::TiedNode& node : tie.nodes) {
+            ++tied;
+            carriers += static_cast<double>(node.carriers.size());
+        }
+    list.say("ties", tied > 0,
+             tied == 0
+                 ? "no surfaces are glued together"
+                 : fmt::format("{} of {:.0f} nodes, which have no unknowns of their own", model.ties.size(), tied),
+             {carriers * sizeof(linear::Dependence::Carrier), carriers, "weights an iteration"});
+
     const std::size_t dynamic = dynamic_stages(plan);
     constexpr double states = 10; // u, v, a: of the state, of the start of the step and after it; force at the start
     list.say("inertia", dynamic > 0, dynamic > 0 ? fmt::format("{} dynamic stage(s)", dynamic) : every_static,

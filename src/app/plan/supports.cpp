@@ -6,19 +6,24 @@ namespace osculate::app {
 
 std::vector<std::string> unsupported_bodies(const Plan& plan) {
     std::vector<std::string> names;
-    for (const model::Body& body : plan.model.bodies) {
-        const auto owns = [&](Index node) { return node >= body.first_node && node < body.first_node + body.nodes(); };
+    const std::vector<Index> group = model::tied_groups(plan.model);
+    for (std::size_t b = 0; b < plan.model.bodies.size(); ++b) {
+        const model::Body& body = plan.model.bodies[b];
         model::RigidHold hold(body, plan.model.X);
         for (const linear::NodeConstraint& c : plan.stages.front().constraints)
-            if (owns(c.node)) hold.hold(plan.model.X[c.node], c.direction);
+            if (const Index other = model::body_index(plan.model, c.node);
+                other >= 0 && group[static_cast<std::size_t>(other)] == group[b])
+                hold.hold(plan.model.X[c.node], c.direction);
         for (const model::RigidBody& rigid : plan.model.rigid)
-            if (&plan.model.bodies[static_cast<std::size_t>(rigid.body)] == &body)
+            if (group[static_cast<std::size_t>(rigid.body)] == group[b])
                 for (const linear::NodeConstraint& c : plan.stages.front().constraints)
                     hold.hold(rigid, c, plan.model.X);
         const bool held = hold.free() == 0;
         bool touched = plan.model.general != nullptr;
         for (const auto& pair : plan.model.pairs)
-            touched = touched || owns(pair->slaves().node.front()) || owns(pair->master_nodes().front());
+            for (const Index node : {pair->slaves().node.front(), pair->master_nodes().front()})
+                if (const Index other = model::body_index(plan.model, node); other >= 0)
+                    touched = touched || group[static_cast<std::size_t>(other)] == group[b];
         if (!held && !touched) names.push_back(body.name);
     }
     return names;

@@ -5,7 +5,8 @@
 
 namespace osculate::app {
 
-/// Bodies that keep a rigid motion in the first stage: their supports leave one free and no contact pair has them.
+/// Bodies that keep a rigid motion in the first stage: their supports, and those of bodies tied to them, leave one free, and no
+/// contact pair has them.
 [[nodiscard]] std::vector<std::string> unsupported_bodies(const Plan& plan);
 
 } // namespace osculate::app

@@ -1,0 +1,10 @@
+#include "fe/finite_strain.hpp"
+
+namespace osculate::fe {
+
+template std::unique_ptr<ElementKernel>
+make_finite_strain_kernel<Hex20, material::SaintVenantKirchhoff, false>(const material::SaintVenantKirchhoff&);
+template std::unique_ptr<ElementKernel>
+make_finite_strain_kernel<Hex20, material::NeoHookean, false>(const material::NeoHookean&);
+
+} // namespace osculate::fe

@@ -1,0 +1,8 @@
+#include "fe/small_strain_kernel.hpp"
+
+namespace osculate::fe {
+
+template std::unique_ptr<ElementKernel>
+make_small_strain_kernel<DisplacementStrain<Hex20>>(const material::LinearElastic&);
+
+} // namespace osculate::fe

@@ -1,0 +1,201 @@
+/// Ties: joined bodies are as one.
+
+#include "osculate/core/error.hpp"
+#include "support/scene_file.hpp"
+#include "support/scene_runner.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <gmock/gmock.h>
+
+namespace osculate {
+namespace {
+
+using support::scene_file;
+
+/// Two blocks one on the other whose meshes do not match, the upper one turned about the vertical by nothing, and pressed.
+const std::string blocks = R"(
+bodies:
+  below:
+    mesh: {block: {size: [2 m, 1 m, 1 m], divisions: [3, 2, 2], element: ELEMENT}}
+    material: {LAW: {E: 10 MPa, nu: 0.3}}
+  above:
+    mesh: {block: {origin: [0 m, 0 m, 1 m], size: [2 m, 1 m, 0.5 m], divisions: [5, 3, 1], element: ELEMENT}}
+    material: {LAW: {E: 10 MPa, nu: 0.3}}
+sets:
+  x: {body: below, surface: x_min}
+  y: {body: below, surface: y_min}
+  bed: {body: below, surface: z_min}
+  xa: {body: above, surface: x_min}
+  ya: {body: above, surface: y_min}
+  lower: {body: below, surface: z_max}
+  upper: {body: above, surface: z_min}
+  top: {body: above, surface: z_max}
+supports:
+  x: {fix: [x]}
+  xa: {fix: [x]}
+  y: {fix: [y]}
+  ya: {fix: [y]}
+  bed: {fix: [z]}
+ties:
+  glue: {slave: SLAVE, master: MASTER}
+stages:
+  press: {pressure: {top: 1 MPa}}
+)";
+
+std::string with(std::string text, const std::vector<std::pair<std::string, std::string>>& words) {
+    for (const auto& [from, to] : words)
+        for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+            text.replace(at, from.size(), to);
+    return text;
+}
+
+std::unique_ptr<support::SceneRun> run(const std::string& text) {
+    auto found = std::make_unique<support::SceneRun>();
+    support::run_scene(*found, scene_file("tie.yaml", text));
+    return found;
+}
+
+TEST(Tie, PassesThePatchTestAcrossMeshesThatDoNotMatch) {
+    constexpr double p = 1e6, round_off = 1e-9; // of the pressure: residuals are solved to 1e-10 of the loads
+    for (const char* element : {"hex8", "tet4", "wedge6"})
+        for (const bool swapped : {false, true}) {
+            const auto found = run(with(blocks, {{"ELEMENT", element},
+                                                 {"LAW", "linear_elastic"},
+                                                 {"SLAVE", swapped ? "lower" : "upper"},
+                                                 {"MASTER", swapped ? "upper" : "lower"}}));
+            for (Index b = 0; b < 2; ++b) {
+                const auto stress = model::nodal_stress(found->plan.model, b, found->steps.back().state);
+                Matrix expected = Matrix::Zero(stress.rows(), 6);
+                expected.col(2).setConstant(-p);
+                EXPECT_LT((stress - expected).cwiseAbs().maxCoeff(), round_off * p) << element << swapped << b;
+            }
+        }
+}
+
+/// A cantilever of one piece or of two, bent by its weight; displacement of its end.
+double tip(const std::string& where_it_is_cut) {
+    const std::string head = R"(
+bodies:
+  left:
+    mesh: {block: {size: [LEFT m, 1 m, 1 m], divisions: [NLEFT, 4, 4]}}
+    material: &steel {linear_elastic: {E: 1 GPa, nu: 0.3}}
+    hex_formulation: incompatible_modes
+)";
+    const std::string right = R"(
+  right:
+    mesh: {block: {origin: [5 m, 0 m, 0 m], size: [5 m, 1 m, 1 m], divisions: [15, 6, 6]}}
+    material: *steel
+    hex_formulation: incompatible_modes
+)";
+    const bool one = where_it_is_cut.empty();
+    std::string text = with(head, {{"NLEFT", one ? "20" : "10"}, {"LEFT", one ? "10" : "5"}});
+    if (!one) text += right;
+    text += "sets:\n  wall: {body: left, surface: x_min}\n  end: {body: " + std::string(one ? "left" : "right") +
+            ", surface: x_max}\n";
+    if (!one) text += "  a: {body: left, surface: x_max}\n  b: {body: right, surface: x_min}\n";
+    text += "supports:\n  wall: {fix: [x, y, z]}\n" + where_it_is_cut +
+            "stages:\n  bend: {body_force: {left: [0 N/m^3, 0 N/m^3, 1 kN/m^3]" +
+            std::string(one ? "" : ", right: [0 N/m^3, 0 N/m^3, 1 kN/m^3]") + "}}\n";
+    const auto found = run(text);
+    const model::Model& m = found->plan.model;
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < m.X.size(); ++i)
+        if (m.X[i].x() + m.origin.x() > 10 - 1e-6) {
+            sum += found->steps.back().state.u[i].z();
+            ++count;
+        }
+    return sum / count;
+}
+
+TEST(Tie, OfTwoHalvesOfABeamBendsAsOnePiece) {
+    const double whole = tip("");
+    EXPECT_NEAR(tip("ties:\n  glue: {slave: b, master: a}\n"), whole, 1e-3 * whole);
+}
+
+TEST(Tie, TurnsWithoutForces) {
+    // surfaces that are curved and do not match
+    const auto found = run(R"(
+bodies:
+  tube:
+    mesh: {half_tube: {inner_radius: 1 m, thickness: 0.3 m, length: 2 m, divisions: [9, 5, 1]}}
+    material: {neo_hookean: {E: 1 MPa, nu: 0.3}}
+  core:
+    mesh: {half_tube: {inner_radius: 0.6 m, thickness: 0.4 m, length: 2 m, divisions: [6, 3, 2]}}
+    material: {neo_hookean: {E: 1 MPa, nu: 0.3}}
+sets:
+  outside: {body: tube, surface: outer}
+  inside: {body: tube, surface: inner}
+  core_outside: {body: core, surface: outer}
+couplings:
+  hand: {set: outside}
+ties:
+  glue: {slave: core_outside, master: inside, distance: 20 cm}
+stages:
+  turn: {steps: 3, motion: {hand: {x: 1 m, rx: 40 deg, ry: 100 deg, rz: 0 deg, y: 0 m, z: 0 m}}}
+)");
+    const auto& state = found->steps.back().state;
+    EXPECT_GT(found->plan.model.ties.front().adjusted, 1e-3);
+    EXPECT_GT(largest_component(state.u), 1);
+    constexpr double E = 1e6, volume = 5, strain = 1e-8; // to which steps are solved
+    EXPECT_LT(model::strain_energy(found->plan.model, state.u, state.material, 1), E * volume * strain * strain / 2);
+}
+
+TEST(Tie, RefusesWhatItWouldGetWrong) {
+    const auto faults = [](const std::string& text) {
+        try {
+            (void)run(text);
+        } catch (const SceneError& error) {
+            std::string all;
+            for (const Fault& fault : error.faults())
+                all += fault.key + ": " + fault.expected + "; " + fault.found + "\n";
+            return all;
+        }
+        return std::string("none");
+    };
+    const std::vector<std::pair<std::string, std::string>> usual{
+        {"ELEMENT", "hex8"}, {"LAW", "linear_elastic"}, {"SLAVE", "upper"}, {"MASTER", "lower"}};
+    EXPECT_THAT(
+        faults(with(blocks, {{"MASTER", "top"}, {"ELEMENT", "hex8"}, {"LAW", "linear_elastic"}, {"SLAVE", "upper"}})),
+        testing::HasSubstr("two surfaces of 'above'"));
+    EXPECT_THAT(
+        faults(with(blocks, {{"SLAVE", "top"}, {"ELEMENT", "hex8"}, {"LAW", "linear_elastic"}, {"MASTER", "lower"}})),
+        testing::HasSubstr("the nearest is 0.5 m from it"));
+    EXPECT_THAT(faults(with(blocks + "  pull: {displacement: {upper: {z: 1 mm}}}\n", usual)),
+                testing::HasSubstr("drive the tie's master"));
+    EXPECT_THAT(
+        faults(
+            with(blocks, {{"ELEMENT", "tet10"}, {"LAW", "linear_elastic"}, {"SLAVE", "upper"}, {"MASTER", "lower"}})),
+        testing::HasSubstr("meshes that match"));
+}
+
+/// Deflection of the end of a clamped beam, over that of Timoshenko's beam.
+double deflection(const std::vector<scene::Override>& elements) {
+    support::SceneRun found;
+    support::run_scene(found, scene_file("beam.yaml", R"(
+bodies:
+  beam:
+    mesh: {block: {size: [10 m, 1 m, 1 m], divisions: [5, 2, 2]}}
+    material: {linear_elastic: {E: 1 GPa, nu: 0.3}}
+sets:
+  wall: {body: beam, surface: x_min}
+supports:
+  wall: {fix: [x, y, z]}
+stages:
+  bend: {body_force: {beam: [0 N/m^3, 0 N/m^3, 1 kN/m^3]}}
+)"),
+                       elements);
+    // q L^4 / 8 E I + q L^2 / 2 k G A
+    constexpr double q = 1e3, L = 10, E = 1e9, I = 1.0 / 12, G = E / 2.6, k = 5.0 / 6;
+    return largest_component(found.steps.back().state.u) / (q * L * L * L * L / (8 * E * I) + q * L * L / (2 * k * G));
+}
+
+TEST(Hex20, BendsWithFewElements) {
+    EXPECT_NEAR(deflection({{"bodies.beam.mesh.block.element", "hex20"}, {"bodies.beam.hex_formulation", "reduced"}}),
+                1, 0.02);
+    EXPECT_NEAR(deflection({{"bodies.beam.mesh.block.element", "hex20"}}), 1, 0.04);
+    EXPECT_LT(deflection({}), 0.75) << "which locks";
+}
+
+} // namespace
+} // namespace osculate

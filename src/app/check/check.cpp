@@ -194,8 +194,7 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
     for (const model::Tie& tie : plan.model.ties) {
         fmt::format_to(out, "tie {}: {} nodes follow, moved by up to {:.3g} m", tie.name, tie.nodes.size(),
                        tie.adjusted);
-        if (tie.left_out > 0)
-            fmt::format_to(out, "; {} nodes are too far from the master, or beside it", tie.left_out);
+        if (tie.left_out > 0) fmt::format_to(out, "; {} nodes are too far from the master, or beside it", tie.left_out);
         fmt::format_to(out, "\n");
     }
     for (const time::Stage& stage : plan.stages)

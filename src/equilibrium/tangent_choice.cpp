@@ -79,7 +79,8 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     choice.multigrid = !model.has_dependent_nodes() && goes_by_multigrid(model, asked, pays);
     choice.factorisable = !choice.multigrid || model.nodes() <= most;
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
-    choice.preconditioned = choice.multigrid || ((contact || !symmetric || !model.ties.empty()) && asked != LinearSolver::direct);
+    choice.preconditioned =
+        choice.multigrid || ((contact || !symmetric || !model.ties.empty()) && asked != LinearSolver::direct);
     choice.condensed = !model.nonlinear && !model.has_dependent_nodes() && !follows && !choice.multigrid &&
                        choice.products &&
                        (asked == LinearSolver::condensed || (asked == LinearSolver::automatic && pays));

@@ -276,6 +276,7 @@ private:
         p.tied = true;
         p.place = deck_.place(card);
         double tolerance = 0;
+        if (capitals_of(card, "ADJUST") == "NO") note(card, "ADJUST=NO: tied nodes are moved onto the other surface");
         if (const std::string* by = given(card, "POSITIONTOLERANCE"); by != nullptr && to_number(*by, tolerance))
             p.tolerance = tolerance;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {

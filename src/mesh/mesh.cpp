@@ -12,6 +12,14 @@ Index Mesh::element_count() const {
     return count;
 }
 
+std::vector<Index> nodes_of(const std::vector<Facet>& facets) {
+    std::vector<Index> nodes;
+    for (const Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+}
+
 std::vector<Facet> exterior_facets(const Mesh& mesh) {
     std::vector<Facet> faces;
     for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {

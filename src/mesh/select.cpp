@@ -16,12 +16,6 @@ double tolerance_of(const Mesh& mesh) {
     return box.isEmpty() ? 0 : selection_tolerance * box.diagonal().norm();
 }
 
-std::vector<Index> nodes_of(const std::vector<Facet>& facets) {
-    std::vector<Index> nodes;
-    for (const Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
-    return nodes;
-}
-
 std::vector<Facet> facets_within(const std::vector<Facet>& exterior, const std::vector<char>& member) {
     std::vector<Facet> facets;
     std::copy_if(exterior.begin(), exterior.end(), std::back_inserter(facets), [&](const Facet& facet) {

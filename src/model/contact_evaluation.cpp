@@ -111,8 +111,10 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
 
 void ContactEvaluation::find_facets(const std::vector<Vec3>& x, const ContactHistory& history, const Places& before,
                                     int threads) {
+    const std::vector<std::vector<Vec3>> faces = faces_; // of nodes beside the slaves, too
+    if (!pair_->slaves().around.empty()) place_facets(x);
     if (facet_before_ == history.facet && status_start_ == history.status && before.slaves == start_.slaves &&
-        before.masters == start_.masters) {
+        before.masters == start_.masters && faces == faces_) {
         tracking_.facet = facet_start_;
         return;
     }
@@ -120,7 +122,6 @@ void ContactEvaluation::find_facets(const std::vector<Vec3>& x, const ContactHis
     status_start_ = history.status;
     closest_.assign(points_.size(), {});
     search_.build(vertices_);
-    if (!pair_->slaves().around.empty()) place_facets(x);
     parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j)
             if (tracking_.facet[j] < 0 || !contact::is_closed(history.status[j])) {

@@ -37,12 +37,20 @@ Audit::Audit(const model::Model& model)
     : model_(model), surfaces_(facets_to_audit(model), model.X), exact_(model, outer_facets(model)) {
     const contact::AuditResult first = surfaces_.examine(model.X);
     for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
+    // contact lifts what overlaps, but not where curved surfaces are tied
+    const auto tied = [&](const std::pair<Index, Index>& bodies) {
+        return std::ranges::any_of(
+            model.ties, [&](const model::Tie& tie) { return ordered(tie.slave_body, tie.master_body) == bodies; });
+    };
     if (model.general)
-        std::erase_if(drawn_, [&](const auto& one) { return model.general->meet(one.first.first, one.first.second); });
-    for (const model::Tie& tie : model.ties) tied_.insert(ordered(tie.slave_body, tie.master_body));
-    for (const auto& pair : model.pairs) // contact lifts what overlaps
-        drawn_.erase(ordered(model::body_index(model, pair->slaves().node.front()),
-                             model::body_index(model, pair->master_nodes().front())));
+        std::erase_if(drawn_, [&](const auto& one) {
+            return model.general->meet(one.first.first, one.first.second) && !tied(one.first);
+        });
+    for (const auto& pair : model.pairs)
+        if (const auto bodies = ordered(model::body_index(model, pair->slaves().node.front()),
+                                        model::body_index(model, pair->master_nodes().front()));
+            !tied(bodies))
+            drawn_.erase(bodies);
 }
 
 const contact::AuditResult& Audit::examine(const Field& u) {
@@ -56,7 +64,6 @@ std::optional<contact::Intrusion> Audit::deepest() const {
     std::optional<contact::Intrusion> worst;
     for (contact::Intrusion one : result_.intrusions) {
         if (model_.general && model_.general->pass_through(one.body, one.other)) continue;
-        if (tied_.contains(ordered(one.body, one.other))) continue;
         const auto drawn = drawn_.find(ordered(one.body, one.other));
         if (drawn != drawn_.end()) one.excess = std::max(0.0, one.excess - drawn->second);
         if (!worst || one.relative() > worst->relative()) worst = one;

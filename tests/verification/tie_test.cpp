@@ -73,6 +73,38 @@ TEST(Tie, PassesThePatchTestAcrossMeshesThatDoNotMatch) {
         }
 }
 
+TEST(Tie, LeavesToSupportsWhatTheyHold) {
+    // between walls on all sides, all the nodes of which are held across them: uniaxial strain
+    constexpr double p = 1e6, nu = 0.3, round_off = 1e-9;
+    const auto found =
+        run(with(blocks, {{"  top: {body: above, surface: z_max}",
+                           "  top: {body: above, surface: z_max}\n  u: {body: below, surface: x_max}\n  v: {body: "
+                           "below, surface: y_max}\n  ua: {body: above, surface: x_max}\n  va: {body: above, "
+                           "surface: y_max}"},
+                          {"  bed: {fix: [z]}", "  bed: {fix: [z]}\n  u: {fix: [x]}\n  ua: {fix: [x]}\n  v: {fix: "
+                                                "[y]}\n  va: {fix: [y]}"},
+                          {"ELEMENT", "hex8"},
+                          {"LAW", "linear_elastic"},
+                          {"SLAVE", "upper"},
+                          {"MASTER", "lower"}}));
+    const auto& sets = found->plan.model.sets;
+    double across = 0; // of both walls at x = 0, 1.5 m^2
+    for (std::size_t s = 0, r = 0; s < sets.size(); ++s) {
+        const bool supported = sets[s].name == "x" || sets[s].name == "y" || sets[s].name == "bed" ||
+                               sets[s].name == "u" || sets[s].name == "xa" || sets[s].name == "ya" ||
+                               sets[s].name == "v" || sets[s].name == "ua" || sets[s].name == "va";
+        if (!supported) continue;
+        if (sets[s].name == "x" || sets[s].name == "xa") across += found->steps.back().reactions[r].x();
+        ++r;
+    }
+    EXPECT_NEAR(across, nu / (1 - nu) * p * 1.5, round_off * p);
+    for (Index b = 0; b < 2; ++b) {
+        const auto stress = model::nodal_stress(found->plan.model, b, found->steps.back().state);
+        EXPECT_LT((stress.col(2).array() + p).abs().maxCoeff(), round_off * p);
+        EXPECT_LT((stress.col(0).array() + nu / (1 - nu) * p).abs().maxCoeff(), round_off * p);
+    }
+}
+
 /// A cantilever of one piece or of two, bent by its weight; displacement of its end.
 double tip(const std::string& where_it_is_cut) {
     const std::string head = R"(
@@ -161,6 +193,28 @@ TEST(Tie, RefusesWhatItWouldGetWrong) {
     EXPECT_THAT(
         faults(with(blocks, {{"SLAVE", "top"}, {"ELEMENT", "hex8"}, {"LAW", "linear_elastic"}, {"MASTER", "lower"}})),
         testing::HasSubstr("the nearest is 0.5 m from it"));
+    EXPECT_THAT(faults(with(blocks, {{"[0 m, 0 m, 1 m]", "[0 m, 0 m, 1.2 m]"},
+                                     {"ELEMENT", "hex8"},
+                                     {"LAW", "linear_elastic"},
+                                     {"SLAVE", "upper"},
+                                     {"MASTER", "lower"}})),
+                testing::HasSubstr("nodes near the master, or a larger `distance`"));
+    EXPECT_THAT(faults(with(blocks, {{"MASTER", "MASTER, distance: 2 m"},
+                                     {"[0 m, 0 m, 1 m]", "[0 m, 0 m, 0.2 m]"},
+                                     {"ELEMENT", "hex8"},
+                                     {"LAW", "linear_elastic"},
+                                     {"SLAVE", "upper"},
+                                     {"MASTER", "lower"}})),
+                testing::HasSubstr("elements fold where nodes are moved"));
+    // one end of the upper block lifted by 0.2 m: half of its nodes are too far
+    EXPECT_THAT(
+        faults(with(blocks, {{"[5, 3, 1], element: ELEMENT}", "[5, 3, 1]}, rotate: {axis: [0, 1, 0], angle: -8 deg}"},
+                             {"  xa: {fix: [x]}\n", ""},
+                             {"ELEMENT", "hex8"},
+                             {"LAW", "linear_elastic"},
+                             {"SLAVE", "upper"},
+                             {"MASTER", "lower"}})),
+        testing::HasSubstr("nodes above the master that are more than a quarter of a facet from it"));
     EXPECT_THAT(faults(with(blocks + "  pull: {displacement: {upper: {z: 1 mm}}}\n", usual)),
                 testing::HasSubstr("drive the tie's master"));
     EXPECT_THAT(

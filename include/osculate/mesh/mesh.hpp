@@ -44,6 +44,8 @@ struct Mesh {
 /// Facets that belong to exactly one element, oriented outward, in order of block, element and local face.
 /// O(n log n) in the number of element faces.
 [[nodiscard]] std::vector<Facet> exterior_facets(const Mesh& mesh);
+/// The numbers of all nodes of facets, ascending.
+[[nodiscard]] std::vector<Index> nodes_of(const std::vector<Facet>& facets);
 
 /// Outward area vector of a facet at given nodal positions, square metres: the integral of n dA (exact for a bilinear
 /// quadrilateral too).

@@ -50,6 +50,7 @@ struct Tie {
     Index slave_body = -1, master_body = -1;
     std::vector<TiedNode> nodes;
     double adjusted = 0; ///< largest distance by which a node was moved onto the other surface, m
+    double near = 0;     ///< largest such distance that needs no word, m
     Index left_out = 0;  ///< nodes of the slave that are too far from the master, or beside it
 };
 

@@ -7,7 +7,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -31,7 +30,6 @@ private:
     ExactAudit exact_;
     Field x_;
     contact::AuditResult result_;
-    std::set<std::pair<Index, Index>> tied_;          ///< bodies that overlap where they are tied
     std::map<std::pair<Index, Index>, double> drawn_; ///< excess in the reference configuration, m
 };
 

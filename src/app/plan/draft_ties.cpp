@@ -4,6 +4,7 @@
 #include "app/plan/draft.hpp"
 #include "osculate/contact/discretisation.hpp"
 #include "osculate/contact/dual_weights.hpp"
+#include "osculate/mesh/quality.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -21,21 +22,12 @@ constexpr double least_cover = 1e-3;
 /// A weight below this is round-off.
 constexpr double vanishing = 1e-9;
 
-/// The nodes of facets, ascending.
-std::vector<Index> nodes_of(const std::vector<mesh::Facet>& facets) {
-    std::vector<Index> nodes;
-    for (const mesh::Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    return nodes;
-}
-
 /// Finds what the nodes of a slave follow.
 class TieMaker {
 public:
     TieMaker(const Draft& draft, const model::Set& slave, const model::Set& master, std::optional<double> distance)
         : X_(draft.plan.model.X.values()), surface_(master.facets, X_), facets_(contact::make_facets_surface(surface_)),
-          search_(surface_), distance_(distance), slaves_(nodes_of(slave.facets)) {
+          search_(surface_), distance_(distance), slaves_(mesh::nodes_of(slave.facets)) {
         for (const Index node : surface_.vertex_nodes()) vertices_.push_back(X_[static_cast<std::size_t>(node)]);
         search_.build(vertices_);
         for (const Index node : slaves_) {
@@ -44,7 +36,10 @@ public:
             hits_.push_back(hit);
             const bool far = hit.facet < 0 || hit.distance > distance_.value_or(near * surface_.facet_size(hit.facet));
             far_.push_back(far);
-            if (hit.facet >= 0) nearest_ = std::min(nearest_, hit.distance);
+            if (hit.facet < 0) continue;
+            nearest_ = std::min(nearest_, hit.distance);
+            if (hit.overhang == 0) farthest_above_ = std::max(farthest_above_, hit.distance);
+            above_ += far && hit.overhang == 0 ? 1 : 0;
         }
         std::vector<contact::SlaveFacet> all;
         for (const mesh::Facet& facet : slave.facets) {
@@ -71,6 +66,7 @@ public:
             weights_->update(f, at, std::move(seeds));
         }
         model::Tie tie;
+        tie.near = near * surface_.mean_facet_size();
         for (Index j = 0; j < static_cast<Index>(slaves_.size()); ++j) {
             if (!(weights_->share(j) > 0)) {
                 ++tie.left_out;
@@ -93,6 +89,9 @@ public:
     }
 
     [[nodiscard]] double nearest() const { return nearest_; }
+    /// Nodes above the master that are too far from it, and the distance of the farthest above it, m.
+    [[nodiscard]] Index above() const { return above_; }
+    [[nodiscard]] double farthest_above() const { return farthest_above_; }
 
 private:
     const std::vector<Vec3>& X_;
@@ -105,7 +104,8 @@ private:
     std::vector<contact::FacetHit> hits_;
     std::vector<char> far_;
     std::unique_ptr<contact::DualWeights> weights_;
-    double nearest_ = std::numeric_limits<double>::infinity();
+    double nearest_ = std::numeric_limits<double>::infinity(), farthest_above_ = 0;
+    Index above_ = 0;
 };
 
 /// Whether a body has elements with midside nodes.
@@ -169,6 +169,14 @@ void add_ties(Draft& draft) {
                       fmt::format("none above it: the nearest is {:.3g} m from it", maker.nearest())));
             continue;
         }
+        if (!spec.distance && maker.above() > 0) {
+            draft.faults.push_back(fault(key + ".distance",
+                                         "a distance: up to where nodes are tied, and moved onto the master",
+                                         fmt::format("none, and {} nodes above the master that are more than a quarter "
+                                                     "of a facet from it, up to {:.3g} m",
+                                                     maker.above(), maker.farthest_above())));
+            continue;
+        }
         // the shape functions of facets are linear, those of these elements are not
         const bool curved = quadratic(m.bodies[static_cast<std::size_t>(slave.body)]) ||
                             quadratic(m.bodies[static_cast<std::size_t>(master.body)]);
@@ -209,7 +217,12 @@ void add_ties(Draft& draft) {
                                                  fmt::format("a node at {} that follows {}", place(node), at->second)));
                     break;
                 }
-    for (model::Tie& tie : m.ties) adjust(m, tie);
+    for (model::Tie& tie : m.ties) {
+        adjust(m, tie);
+        for (const std::string& what : mesh::faults(m.bodies[static_cast<std::size_t>(tie.slave_body)].mesh))
+            draft.faults.push_back(fault("ties." + tie.name + ".distance",
+                                         "a smaller one: elements fold where nodes are moved onto the master", what));
+    }
 }
 
 } // namespace osculate::app

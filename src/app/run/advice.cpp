@@ -28,15 +28,6 @@ std::string rounded(double value) {
     return fmt::format("{:.2g}", value);
 }
 
-/// The numbers of all nodes of facets, ascending.
-std::vector<Index> nodes_of(const std::vector<mesh::Facet>& facets) {
-    std::vector<Index> nodes;
-    for (const mesh::Facet& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    return nodes;
-}
-
 /// Gathers advice for one failure.
 class Adviser {
 public:
@@ -329,7 +320,7 @@ private:
             std::ranges::sort(nodes);
             nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
             const auto at = std::ranges::find(failed_.model.sets, nodes,
-                                              [](const model::Set& set) { return nodes_of(set.facets); });
+                                              [](const model::Set& set) { return mesh::nodes_of(set.facets); });
             return at == failed_.model.sets.end() ? std::string() : at->name;
         };
         const std::string slave = named(pair.slaves().node), master = named(pair.master_nodes());

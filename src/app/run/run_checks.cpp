@@ -170,6 +170,12 @@ std::vector<std::string> RunChecks::warnings() const {
     constexpr double much = 0.05; // a rebound at 0.975 of the exact speed
     std::vector<std::string> warnings;
     if (const std::optional<std::string> turned = rotations_.warning()) warnings.push_back(*turned);
+    for (const model::Tie& tie : model_.ties)
+        if (tie.left_out > 0 || tie.adjusted > tie.near)
+            warnings.push_back(fmt::format("ties.{}: {} nodes of the slave are tied, moved by up to {:.3g} m; {} are "
+                                           "not, which are beside the master or "
+                                           "farther from it than `distance`",
+                                           tie.name, tie.nodes.size(), tie.adjusted, tie.left_out));
     if (dynamic_ && share(closing_, energy_) > much)
         warnings.push_back(
             fmt::format("gaps that closed took {:.2g} of the largest energy, and exact contact takes none: rebounds "

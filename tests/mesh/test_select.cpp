@@ -10,7 +10,7 @@ namespace {
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-std::vector<std::array<Index, 4>> nodes_of(const std::vector<Facet>& facets) {
+std::vector<std::array<Index, 4>> facet_nodes(const std::vector<Facet>& facets) {
     std::vector<std::array<Index, 4>> nodes;
     for (const Facet& facet : facets) nodes.push_back(facet.nodes);
     std::sort(nodes.begin(), nodes.end());
@@ -34,7 +34,7 @@ protected:
 TEST_F(PlacedTube, IsSelectedByCylinder) {
     for (const auto& [name, radius] : {std::pair("inner", 3.0), std::pair("outer", 4.0)}) {
         const Region region = select_cylinder(mesh, exterior, translation, rotation.col(1) * 2, radius);
-        EXPECT_EQ(nodes_of(region.facets), nodes_of(mesh.surfaces.at(name)));
+        EXPECT_EQ(facet_nodes(region.facets), facet_nodes(mesh.surfaces.at(name)));
         EXPECT_THAT(region.nodes, SizeIs(14 * 13));
     }
     const Region between = select_cylinder(mesh, exterior, translation, rotation.col(1), 3 + 1.0 / 3);
@@ -45,7 +45,7 @@ TEST_F(PlacedTube, IsSelectedByCylinder) {
 
 TEST_F(PlacedTube, IsSelectedByPlane) {
     const Region end = select_plane(mesh, exterior, translation + 12 * rotation.col(1), -3 * rotation.col(1));
-    EXPECT_EQ(nodes_of(end.facets), nodes_of(mesh.surfaces.at("y_max")));
+    EXPECT_EQ(facet_nodes(end.facets), facet_nodes(mesh.surfaces.at("y_max")));
     EXPECT_THAT(end.nodes, SizeIs(14 * 4));
     const Region rims = select_plane(mesh, exterior, translation, rotation.col(2));
     EXPECT_THAT(rims.facets, SizeIs(2 * 12 * 3));
@@ -56,7 +56,7 @@ TEST_F(PlacedTube, IsSelectedByPlane) {
 
 TEST_F(PlacedTube, IsSelectedByNormal) {
     const Region end = select_normal(mesh, exterior, rotation.col(1) * 5, 0.1);
-    EXPECT_EQ(nodes_of(end.facets), nodes_of(mesh.surfaces.at("y_max")));
+    EXPECT_EQ(facet_nodes(end.facets), facet_nodes(mesh.surfaces.at("y_max")));
     EXPECT_THAT(end.nodes, SizeIs(14 * 4));
     EXPECT_TRUE(std::is_sorted(end.nodes.begin(), end.nodes.end()));
     // Downward within one and a half facets' turn: the lowest facet of the outer surface and one on either side.
@@ -105,12 +105,12 @@ TEST(Select, FindsNamedSurfacesAndNodeSets) {
     const auto exterior = exterior_facets(mesh);
     const auto top = select_named(mesh, exterior, "z_max");
     ASSERT_TRUE(top.has_value());
-    EXPECT_EQ(nodes_of(top->facets), nodes_of(mesh.surfaces.at("z_max")));
+    EXPECT_EQ(facet_nodes(top->facets), facet_nodes(mesh.surfaces.at("z_max")));
     EXPECT_THAT(top->nodes, SizeIs(9));
     mesh.node_sets["lid"] = top->nodes;
     const auto lid = select_named(mesh, exterior, "lid");
     ASSERT_TRUE(lid.has_value());
-    EXPECT_EQ(nodes_of(lid->facets), nodes_of(top->facets));
+    EXPECT_EQ(facet_nodes(lid->facets), facet_nodes(top->facets));
     EXPECT_EQ(lid->nodes, top->nodes);
     EXPECT_FALSE(select_named(mesh, exterior, "bottom").has_value());
 }

@@ -239,14 +239,6 @@ private:
                                     "nodes that cover no facet of their body cannot be slaves");
                         continue;
                     }
-                    const mesh::CellInfo* quadratic = quadratic_type(a, pair.slave);
-                    if (quadratic == nullptr) quadratic = quadratic_type(b, pair.master);
-                    if (quadratic != nullptr) {
-                        model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
-                                    fmt::format("faces of {} cannot be in contact: mesh the body with {}",
-                                                quadratic->deck[0], mesh::without_midside_nodes(*quadratic).deck[0]));
-                        continue;
-                    }
                     const bool mortar = pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave));
                     if (pair.mortar && !mortar)
                         model_.note(
@@ -336,15 +328,6 @@ private:
             return std::ranges::all_of(facet, [&](Index n) { return std::ranges::binary_search(nodes, n); });
         });
         return facets;
-    }
-
-    /// Type of an element with midside nodes to which a facet of a surface belongs; null if there is none.
-    const mesh::CellInfo* quadratic_type(std::size_t body, const std::string& key) const {
-        for (const mesh::Facet& facet : facets_of(body, key)) {
-            const mesh::ElementBlock& block = bodies_[body].mesh.blocks[static_cast<std::size_t>(facet.block)];
-            if (const mesh::CellInfo& info = mesh::cell_info(block.type); !info.edges.empty()) return &info;
-        }
-        return nullptr;
     }
 
     std::string surface_name(const std::string& key) const {

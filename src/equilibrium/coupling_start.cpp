@@ -44,6 +44,15 @@ void add_ties(const model::Model& model, linear::Dependence& dependence) {
                 carriers.push_back({node, weight * tied.free, weight * tied.free});
             dependence.set(tied.node, std::move(carriers), Mat3::Identity() - tied.free);
         }
+    for (const model::SkinNode& one : model.skin) {
+        std::vector<linear::Dependence::Carrier> carriers;
+        for (const auto& [node, weight] : one.carriers) {
+            const Mat3 share =
+                node == one.host ? Mat3(weight * one.free + Mat3::Identity() - one.free) : Mat3(weight * one.free);
+            carriers.push_back({node, share, share});
+        }
+        dependence.set(one.node, std::move(carriers));
+    }
 }
 
 void start_couplings(const model::Model& model, const linear::Constraints& constraints, model::State& state) {

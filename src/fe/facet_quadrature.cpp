@@ -1,5 +1,7 @@
 #include "osculate/fe/facet_quadrature.hpp"
 
+#include "fe/piece_points.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
@@ -158,6 +160,46 @@ template <class Use> void integrate(const mesh::SurfaceFace& face, const std::ve
 }
 
 } // namespace
+
+namespace {
+/// Natural coordinates of the nodes of a three- or six-node face.
+constexpr std::array<std::array<double, 2>, 6> six_nodes{{{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}}};
+
+/// Shape functions of a face.
+std::array<double, mesh::most_nodes_per_face> shape_functions(const mesh::FaceShape& face, double xi, double eta) {
+    switch (face.nodes) {
+    case 3: return {1 - xi - eta, xi, eta};
+    case 4:
+        return {(1 - xi) * (1 - eta) / 4, (1 + xi) * (1 - eta) / 4, (1 + xi) * (1 + eta) / 4, (1 - xi) * (1 + eta) / 4};
+    case 6: return six_node_point(xi, eta, 1).N;
+    default: return eight_node_point(xi, eta, 1).N;
+    }
+}
+} // namespace
+
+std::vector<PiecePoint> piece_points(const mesh::FaceShape& face, const mesh::LocalFace& piece) {
+    const auto n = static_cast<std::size_t>(piece.count);
+    constexpr std::array<double, 4> s_c{-1, 1, 1, -1}, t_c{-1, -1, 1, 1};
+    std::vector<PiecePoint> points;
+    on_square<5>([&](double s, double t, double weight) {
+        PiecePoint& q = points.emplace_back();
+        q.weight = weight;
+        double xi = 0, eta = 0;
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const std::size_t c = std::min(corner, n - 1);
+            const double along_s = 1 + s_c[corner] * s, along_t = 1 + t_c[corner] * t, phi = along_s * along_t / 4;
+            q.phi[c] += phi;
+            q.by_s[c] += s_c[corner] * along_t / 4;
+            q.by_t[c] += t_c[corner] * along_s / 4;
+            const auto node = static_cast<std::size_t>(piece.nodes[c]);
+            const auto [x, y] = face.corners == 3 ? six_nodes[node] : eight_nodes[node];
+            xi += phi * x;
+            eta += phi * y;
+        }
+        q.N = shape_functions(face, xi, eta);
+    });
+    return points;
+}
 
 std::array<double, mesh::most_nodes_per_face> tributary_areas(const mesh::SurfaceFace& face,
                                                               const std::vector<Vec3>& positions) {

@@ -170,7 +170,8 @@ linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index no
     return K;
 }
 
-Index body_index(const Model& model, Index node) {
+Index body_index(const Model& model, Index any) {
+    const Index node = material_node(model, any);
     const auto owns = [&](const Body& b) { return node >= b.first_node && node < b.first_node + b.nodes(); };
     const auto at = std::ranges::find_if(model.bodies, owns);
     return at == model.bodies.end() ? -1 : static_cast<Index>(at - model.bodies.begin());

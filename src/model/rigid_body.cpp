@@ -59,34 +59,6 @@ void spread_displacements(const Model& model, const RigidBody& body, const Quate
     }
 }
 
-std::vector<Index> dependent_nodes(const Model& model) {
-    std::vector<Index> nodes;
-    for (const RigidBody& body : model.rigid) nodes.insert(nodes.end(), body.nodes.begin(), body.nodes.end());
-    for (const Tie& tie : model.ties)
-        for (const TiedNode& tied : tie.nodes) nodes.push_back(tied.node);
-    return nodes;
-}
-
-std::vector<Index> tied_groups(const Model& model) {
-    std::vector<Index> group(model.bodies.size());
-    std::iota(group.begin(), group.end(), Index{0});
-    for (const Tie& tie : model.ties) {
-        const Index from = group[static_cast<std::size_t>(tie.slave_body)],
-                    to = group[static_cast<std::size_t>(tie.master_body)];
-        std::ranges::replace(group, from, to);
-    }
-    return group;
-}
-
-void move_tied(const Model& model, Field& u) {
-    for (const Tie& tie : model.ties)
-        for (const TiedNode& tied : tie.nodes) {
-            Vec3 sum = Vec3::Zero();
-            for (const auto& [node, weight] : tied.carriers) sum += weight * u[static_cast<std::size_t>(node)];
-            u[static_cast<std::size_t>(tied.node)] = tied.free * sum;
-        }
-}
-
 const RigidBody* rigid_body_of(const Model& model, Index node) {
     const auto owns = [&](const RigidBody& body) {
         return (node >= body.reference && node <= body.rotation()) || std::ranges::binary_search(body.nodes, node);

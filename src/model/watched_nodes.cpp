@@ -14,17 +14,21 @@ constexpr double watched_from = 0.02;
 std::vector<WatchedNode> GeneralContact::watched(const std::vector<WatchedNode>& now,
                                                  const std::vector<contact::IntrudedPlace>& places) const {
     std::vector<WatchedNode> all = now;
-    const auto add = [&](const std::array<Index, 4>& nodes, std::size_t surface) {
-        for (const Index node : nodes)
-            if (node >= 0) all.push_back({node, static_cast<Index>(surface)});
+    const auto add = [&](const std::array<Index, 4>& nodes, std::size_t of, std::size_t surface) {
+        const std::map<Index, Index>& skin = surfaces_[of].skin;
+        for (const Index node : nodes) {
+            if (node < 0) continue;
+            const auto at = skin.find(node);
+            all.push_back({at != skin.end() ? at->second : node, static_cast<Index>(surface)});
+        }
     };
     for (const contact::IntrudedPlace& place : places) {
         if (!meet(place.body, place.other)) continue;
         const std::size_t a = surface_of_body(place.body), b = surface_of_body(place.other);
         const bool smooth = surfaces_[a].smooth || surfaces_[b].smooth;
         if (!((smooth ? place.excess : place.depth) > watched_from * place.length)) continue;
-        add(place.parts, b);
-        add(place.facet, a);
+        add(place.parts, a, b);
+        add(place.facet, b, a);
     }
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());

@@ -19,10 +19,10 @@ NodalContact nodal_contact(const model::Model& model, const model::State& state,
         const model::ContactHistory& history = state.contact[p];
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
             const auto k = static_cast<std::size_t>(j);
-            const auto node = static_cast<std::size_t>(evaluation.pair().slaves().node[k]);
+            const auto node = static_cast<std::size_t>(model::material_node(model, evaluation.pair().slaves().node[k]));
             const contact::ContactPoint& point = evaluation.point(j);
             evaluation.for_each_force(j, history.lambda[k], [&](Index at, const Vec3& force) {
-                all.force[static_cast<std::size_t>(at)] += force;
+                all.force[static_cast<std::size_t>(model::material_node(model, at))] += force;
             });
             if (point.found) all.gap[node] = std::fmin(all.gap[node], point.gap);
             if (!contact::is_closed(history.status[k])) continue;

@@ -111,9 +111,9 @@ py::list cells(const py::object& self, const std::string& name) {
 }
 
 /// Numbers of nodes within their body.
-py::array within(const model::Body& of, const std::vector<Index>& global) {
+py::array within(const model::Model& model, const model::Body& of, const std::vector<Index>& global) {
     std::vector<std::int32_t> numbers;
-    for (const Index node : global) numbers.push_back(node - of.first_node);
+    for (const Index node : global) numbers.push_back(model::material_node(model, node) - of.first_node);
     return owned(std::move(numbers));
 }
 
@@ -122,7 +122,7 @@ py::tuple set_nodes(const Session& session, const std::string& name) {
     const Index at = place(sets, "set", name, [](const model::Set& set) { return set.name; });
     const model::Set& set = sets[static_cast<std::size_t>(at)];
     const model::Body& of = session.model().bodies[static_cast<std::size_t>(set.body)];
-    return py::make_tuple(of.name, within(of, set.nodes));
+    return py::make_tuple(of.name, within(session.model(), of, set.nodes));
 }
 
 py::dict history(const Session& session) {
@@ -226,9 +226,9 @@ std::vector<double> areas(const PairOf& pair) {
 /// Body of the slave nodes, and their numbers within it.
 py::tuple slave_nodes(const PairOf& pair) {
     const std::vector<Index>& global = pair_of(pair).slaves().node;
-    for (const model::Body& of : session_of(pair).model().bodies)
-        if (!global.empty() && global.front() >= of.first_node && global.front() < of.first_node + of.nodes())
-            return py::make_tuple(of.name, within(of, global));
+    const model::Model& model = session_of(pair).model();
+    if (const model::Body* of = global.empty() ? nullptr : model::body_of(model, global.front()); of != nullptr)
+        return py::make_tuple(of->name, within(model, *of, global));
     return py::make_tuple(py::none(), owned(std::vector<std::int32_t>{}));
 }
 

@@ -20,16 +20,9 @@ void describe_element(Visitor& v, mesh::CellType& element) {
         for (const mesh::CellType type : types) names.emplace_back(mesh::cell_info(type).name);
         return names;
     }();
-    static const std::string meaning =
-        "Element shape. Contact takes no surfaces of " +
-        mesh::cell_names("and",
-                         [&](const mesh::CellInfo& info) {
-                             return !info.edges.empty() && std::ranges::count(types, info.type) > 0;
-                         }) +
-        ".";
     auto index = static_cast<std::size_t>(std::ranges::find(types, element) - types.begin());
     require(index < types.size(), "a generated mesh of a type that no generator makes");
-    v.word({.name = "element", .meaning = meaning.c_str()}, words, index);
+    v.word({.name = "element", .meaning = "Element shape."}, words, index);
     element = types[index];
 }
 
@@ -259,8 +252,7 @@ void describe(Visitor& v, CadMesh& m) {
                .meaning = "Least number of elements along a full circle of a curved face; 0: curvature does not count.",
                .range = {.low = 0, .high = 1000}},
               m.per_circle);
-    v.flag({.name = "quadratic",
-            .meaning = "Tetrahedra of ten nodes, with their middle nodes on the geometry; no contact on them."},
+    v.flag({.name = "quadratic", .meaning = "Tetrahedra of ten nodes, with their middle nodes on the geometry."},
            m.quadratic);
     describe_share(v, m);
 }

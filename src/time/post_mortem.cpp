@@ -43,7 +43,8 @@ ContactPlace place(const model::Model& model, const model::ContactEvaluation& ev
     if (where.master_facet < 0) return where;
     const mesh::Facet& facet = pair.surface().facets()[where.master_facet];
     for (int c = 0; c < facet.count; ++c)
-        if (facet.nodes[c] < model.nodes()) where.facet_nodes.push_back(facet.nodes[c] - master->first_node);
+        if (facet.nodes[c] < model.nodes())
+            where.facet_nodes.push_back(material_node(model, facet.nodes[c]) - master->first_node);
     return where;
 }
 
@@ -63,7 +64,7 @@ std::vector<StatusChanges> changes_of(const model::Model& model, const std::vect
             const Body& body = *body_of(model, node);
             one.pair = pair.name();
             one.body = body.name;
-            one.node = node - body.first_node;
+            one.node = material_node(model, node) - body.first_node;
             all.push_back(std::move(one));
         }
     }
@@ -132,7 +133,7 @@ Index global_node(const model::Model& model, const std::string& body, Index node
 void name_node(const model::Model& model, Index node, Attempt& attempt) {
     if (const Body* const body = body_of(model, node); body != nullptr) {
         attempt.body = body->name;
-        attempt.node = node - body->first_node;
+        attempt.node = material_node(model, node) - body->first_node;
     } else if (const model::RigidBody* rigid =
                    model::rigid_body_of(model, node)) { // of no mesh: the first that follows
         attempt.body = model.bodies[static_cast<std::size_t>(rigid->body)].name;

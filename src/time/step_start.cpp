@@ -98,6 +98,7 @@ void predict(const model::Model& model, const linear::Constraints& constraints, 
             ui += t + w.cross(Vec3(body.mesh.nodes[i] + ui - centre));
         }
     }
+    model::move_tied(model, u);
 }
 
 namespace {

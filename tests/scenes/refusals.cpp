@@ -53,10 +53,6 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"empty_set",
                 {"20:3: sets.under: expected at least one node of body 'cap', found an empty set: nothing lies "
                  "there"}},
-        Refusal{"contact_of_tet10",
-                {"32:12: contact.joint.master.set: expected facets of hex8, wedge6 or tet4 elements (tet10 carries "
-                 "loads, but no contact: mesh this body with `element: tet4`, `cad: {quadratic: false}` or "
-                 "C3D4), found 128 of its 128 facets are parts of faces of tet10 elements of body 'base'"}},
         Refusal{"bad_yaml", {"7:82: expected valid YAML, found illegal flow end"}},
         Refusal{"unsupported_body",
                 {"10:3: bodies.cap: expected supports or contact that hold the body, found free rigid-body motions: "

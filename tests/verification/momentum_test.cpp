@@ -10,19 +10,22 @@
 namespace osculate {
 namespace {
 
-std::string two_blocks(const std::string& surface, const std::string& friction, int steps, bool finite) {
+std::string two_blocks(const std::string& surface, const std::string& friction, int steps, bool finite,
+                       const std::string& element) {
     const std::string integrator = finite ? "generalised_alpha: {rho_inf: 1}" : "newmark: {}";
     const std::string material = finite ? "saint_venant_kirchhoff" : "linear_elastic";
     return R"(
 bodies:
   flying:
-    mesh: {block: {size: [0.4 m, 0.3 m, 0.3 m], divisions: [5, 2, 2]}, translate: [-0.401 m, 0.07 m, 0.05 m]}
+    mesh: {block: {size: [0.4 m, 0.3 m, 0.3 m], divisions: [5, 2, 2], element: )" +
+           element + R"(}, translate: [-0.401 m, 0.07 m, 0.05 m]}
     material: {)" +
            material +
            R"(: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}
     initial_velocity: [0.1, 0.03, -0.01]
   waiting:
-    mesh: {block: {size: [0.4 m, 0.4 m, 0.4 m], divisions: [2, 2, 2]}}
+    mesh: {block: {size: [0.4 m, 0.4 m, 0.4 m], divisions: [2, 2, 2], element: )" +
+           element + R"(}}
     material: {)" +
            material + R"(: {E: 1 MPa, nu: 0.3, density: 500 kg/m^3}}
 sets:
@@ -61,9 +64,11 @@ Vec3 internal_impulse(const model::Model& model, const support::RunStep& from, c
     return sum;
 }
 
-Changes meet(const std::string& surface, const std::string& friction, int steps, bool finite) {
+Changes meet(const std::string& surface, const std::string& friction, int steps, bool finite,
+             const std::string& element = "hex8") {
     support::SceneRun run;
-    support::run_scene(run, support::scene_file("two_blocks.yaml", two_blocks(surface, friction, steps, finite)));
+    support::run_scene(run,
+                       support::scene_file("two_blocks.yaml", two_blocks(surface, friction, steps, finite, element)));
     Changes changes;
     const time::Ledger& start = run.steps.front().ledger; // in flight
     EXPECT_EQ(run.steps.front().pairs[0].normal, 0);
@@ -119,6 +124,18 @@ TEST(TwoBlocks, KeepTheirAngularMomentumAtFiniteStrain) {
         // Inertia takes moments in the middle of the step, contact forces act at its end, half a slip further on.
         EXPECT_LT(coarse.angular, 1e-4);
         EXPECT_NEAR(std::log2(coarse.angular / fine.angular), 1, 0.3);
+    }
+}
+
+TEST(TwoBlocks, OfQuadraticElementsKeepTheirMomentaToo) {
+    for (const char* element : {"tet10", "hex20"}) {
+        const Changes small = meet("blend", "0.1", 60, false, element),
+                      finite = meet("facets", "0.1", 60, true, element);
+        EXPECT_LT(small.linear, 1e-11);
+        EXPECT_LT(small.moment, 1e-11);
+        EXPECT_LT(small.angular, 0.01);
+        EXPECT_LT(finite.linear, 1e-7);
+        EXPECT_LT(finite.angular, 2e-4); // of first order in the step, which is twice as long as above
     }
 }
 

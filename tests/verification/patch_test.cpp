@@ -47,6 +47,8 @@ struct Case {
     const char* surface;
     bool swapped = false; ///< the lower block is the slave
     const char* friction = "0";
+    const char* lower_element = "hex8";
+    const char* upper_element = "hex8";
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) {
     return out << c.name;
@@ -56,6 +58,8 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 std::pair<double, double> deviation(const Case& c, const std::string& discretisation) {
     std::vector<scene::Override> overrides{{"bodies.lower.mesh.block.pattern", c.lower},
                                            {"bodies.upper.mesh.block.pattern", c.upper},
+                                           {"bodies.lower.mesh.block.element", c.lower_element},
+                                           {"bodies.upper.mesh.block.element", c.upper_element},
                                            {"contact.touch.surface", c.surface},
                                            {"contact.touch.friction", c.friction},
                                            {"contact.touch.discretisation", discretisation}};
@@ -99,7 +103,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"hybrid_facets", "hybrid", "triangle", "facets"},
                     Case{"hybrid_rpim", "hybrid", "hybrid", "rpim"}, Case{"hybrid_blend", "hybrid", "quad", "blend"},
                     Case{"swapped", "hybrid", "triangle", "blend", true},
-                    Case{"friction", "quad", "triangle", "blend", false, "0.3"}),
+                    Case{"friction", "quad", "triangle", "blend", false, "0.3"},
+                    Case{"hex20_facets", "quad", "quad", "facets", false, "0", "hex20", "hex20"},
+                    Case{"hex20_blend", "quad", "quad", "blend", false, "0.3", "hex20", "hex20"},
+                    Case{"hex20_on_hex8", "triangle", "quad", "blend", false, "0", "hex8", "hex20"},
+                    Case{"hex8_on_hex20", "quad", "triangle", "blend", false, "0", "hex20", "hex8"},
+                    Case{"tet10", "quad", "quad", "rpim", false, "0", "tet10", "tet10"},
+                    Case{"tet10_on_hex20", "quad", "quad", "blend", true, "0.3", "tet10", "hex20"}),
     [](const auto& tested) { return tested.param.name; });
 
 const std::string bridge = R"(

@@ -51,6 +51,7 @@ struct OuterSurface {
     bool smooth = false;                    ///< the side is smooth, not its facets
     double E = 0;                           ///< Young's modulus, Pa
     std::map<Index, Mat3> in_plane{};       ///< projectors of its nodes on the symmetry planes they lie on
+    std::map<Index, Index> skin{}; ///< nodes of its skin by those of elements that they stand for; empty: it has none
 };
 
 struct GeneralContactOptions {

@@ -54,13 +54,23 @@ struct Tie {
     Index left_out = 0;  ///< nodes of the slave that are too far from the master, or beside it
 };
 
+/// A node of the skin that a face with midside nodes has in contact, see fe::skin_weights. It belongs to no element, and is
+/// where
+///     x = x_host + free (sum_a weight_a x_a - x_host)
+struct SkinNode {
+    Index node = -1, host = -1;                     ///< its own number; the node of an element that it stands for
+    std::vector<std::pair<Index, double>> carriers; ///< nodes of elements, and weights that sum to 1
+    Mat3 free = Mat3::Identity();                   ///< projector on the directions along which nothing holds the host
+};
+
 struct Model {
     std::vector<Body> bodies;
     Vec3 origin = Vec3::Zero(); ///< position of X = 0 in the scene's coordinates, m; saves digits far from their zero
     Field X; ///< reference positions of all nodes relative to `origin`, as in the bodies' meshes, m; at the end the two
-             ///< nodes of each rigid body and coupling, both at its reference point
+             ///< nodes of each rigid body and coupling, both at its reference point, and those of the skin
     std::vector<RigidBody> rigid; ///< what is special about the rigid ones of the bodies; then couplings
     std::vector<Tie> ties;
+    std::vector<SkinNode> skin; ///< ascending, one number after the other
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
     std::shared_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
@@ -74,15 +84,17 @@ struct Model {
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
     /// Whether some nodes follow others, see dependent_nodes().
-    [[nodiscard]] bool has_dependent_nodes() const { return !rigid.empty() || !ties.empty(); }
+    [[nodiscard]] bool has_dependent_nodes() const { return !rigid.empty() || !ties.empty() || !skin.empty(); }
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
-/// Displacements of tied nodes from those of the nodes that they follow.
+/// Displacements, or velocities, of tied nodes and of those of the skin from those of the nodes that they follow.
 void move_tied(const Model& model, Field& u);
+/// The node of an element that a node of the skin stands for; any other node itself.
+[[nodiscard]] Index material_node(const Model& model, Index node);
 /// (bodies) A number that bodies share which are tied to each other.
 [[nodiscard]] std::vector<Index> tied_groups(const Model& model);
-/// Number of the body of a global node, and the body; -1 and null for node -1.
+/// Number of the body of a global node, also of one of its skin, and the body; -1 and null for node -1.
 [[nodiscard]] Index body_index(const Model& model, Index node);
 [[nodiscard]] const Body* body_of(const Model& model, Index node);
 /// Internal forces of all bodies at the end of a step, or in a state, (nodes) N.

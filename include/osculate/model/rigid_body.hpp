@@ -65,7 +65,7 @@ void spread_velocities(const Model& model, const RigidBody& body, const RigidMot
 /// Displacements of the body's mesh from those of its two nodes, for an orientation.
 void spread_displacements(const Model& model, const RigidBody& body, const Quaternion& orientation, Field& u);
 
-/// Nodes of rigid bodies and couplings, in their order: they have no equations.
+/// Nodes of rigid bodies and couplings, tied ones, and those of the skin: they have no equations.
 [[nodiscard]] std::vector<Index> dependent_nodes(const Model& model);
 /// The rigid body or coupling that a node belongs to, be it one that follows or one of its own two; null: none.
 [[nodiscard]] const RigidBody* rigid_body_of(const Model& model, Index node);

@@ -98,7 +98,7 @@ Check examine(const LoadedScene& loaded, int threads) {
         p.gaps = initial_gaps(evaluation, plan.model.X, unused, threads);
         const scene::Pair* const spec = scene::find(loaded.scene.contact, pair.name());
         if (spec == nullptr) continue; // the program's own choice
-        const Pairing found = pairing(evaluation, plan.model.X);
+        const Pairing found = pairing(evaluation, plan.model);
         if (!evaluation.pair().master()->exact()) p.advice = advice(found);
         const double ratio = stiffness_ratio(loaded, pair);
         advise_on_stiffness(ratio, found, p);
@@ -225,7 +225,7 @@ Json as_json(const model::Model& model, const PairCheck& check) {
     for (const Overlap& overlap : gaps.overlaps) {
         const model::Body& body = owner(model, overlap.node);
         overlaps.push_back({{"body", body.name},
-                            {"node", overlap.node - body.first_node},
+                            {"node", model::material_node(model, overlap.node) - body.first_node},
                             {"position", vector(place(model, overlap.node))},
                             {"master_facet", overlap.facet},
                             {"master_point", vector(overlap.foot + model.origin)},

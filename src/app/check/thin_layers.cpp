@@ -48,11 +48,11 @@ public:
                     add(c.direction);
                 }
         for (const auto& pair : plan.pairs_at_start()) {
-            contact_.insert(pair->slaves().node.begin(), pair->slaves().node.end());
-            contact_.insert(pair->master_nodes().begin(), pair->master_nodes().end());
+            for (const Index node : pair->slaves().node) contact_.insert(model::material_node(plan.model, node));
+            for (const Index node : pair->master_nodes()) contact_.insert(model::material_node(plan.model, node));
             for (const mesh::Facet& facet : pair->slaves().facets)
-                if (own(facet.nodes[0])) add(mesh::facet_normal(facet, plan.model.X));
-            if (own(pair->master_nodes().front())) add_master(*pair);
+                if (own(model::material_node(plan.model, facet.nodes[0]))) add(mesh::facet_normal(facet, plan.model.X));
+            if (own(model::material_node(plan.model, pair->master_nodes().front()))) add_master(*pair);
         }
     }
 

@@ -37,10 +37,14 @@ std::vector<Mat3> in_symmetry_planes(const scene::Scene& scene, const model::Mod
                     if (left.norm() > 1e-6) P -= left * left.transpose() / left.squaredNorm();
                 }
     }
-    if (std::ranges::none_of(nodes, [&](Index node) { return kept.contains(node); })) return {};
+    bool any = false;
     std::vector<Mat3> in_plane;
-    for (const Index node : nodes) in_plane.push_back(kept.contains(node) ? kept.at(node) : Mat3::Identity());
-    return in_plane;
+    for (const Index node : nodes) {
+        const auto at = kept.find(model::material_node(model, node));
+        any = any || at != kept.end();
+        in_plane.push_back(at != kept.end() ? at->second : Mat3::Identity());
+    }
+    return any ? in_plane : std::vector<Mat3>{};
 }
 
 /// The master surface with its images beyond the symmetry planes that its body is held at. A patch cut off at such a
@@ -137,7 +141,10 @@ std::vector<double> thickness(const model::Model& model, const model::Set& maste
     const model::Body& body = model.bodies[static_cast<std::size_t>(master.body)];
     std::vector<mesh::Facet> own = master.facets;
     for (mesh::Facet& facet : own)
-        for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] -= body.first_node;
+        for (int c = 0; c < facet.count; ++c) {
+            Index& node = facet.nodes[static_cast<std::size_t>(c)];
+            node = model::material_node(model, node) - body.first_node;
+        }
     const std::vector<double> behind = contact::thickness_behind(corners(own), corners(exterior), body.mesh.nodes);
     std::vector<double> result(model.X.size(), std::numeric_limits<double>::infinity());
     for (std::size_t f = 0; f < master.facets.size(); ++f)
@@ -267,7 +274,8 @@ std::vector<char> cut_off(const scene::Scene& scene, const model::Model& model, 
 }
 
 model::GeneralContactOptions general_options(const scene::Scene& scene, const model::Model& model,
-                                             const std::vector<model::OuterSurface>& surfaces) {
+                                             const std::vector<model::OuterSurface>& surfaces,
+                                             const std::map<Index, model::Set>& skins) {
     const scene::GeneralContact& spec = *scene.general;
     model::GeneralContactOptions options;
     options.pair.discretisation = spec.discretisation.value();
@@ -293,6 +301,13 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
     const auto nodes_of = [&](const std::string& name) {
         const auto set = std::ranges::find(model.sets, name, &model::Set::name);
         std::vector<Index> nodes = set->nodes;
+        if (const auto skin = skins.find(set->body); skin != skins.end()) {
+            std::ranges::sort(nodes);
+            std::vector<Index> instead;
+            for (const Index node : skin->second.nodes)
+                if (std::ranges::binary_search(nodes, model::material_node(model, node))) instead.push_back(node);
+            nodes = std::move(instead);
+        }
         std::ranges::sort(nodes);
         return nodes;
     };
@@ -305,30 +320,38 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
 
 } // namespace
 
+model::Set outer_surface(const scene::Scene& scene, const model::Model& model, Index body,
+                         const std::vector<mesh::Facet>& exterior) {
+    const model::Body& own = model.bodies[static_cast<std::size_t>(body)];
+    model::Set all{own.name, body, {}, exterior};
+    for (mesh::Facet& facet : all.facets)
+        for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += own.first_node;
+    const std::vector<char> held = cut_off(scene, model, body);
+    std::erase_if(all.facets, [&](const mesh::Facet& facet) {
+        char common = ~0;
+        for (const Index node : facet) common = static_cast<char>(common & held[node]);
+        return common != 0;
+    });
+    all.nodes = mesh::nodes_of(all.facets);
+    return all;
+}
+
 std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::Scene& scene, const model::Model& model,
                                                                   const std::vector<std::vector<mesh::Facet>>& exterior,
+                                                                  const std::map<Index, model::Set>& skins,
                                                                   bool dynamic) {
     const scene::GeneralContact& spec = *scene.general;
     std::vector<model::OuterSurface> surfaces;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        const model::Body& body = model.bodies[b];
         if (scene.bodies[b].second.rigid_surface) continue; // for pairs alone
         model::OuterSurface& one = surfaces.emplace_back();
         one.body = static_cast<Index>(b);
-        one.name = body.name;
+        one.name = model.bodies[b].name;
         one.E = scene::elastic(scene.bodies[b].second.material).E;
-        model::Set all{body.name, one.body, {}, exterior[b]};
-        for (mesh::Facet& facet : all.facets)
-            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += body.first_node;
-        const std::vector<char> held = cut_off(scene, model, one.body);
-        std::erase_if(all.facets, [&](const mesh::Facet& facet) {
-            char common = ~0;
-            for (const Index node : facet) common = static_cast<char>(common & held[node]);
-            return common != 0;
-        });
-        for (const mesh::Facet& facet : all.facets) all.nodes.insert(all.nodes.end(), facet.begin(), facet.end());
-        std::ranges::sort(all.nodes);
-        all.nodes.erase(std::unique(all.nodes.begin(), all.nodes.end()), all.nodes.end());
+        const auto skin = skins.find(one.body);
+        model::Set all = skin != skins.end() ? skin->second : outer_surface(scene, model, one.body, exterior[b]);
+        if (skin != skins.end())
+            for (const Index node : all.nodes) one.skin.emplace(model::material_node(model, node), node);
         scene::MasterSpec master{{}, {}, scene::BlendSurface{}};
         const SmoothParts parts = smooth_parts(mesh::HalfEdgeSurface(all.facets, model.X), model.X);
         if (spec.surface == scene::GeneralSurface::facets ||
@@ -342,7 +365,7 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
             if (planes[i] != Mat3::Identity()) one.in_plane.emplace(all.nodes[i], planes[i]);
         one.facets = std::move(all.facets);
     }
-    model::GeneralContactOptions options = general_options(scene, model, surfaces);
+    model::GeneralContactOptions options = general_options(scene, model, surfaces, skins);
     return std::make_unique<const model::GeneralContact>(std::move(surfaces), std::move(options), model.X);
 }
 

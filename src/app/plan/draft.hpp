@@ -6,6 +6,7 @@
 #include "osculate/mesh/surface_faces.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,18 @@ struct Draft {
     Plan plan{};
     std::vector<std::vector<mesh::Facet>> exterior{}; ///< by body
     std::vector<Fault> faults{};
+    std::map<std::string, model::Set> skins{}; ///< sets of pairs whose faces have midside nodes, with the skin's nodes
+    std::map<Index, model::Set> outer_skins{}; ///< by body: outer surfaces likewise, for general contact
 
     [[nodiscard]] Index body_index(const std::string& name) const;
     /// Of the name of a rigid body or a coupling.
     [[nodiscard]] const model::RigidBody& rigid(const std::string& name) const;
     [[nodiscard]] const model::Set& set(const std::string& name) const;
+    /// A set as contact sees it.
+    [[nodiscard]] const model::Set& contact_set(const std::string& name) const {
+        const auto skin = skins.find(name);
+        return skin != skins.end() ? skin->second : set(name);
+    }
     /// Faces of a set, global nodes.
     [[nodiscard]] std::vector<mesh::SurfaceFace> faces(const model::Set& set) const;
     template <class Is> [[nodiscard]] bool any_kernel(Is&& is) const {
@@ -41,6 +49,10 @@ void add_sets(Draft& draft);
 void add_couplings(Draft& draft);
 /// Ties, with their nodes moved onto the surfaces that they follow.
 void add_ties(Draft& draft);
+/// Projectors on the directions that supports leave free, of nodes that have any.
+[[nodiscard]] std::map<Index, Mat3> free_directions(const Draft& draft);
+/// Skins of all surfaces in contact whose faces have midside nodes, with their nodes behind all others.
+void add_skins(Draft& draft);
 /// Held directions of every stage, and external forces at its ends but for gravity.
 void add_stages(Draft& draft);
 /// Contact pairs of the scene.

@@ -14,15 +14,17 @@ namespace {
 /// Nodes without mass of their own: slave nodes, where the scene asks for it.
 std::vector<char> massless_nodes(const Draft& draft) {
     std::vector<char> massless;
+    const auto mark = [&](Index node) {
+        massless[static_cast<std::size_t>(model::material_node(draft.plan.model, node))] = 1;
+    };
     for (const auto& [name, stage] : draft.scene.stages) {
         const auto* dynamic = std::get_if<scene::DynamicAnalysis>(&stage.analysis);
         if (dynamic == nullptr || dynamic->contact_mass == scene::ContactMass::kept) continue;
         massless.assign(draft.plan.model.X.size(), 0);
         for (const auto& pair : draft.plan.model.pairs)
-            for (const Index node : pair->slaves().node) massless[static_cast<std::size_t>(node)] = 1;
+            for (const Index node : pair->slaves().node) mark(node);
         if (draft.plan.model.general)
-            for (const Index node : draft.plan.model.general->possible_slaves())
-                massless[static_cast<std::size_t>(node)] = 1;
+            for (const Index node : draft.plan.model.general->possible_slaves()) mark(node);
         break;
     }
     return massless;

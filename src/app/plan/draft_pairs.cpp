@@ -12,51 +12,16 @@
 
 namespace osculate::app {
 
-namespace {
-
-/// Facets of a set that are pieces of faces with midside nodes.
-struct QuadraticFacets {
-    Index count = 0;
-    const mesh::CellInfo* of = nullptr; ///< type of the last one's element
-};
-
-QuadraticFacets quadratic_facets(const Draft& draft, const model::Set& set) {
-    const auto& blocks = draft.plan.model.bodies[static_cast<std::size_t>(set.body)].mesh.blocks;
-    QuadraticFacets found;
-    for (const mesh::Facet& facet : set.facets) {
-        const mesh::CellInfo& info = mesh::cell_info(blocks[static_cast<std::size_t>(facet.block)].type);
-        if (info.edges.empty()) continue;
-        ++found.count;
-        found.of = &info;
-    }
-    return found;
-}
-
-} // namespace
-
 void add_pairs(Draft& draft) {
     const bool paths = std::ranges::any_of(draft.plan.stages, &time::Stage::follow_paths);
     for (const auto& [name, spec] : draft.plan.contact) {
-        const model::Set& slave = draft.set(spec.slave);
-        const model::Set& master = draft.set(master_set(spec.master));
+        const model::Set& slave = draft.contact_set(spec.slave);
+        const model::Set& master = draft.contact_set(master_set(spec.master));
         const std::string key = "contact." + name;
         bool broken = false;
         for (const auto& [part, group] : {std::pair{".slave", &slave}, std::pair{".master.set", &master}})
             if (group->facets.empty()) {
                 draft.faults.push_back(fault(key + part, "a set with facets", "a set of nodes that cover no facet"));
-                broken = true;
-            } else if (const QuadraticFacets quadratic = quadratic_facets(draft, *group); quadratic.count > 0) {
-                // Their corners carry nothing or less under a uniform pressure, but contact has one law and one share of
-                // the area per node: linear shares on them would press with 0.8 to 1.7 times the pressure.
-                const mesh::CellInfo& linear = mesh::without_midside_nodes(*quadratic.of);
-                draft.faults.push_back(fault(
-                    key + part,
-                    fmt::format("facets of {} elements ({} carries loads, but no contact: mesh this body with "
-                                "`element: {}`, `cad: {{quadratic: false}}` or {})",
-                                mesh::cell_names("or", [](const mesh::CellInfo& info) { return info.edges.empty(); }),
-                                quadratic.of->name, linear.name, linear.deck[0]),
-                    fmt::format("{} of its {} facets are parts of faces of {} elements of body '{}'", quadratic.count,
-                                group->facets.size(), quadratic.of->name, draft.plan.model.bodies[group->body].name)));
                 broken = true;
             }
         if (broken) continue;
@@ -88,15 +53,10 @@ void add_general_contact(Draft& draft) {
     const bool dynamic =
         std::ranges::any_of(draft.plan.stages, [](const time::Stage& s) { return s.dynamics.has_value(); });
     const ScopedTimer timer(draft.timings, Part::patches);
-    for (std::size_t b = 0; b < draft.exterior.size(); ++b)
-        if (const auto& body = draft.plan.model.bodies[b]; std::ranges::any_of(
-                body.mesh.blocks, [](const auto& block) { return !mesh::cell_info(block.type).edges.empty(); }))
-            draft.faults.push_back(fault("contact.general", "bodies of elements without midside nodes",
-                                         "body '" + body.name + "' with quadratic elements, which carry no contact"));
-    if (!draft.faults.empty()) return;
     keep_rigid_bodies_from_themselves(draft.scene);
     try {
-        draft.plan.model.general = make_general_contact(draft.scene, draft.plan.model, draft.exterior, dynamic);
+        draft.plan.model.general =
+            make_general_contact(draft.scene, draft.plan.model, draft.exterior, draft.outer_skins, dynamic);
     } catch (const std::runtime_error& error) {
         draft.faults.push_back(
             fault("contact.general", "bodies whose outer surfaces are oriented manifolds", error.what()));

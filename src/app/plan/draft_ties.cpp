@@ -128,6 +128,19 @@ void adjust(model::Model& m, model::Tie& tie) {
 
 } // namespace
 
+std::map<Index, Mat3> free_directions(const Draft& draft) {
+    std::map<Index, Mat3> free;
+    for (const auto& [set, support] : draft.scene.supports)
+        for (const Index node : draft.set(set).nodes)
+            for (int k = 0; k < 3; ++k)
+                if (support.fixed[static_cast<std::size_t>(k)]) {
+                    Mat3& P = free.try_emplace(node, Mat3::Identity()).first->second;
+                    const Vec3 d = P * support.axes.col(k); // less what others hold
+                    if (d.norm() > vanishing) P -= d * d.transpose() / d.squaredNorm();
+                }
+    return free;
+}
+
 void add_ties(Draft& draft) {
     model::Model& m = draft.plan.model;
     const auto place = [&](Index node) {
@@ -138,15 +151,7 @@ void add_ties(Draft& draft) {
     for (const model::RigidBody& body : m.rigid)
         for (const Index node : body.nodes)
             follows.emplace(node, (body.coupling ? "couplings." : "bodies.") + body.name);
-    std::map<Index, Mat3> free; // of nodes with supports: projectors on the directions that these leave free
-    for (const auto& [set, support] : draft.scene.supports)
-        for (const Index node : draft.set(set).nodes)
-            for (int k = 0; k < 3; ++k)
-                if (support.fixed[static_cast<std::size_t>(k)]) {
-                    Mat3& P = free.try_emplace(node, Mat3::Identity()).first->second;
-                    const Vec3 d = P * support.axes.col(k); // less what others hold
-                    if (d.norm() > vanishing) P -= d * d.transpose() / d.squaredNorm();
-                }
+    const std::map<Index, Mat3> free = free_directions(draft);
     for (const auto& [name, spec] : draft.scene.ties) {
         const std::string key = "ties." + name;
         const model::Set &slave = draft.set(spec.slave), &master = draft.set(spec.master);

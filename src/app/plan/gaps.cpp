@@ -32,7 +32,8 @@ PairGaps initial_gaps(model::ContactEvaluation& evaluation, const std::vector<Ve
     return gaps;
 }
 
-std::string node_name(const model::Model& model, Index node) {
+std::string node_name(const model::Model& model, Index any) {
+    const Index node = model::material_node(model, any);
     for (const model::Body& body : model.bodies)
         if (node >= body.first_node && node < body.first_node + body.nodes())
             return "node " + std::to_string(node - body.first_node) + " of body '" + body.name + "'";

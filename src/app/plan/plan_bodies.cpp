@@ -35,7 +35,10 @@ PlanCost nonlinear_cost(const model::Model& model) {
 std::size_t bodies_with_slaves(const model::Model& model) {
     const std::vector<Index> general = model.general ? model.general->possible_slaves() : std::vector<Index>{};
     return static_cast<std::size_t>(std::ranges::count_if(model.bodies, [&](const model::Body& body) {
-        const auto own = [&](Index node) { return node >= body.first_node && node < body.first_node + body.nodes(); };
+        const auto own = [&](Index any) {
+            const Index node = model::material_node(model, any);
+            return node >= body.first_node && node < body.first_node + body.nodes();
+        };
         return std::ranges::any_of(general, own) || std::ranges::any_of(model.pairs, [&](const auto& pair) {
                    return std::ranges::any_of(pair->slaves().node, own);
                });

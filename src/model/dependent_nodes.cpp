@@ -1,0 +1,51 @@
+/// Nodes whose motion follows from that of others.
+
+#include "osculate/model/model.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace osculate::model {
+
+std::vector<Index> dependent_nodes(const Model& model) {
+    std::vector<Index> nodes;
+    for (const RigidBody& body : model.rigid) nodes.insert(nodes.end(), body.nodes.begin(), body.nodes.end());
+    for (const Tie& tie : model.ties)
+        for (const TiedNode& tied : tie.nodes) nodes.push_back(tied.node);
+    for (const SkinNode& one : model.skin) nodes.push_back(one.node);
+    return nodes;
+}
+
+std::vector<Index> tied_groups(const Model& model) {
+    std::vector<Index> group(model.bodies.size());
+    std::iota(group.begin(), group.end(), Index{0});
+    for (const Tie& tie : model.ties) {
+        const Index from = group[static_cast<std::size_t>(tie.slave_body)],
+                    to = group[static_cast<std::size_t>(tie.master_body)];
+        std::ranges::replace(group, from, to);
+    }
+    return group;
+}
+
+void move_tied(const Model& model, Field& u) {
+    for (const Tie& tie : model.ties)
+        for (const TiedNode& tied : tie.nodes) {
+            Vec3 sum = Vec3::Zero();
+            for (const auto& [node, weight] : tied.carriers) sum += weight * u[static_cast<std::size_t>(node)];
+            u[static_cast<std::size_t>(tied.node)] = tied.free * sum;
+        }
+    for (const SkinNode& one : model.skin) {
+        Vec3 sum = Vec3::Zero();
+        for (const auto& [node, weight] : one.carriers) sum += weight * u[static_cast<std::size_t>(node)];
+        const Vec3& host = u[static_cast<std::size_t>(one.host)];
+        u[static_cast<std::size_t>(one.node)] = host + one.free * (sum - host);
+    }
+}
+
+Index material_node(const Model& model, Index node) {
+    if (model.skin.empty()) return node;
+    const Index at = node - model.skin.front().node;
+    return at < 0 || at >= static_cast<Index>(model.skin.size()) ? node : model.skin[static_cast<std::size_t>(at)].host;
+}
+
+} // namespace osculate::model

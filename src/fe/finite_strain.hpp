@@ -222,10 +222,20 @@ private:
             mean_varied = flat(varied.mean_gradients());
             mean_moved = flat(moved.mean_gradients());
         }
-        for (std::size_t q = 0; q < E::points; ++q) {
-            const Eigen::Matrix<double, 6, 3 * n> DB =
-                D[q] * varied_strain(moved, q, mean_moved) * moved.points.volumes[q];
-            K.noalias() += varied_strain(varied, q, mean_varied).transpose() * DB;
+        const auto stress_variation = [&](std::size_t q) -> Eigen::Matrix<double, 6, 3 * n> {
+            return D[q] * varied_strain(moved, q, mean_moved) * moved.points.volumes[q];
+        };
+        if constexpr (n <= 8) {
+            for (std::size_t q = 0; q < E::points; ++q)
+                K.noalias() += varied_strain(varied, q, mean_varied).transpose() * stress_variation(q);
+        } else { // many points of many nodes: one product of all of them is several times as quick
+            Eigen::Matrix<double, 6 * E::points, 3 * n> B, DB;
+            for (std::size_t q = 0; q < E::points; ++q) {
+                const auto row = static_cast<Eigen::Index>(6 * q);
+                B.template middleRows<6>(row) = varied_strain(varied, q, mean_varied);
+                DB.template middleRows<6>(row) = stress_variation(q);
+            }
+            K.noalias() += B.transpose() * DB;
         }
         return K;
     }

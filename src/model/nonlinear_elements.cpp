@@ -6,7 +6,8 @@
 namespace osculate::model {
 
 namespace {
-constexpr Index batch = 256; ///< elements computed before they are added up: 1 MB of hexahedral tangents
+/// Elements computed before they are added up: 1 MB of tangents of eight nodes.
+constexpr Index most_at_once = 256;
 
 /// (3 x n), on the stack.
 using ElementValues = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, mesh::most_nodes_per_cell>;
@@ -73,8 +74,8 @@ NonlinearElements::NonlinearElements(const std::vector<Body>& bodies, const line
 
 template <class Compute, class Use>
 void NonlinearElements::for_each(const Block& block, int threads, Compute&& compute, Use&& use) {
-    for (Index first = 0; first < block.size; first += batch) {
-        const Index count = std::min(batch, block.size - first);
+    for (Index first = 0; first < block.size; first += most_at_once) {
+        const Index count = std::min(most_at_once, block.size - first);
         parallel_for(threads, count, [&](Index begin, Index end) {
             for (Index k = begin; k < end; ++k) compute(k, first + k);
         });
@@ -97,7 +98,7 @@ decltype(auto) NonlinearElements::with_step(const Block& block, Index element, c
 WorstElement NonlinearElements::add_force(const Field& X, const BodyStep& step, Field& f, int threads) const {
     WorstElement worst;
     for (const Block& block : blocks_) {
-        const Index n = block.kernel->nodes();
+        const Index n = block.kernel->nodes(), batch = std::min(most_at_once, block.size);
         std::vector<Eigen::Matrix3Xd> forces(batch, Eigen::Matrix3Xd(3, n));
         std::vector<fe::Deformation> deformation(batch);
         MaterialHistory unused(batch * block.history_size);
@@ -120,7 +121,7 @@ WorstElement NonlinearElements::add_force(const Field& X, const BodyStep& step, 
 
 void NonlinearElements::add_tangent(const Field& X, const BodyStep& step, linear::BlockMatrix& K, int threads) const {
     for (const Block& block : blocks_) {
-        const Index n = block.kernel->nodes();
+        const Index n = block.kernel->nodes(), batch = std::min(most_at_once, block.size);
         std::vector<Matrix> tangent(batch, Matrix(3 * n, 3 * n));
         for_each(
             block, threads,
@@ -158,7 +159,7 @@ double NonlinearElements::energy(const Field& X, const Field& u, const MaterialH
     double sum = 0;
     for (const Block& block : blocks_) {
         const Index n = block.kernel->nodes();
-        std::vector<double> W(batch);
+        std::vector<double> W(std::min(most_at_once, block.size));
         for_each(
             block, threads,
             [&](Index k, Index e) {

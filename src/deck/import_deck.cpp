@@ -102,8 +102,15 @@ private:
             if (dangling) text += ", repair: [dangling_nodes]";
             text += "}";
             if (units_.length != 1) text += ", scale: " + number(units_.length);
-            text += "}\n    material: " + material_of(body) + "\n";
-            if (body.formulation != "full") text += "    hex_formulation: " + body.formulation + "\n";
+            const std::string material = material_of(body);
+            text += "}\n    material: " + material + "\n";
+            std::string formulation = body.formulation;
+            if (formulation == "incompatible_modes" && !material.starts_with("{linear_elastic")) {
+                formulation = "b_bar";
+                model_.note(body.section == nullptr ? model_.mesh.raw.file : body.section->place, "C3D8I or C3D8R",
+                            "incompatible modes are for small strain: b_bar is used instead");
+            }
+            if (formulation != "full") text += "    hex_formulation: " + formulation + "\n";
         }
         return text;
     }
@@ -112,6 +119,7 @@ private:
         std::array<double, 2> elastic{1, 0};
         std::string law = nlgeom_ ? "saint_venant_kirchhoff" : "linear_elastic";
         double density = 0;
+        const std::vector<std::array<double, 2>>* hardening = nullptr;
         const auto found =
             body.section == nullptr ? model_.materials.end() : model_.materials.find(body.section->material);
         if (found == model_.materials.end()) {
@@ -122,6 +130,12 @@ private:
             density = m.density;
             if (m.elastic) {
                 elastic = *m.elastic;
+                if (!m.hardening.empty()) {
+                    law = "elastic_plastic";
+                    hardening = &m.hardening;
+                    if (!nlgeom_)
+                        model_.note(m.place, "*PLASTIC without NLGEOM", "plastic bodies are at finite strain");
+                }
             } else if (m.neo_hookean && (*m.neo_hookean)[0] > 0 && (*m.neo_hookean)[1] > 0) {
                 const double mu = 2 * (*m.neo_hookean)[0], K = 2 / (*m.neo_hookean)[1];
                 elastic = {9 * K * mu / (3 * K + mu), (3 * K - 2 * mu) / (2 * (3 * K + mu))};
@@ -136,6 +150,13 @@ private:
         }
         std::string text = "{" + law + ": {E: " + number(units_.stress * elastic[0]) + ", nu: " + number(elastic[1]);
         if (density > 0) text += ", density: " + number(units_.density * density);
+        if (hardening != nullptr) {
+            text += ", yield_stress: {table: [";
+            for (const auto& [strain, stress] : *hardening)
+                text +=
+                    (text.ends_with('[') ? "[" : ", [") + number(strain) + ", " + number(units_.stress * stress) + "]";
+            text += "]}";
+        }
         return text + "}}";
     }
 

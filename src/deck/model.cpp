@@ -109,6 +109,10 @@ private:
 
     void take(const DeckCard& card) {
         const std::string word = without_blanks(card.keyword);
+        if (passing_over_) {
+            passing_over_ = word != "ENDSTEP";
+            return;
+        }
         if (word == "STEP") return begin_step(card);
         if (word == "ENDSTEP") {
             if (step_ != nullptr && !step_taken_) drop_step("it has no analysis");
@@ -121,6 +125,7 @@ private:
         }
         if (word == "MATERIAL") return begin_material(card);
         if (word == "ELASTIC" || word == "DENSITY" || word == "HYPERELASTIC") return material_data(card);
+        if (word == "PLASTIC") return hardening(card);
         if (word == "SOLIDSECTION") return section(card);
         if (word == "SURFACEINTERACTION") {
             interaction_ = capitals_of(card, "NAME");
@@ -178,6 +183,28 @@ private:
         DeckMaterial& m = model_.materials[material_];
         m.name = name == nullptr ? "" : *name;
         m.place = deck_.place(card);
+    }
+
+    void hardening(const DeckCard& card) {
+        const auto found = model_.materials.find(material_);
+        if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
+        const std::string kind = capitals_of(card, "HARDENING");
+        if (!kind.empty() && kind != "ISOTROPIC") return lose(card, "only isotropic hardening has a counterpart");
+        std::vector<std::array<double, 2>> rows;
+        std::optional<double> temperature;
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            const std::vector<double> v = numbers(*line, 2);
+            if (v.size() > 2 && v[2] != temperature.value_or(v[2])) {
+                note(card, "only the rows of its first temperature count: nothing depends on temperature");
+                break;
+            }
+            if (v.size() > 2) temperature = v[2];
+            if (!(v[0] > 0) || v[1] < 0 || (rows.empty() ? v[1] != 0 : v[1] <= rows.back()[0]))
+                return lose(card, "yield stresses over plastic strains that ascend from 0 have a counterpart");
+            rows.push_back({v[1], v[0]});
+        }
+        if (rows.empty()) return lose(card, "it has no data");
+        found->second.hardening = std::move(rows);
     }
 
     void material_data(const DeckCard& card) {
@@ -481,7 +508,22 @@ private:
         step_->gravity.push_back(std::move(g));
     }
 
+    /// Whether the step that begins with a card asks for eigenfrequencies, which the steps before it do not depend on.
+    [[nodiscard]] bool asks_for_frequencies(const DeckCard& card) const {
+        for (auto at = deck_.cards.begin() + (&card - deck_.cards.data()) + 1; at != deck_.cards.end(); ++at) {
+            const std::string word = without_blanks(at->keyword);
+            if (word == "STEP" || word == "ENDSTEP") return false;
+            if (word == "FREQUENCY") return true;
+        }
+        return false;
+    }
+
     void begin_step(const DeckCard& card) {
+        if (asks_for_frequencies(card)) {
+            model_.note(deck_.place(card), "*STEP", "eigenfrequencies are not computed: all of the step is left out");
+            passing_over_ = true;
+            return;
+        }
         model_.steps.emplace_back();
         step_ = &model_.steps.back();
         step_taken_ = false;
@@ -525,7 +567,7 @@ private:
     std::string material_, interaction_;
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
-    bool step_taken_ = false;
+    bool step_taken_ = false, passing_over_ = false;
     bool nlgeom_ = false; ///< of the last step that said so
     std::vector<std::string_view> fields_;
 };

@@ -24,6 +24,7 @@ struct DeckMaterial {
     std::string name, place;
     std::optional<std::array<double, 2>> elastic;     ///< E, nu
     std::optional<std::array<double, 2>> neo_hookean; ///< C10, D1
+    std::vector<std::array<double, 2>> hardening;     ///< equivalent plastic strain, yield stress; empty: elastic
     double density = 0;
 };
 

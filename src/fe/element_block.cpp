@@ -66,4 +66,9 @@ std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation f
     return make(type, formulation, material);
 }
 
+std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                           const material::J2Plasticity& material) {
+    return make(type, formulation, material);
+}
+
 } // namespace osculate::fe

@@ -1,10 +1,11 @@
 #pragma once
-/// Total Lagrangian kernels of hyperelastic elements at any strain and rotation.
+/// Total Lagrangian kernels at any strain and rotation, of hyperelastic materials and of those with a memory.
 
 #include "fe/kernel_instances.hpp"
 #include "fe/solid_kernel.hpp"
 #include "osculate/material/voigt.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -30,6 +31,7 @@ public:
 
     [[nodiscard]] bool linear() const override { return false; }
     [[nodiscard]] bool finite_strain() const override { return true; }
+    [[nodiscard]] std::size_t history_size() const override { return E::points * memory; }
 
     void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const override {
         const Positions rest = Positions::Zero();
@@ -41,17 +43,46 @@ public:
         W = 0;
         const Kinematics k(this->table_, state.X, state.u);
         if (!k.deformation.admissible()) return k.deformation;
-        for (std::size_t q = 0; q < E::points; ++q) W += material_.energy(k.strain(q)) * k.points.volumes[q];
+        for (std::size_t q = 0; q < E::points; ++q)
+            W += law(state.history, q).energy(k.strain(q)) * k.points.volumes[q];
         if (std::isfinite(W)) return k.deformation;
         W = 0;
         return overflow;
     }
 
-    Deformation update(const ElementStep& step, std::span<double>, Eigen::Ref<Eigen::Matrix3Xd> f) const override {
+    double dissipated(const ElementState& state) const override {
+        double sum = 0;
+        if constexpr (memory > 0) {
+            const ElementPoints<E> points(this->table_, Positions(state.X));
+            for (std::size_t q = 0; q < E::points; ++q)
+                sum += material_.dissipated(of_point(state.history, q)) * points.volumes[q];
+        }
+        return sum;
+    }
+
+    bool nodal_plastic_strain(const ElementState& state, Eigen::Ref<Vector> values) const override {
+        if constexpr (memory > 0) {
+            Eigen::Matrix<double, E::points, 1> at;
+            for (std::size_t q = 0; q < E::points; ++q)
+                at(static_cast<Eigen::Index>(q)) = Material::plastic_strain(of_point(state.history, q));
+            values = this->extrapolation_ * at;
+        }
+        return memory > 0;
+    }
+
+    Deformation update(const ElementStep& step, std::span<double> history,
+                       Eigen::Ref<Eigen::Matrix3Xd> f) const override {
         require(step.X.cols() == n && step.u.cols() == n && f.cols() == n, "update: sizes do not match the element");
         require(!step.mean || step.u_start.cols() == n, "update: a mean over a step wants its start");
         f.setZero();
-        return step.mean ? mean_force({*this, step}, f) : force(Kinematics(this->table_, step.X, step.u), f);
+        if constexpr (memory > 0) {
+            std::ranges::copy(step.history_start, history.begin());
+            const Kinematics end(this->table_, step.X, step.u);
+            for (std::size_t q = 0; q < E::points && end.deformation.admissible(); ++q)
+                law(step.history_start, q).end(end.strain(q), history.subspan(q * memory, memory));
+        }
+        return step.mean ? mean_force({*this, step}, f)
+                         : force(Kinematics(this->table_, step.X, step.u), step.history_start, f);
     }
 
     Deformation tangent(const ElementStep& step, Eigen::Ref<Matrix> Ke) const override {
@@ -59,7 +90,8 @@ public:
                 "tangent: sizes do not match the element");
         require(!step.mean || step.u_start.cols() == n, "tangent: a mean over a step wants its start");
         Ke.setZero();
-        return step.mean ? mean_tangent({*this, step}, Ke) : end_tangent(Kinematics(this->table_, step.X, step.u), Ke);
+        return step.mean ? mean_tangent({*this, step}, Ke)
+                         : end_tangent(Kinematics(this->table_, step.X, step.u), step.history_start, Ke);
     }
 
     Deformation nodal_stress(const ElementState& state, Eigen::Ref<Matrix> stress) const override {
@@ -71,7 +103,7 @@ public:
         Eigen::Matrix<double, 6, E::points> sigma;
         for (std::size_t q = 0; q < E::points; ++q) {
             // sigma = Fbar S Fbar^T / Jbar
-            const Mat3 S = material_.pk2(k.strain(q));
+            const Mat3 S = law(state.history, q).pk2(k.strain(q));
             const double J = 1 + (mean_dilatation ? k.mean_j : k.j[q]);
             sigma.col(static_cast<int>(q)) =
                 material::stress_vector(k.scale_squared(q) / J * k.F(q) * S * k.F(q).transpose());
@@ -82,6 +114,30 @@ public:
     }
 
 private:
+    /// Numbers that the material remembers at a point.
+    static constexpr std::size_t memory = [] {
+        if constexpr (requires { Material::memory; }) return Material::memory;
+        return std::size_t{0};
+    }();
+    /// Those of a point; none in the undeformed initial state if `history` is empty.
+    static std::span<const double> of_point(std::span<const double> history, std::size_t q) {
+        return history.empty() ? history : history.subspan(q * memory, memory);
+    }
+    /// The law of a point in a step that begins with a history.
+    decltype(auto) law([[maybe_unused]] std::span<const double> history, [[maybe_unused]] std::size_t q) const {
+        if constexpr (memory > 0)
+            return material_.at(of_point(history, q));
+        else
+            return (material_);
+    }
+    /// Energy whose derivative is the stress of a step.
+    static double potential(const auto& law, const Mat3& strain) {
+        if constexpr (memory > 0)
+            return law.potential(strain);
+        else
+            return law.energy(strain);
+    }
+
     static constexpr Deformation overflow{-std::numeric_limits<double>::infinity()};
     /// Below this, C = 1 + 2 E, whose least eigenvalue can be J^2, has too few digits left: it counts as no volume.
     static constexpr double least_J = 1e-6;
@@ -181,14 +237,14 @@ private:
             for (int a = 0; a < n; ++a) K.template block<3, 3>(3 * a, 3 * b).diagonal().array() += initial(a, b);
     }
 
-    [[nodiscard]] Stresses stresses(const Kinematics& k) const {
+    [[nodiscard]] Stresses stresses(const Kinematics& k, std::span<const double> history) const {
         Stresses S;
-        for (std::size_t q = 0; q < E::points; ++q) S[q] = material_.pk2(k.strain(q));
+        for (std::size_t q = 0; q < E::points; ++q) S[q] = law(history, q).pk2(k.strain(q));
         return S;
     }
-    [[nodiscard]] Moduli moduli(const Kinematics& k) const {
+    [[nodiscard]] Moduli moduli(const Kinematics& k, std::span<const double> history) const {
         Moduli D;
-        for (std::size_t q = 0; q < E::points; ++q) D[q] = material_.tangent(k.strain(q));
+        for (std::size_t q = 0; q < E::points; ++q) D[q] = law(history, q).tangent(k.strain(q));
         return D;
     }
 
@@ -259,33 +315,32 @@ private:
         /// Below this strain increment g, of the order of |DE|^2 in the stress, would be a quotient of round-off.
         static constexpr double least_increment = 1e-5;
 
+        std::span<const double> history; ///< at the start
         Kinematics start, end, mean;
         StepMean weights;
         Stresses S, S_difference, DE;
         std::array<double, E::points> g;
 
         Step(const FiniteStrainKernel& kernel, const ElementStep& step)
-            : Step(kernel, step.X, step.u_start, step.u, *step.mean) {}
+            : Step(kernel, step.X, step.u_start, step.u, *step.mean, step.history_start) {}
         Step(const FiniteStrainKernel& kernel, const Positions& X, const Positions& u0, const Positions& u1,
-             const StepMean& w)
-            : start(kernel.table_, X, u0), end(kernel.table_, X, u1),
+             const StepMean& w, std::span<const double> before)
+            : history(before), start(kernel.table_, X, u0), end(kernel.table_, X, u1),
               mean(kernel.table_, X, w.end_weight * u1 + (1 - w.end_weight) * u0), weights(w) {
             if (!deformation().admissible()) return;
             for (std::size_t q = 0; q < E::points; ++q) {
-                const Mat3 E0 = start.strain(q), E1 = end.strain(q), S0 = kernel.material_.pk2(E0),
-                           S1 = kernel.material_.pk2(E1), half = (S0 + S1) / 2;
+                const auto& law = kernel.law(history, q);
+                const Mat3 E0 = start.strain(q), E1 = end.strain(q), S0 = law.pk2(E0), S1 = law.pk2(E1),
+                           half = (S0 + S1) / 2;
                 DE[q] = E1 - E0;
                 S_difference[q] = S1 - S0;
                 const double square = DE[q].squaredNorm();
                 g[q] = 0;
                 if (square > least_increment * least_increment)
-                    g[q] =
-                        (kernel.material_.energy(E1) - kernel.material_.energy(E0) - half.cwiseProduct(DE[q]).sum()) /
-                        square;
+                    g[q] = (potential(law, E1) - potential(law, E0) - half.cwiseProduct(DE[q]).sum()) / square;
                 S[q] = half + g[q] * DE[q] + (w.end_weight - 0.5) * S_difference[q];
                 if (w.viscosity > 0)
-                    S[q] += w.viscosity *
-                            material::stress_matrix(kernel.material_.tangent(E0) * material::strain_vector(DE[q]));
+                    S[q] += w.viscosity * material::stress_matrix(law.tangent(E0) * material::strain_vector(DE[q]));
             }
         }
         /// The worst of the end and of what the mean needs.
@@ -297,9 +352,10 @@ private:
         [[nodiscard]] Moduli moduli(const FiniteStrainKernel& kernel) const {
             Moduli D;
             for (std::size_t q = 0; q < E::points; ++q) {
-                const Mat6 D1 = kernel.material_.tangent(end.strain(q));
+                const auto& law = kernel.law(history, q);
+                const Mat6 D1 = law.tangent(end.strain(q));
                 D[q] = weights.end_weight * D1;
-                if (weights.viscosity > 0) D[q] += weights.viscosity * kernel.material_.tangent(start.strain(q));
+                if (weights.viscosity > 0) D[q] += weights.viscosity * law.tangent(start.strain(q));
                 if (g[q] == 0) continue;
                 // g 1 + DE dg, dg = ((S1 - S0)/2 - D1 : DE/2 - 2 g DE)/|DE|^2; 1 on symmetric tensors, Voigt
                 D[q].diagonal() += g[q] * Vec6(1, 1, 1, 0.5, 0.5, 0.5);
@@ -347,17 +403,19 @@ private:
         K.noalias() -= (pressure * mean.transpose()) * mean;
     }
 
-    [[nodiscard]] Deformation force(const Kinematics& k, Eigen::Ref<Eigen::Matrix3Xd> f) const {
+    [[nodiscard]] Deformation force(const Kinematics& k, std::span<const double> history,
+                                    Eigen::Ref<Eigen::Matrix3Xd> f) const {
         if (!k.deformation.admissible()) return k.deformation;
-        const Forces sum = forces(k, stresses(k));
+        const Forces sum = forces(k, stresses(k, history));
         if (!sum.allFinite()) return overflow;
         f = sum;
         return k.deformation;
     }
 
-    [[nodiscard]] Deformation end_tangent(const Kinematics& k, Eigen::Ref<Matrix> Ke) const {
+    [[nodiscard]] Deformation end_tangent(const Kinematics& k, std::span<const double> history,
+                                          Eigen::Ref<Matrix> Ke) const {
         if (!k.deformation.admissible()) return k.deformation;
-        const Stiffness K = stress_tangent(k, stresses(k)) + material_tangent(k, k, moduli(k));
+        const Stiffness K = stress_tangent(k, stresses(k, history)) + material_tangent(k, k, moduli(k, history));
         if (!K.allFinite()) return overflow;
         Ke = (K + K.transpose()) / 2;
         return k.deformation;

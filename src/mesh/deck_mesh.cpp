@@ -102,6 +102,7 @@ private:
                 }
                 ++line;
             }
+            if (name == "C3D8I" && numbers.size() > count + 1) numbers.resize(count + 1); // nodes of its modes
             if (!good || numbers.size() != count + 1 || numbers[0] <= 0 || numbers[0] > DeckNumbers::largest)
                 reading_.fault(first, "an element of type " + name + " is its number and " + std::to_string(count) +
                                           " nodes, found '" + shown(first.text) + "'");

@@ -171,4 +171,18 @@ double NonlinearElements::energy(const Field& X, const Field& u, const MaterialH
     return sum;
 }
 
+double NonlinearElements::dissipated(const Field& X, const MaterialHistory& history) const {
+    double sum = 0;
+    for (const Block& block : blocks_) {
+        if (block.history_size == 0) continue;
+        const Index n = block.kernel->nodes();
+        for (Index e = 0; e < block.size; ++e) {
+            const ElementValues at =
+                gather(&block.node[static_cast<std::size_t>(e) * static_cast<std::size_t>(n)], n, X);
+            sum += block.kernel->dissipated({at, at, block.history(history, e)});
+        }
+    }
+    return sum;
+}
+
 } // namespace osculate::model

@@ -141,6 +141,13 @@ Values energy_density(const Snapshot& snapshot, Index body) {
     return nodal_energy_density(snapshot.model(), body, snapshot.state());
 }
 
+/// Equivalent, 0 in elastic bodies.
+Values plastic_strain(const Snapshot& snapshot, Index body) {
+    const model::Body& part = snapshot.model().bodies[body];
+    if (part.rigid) return Values(static_cast<std::size_t>(part.nodes()), 0.0);
+    return nodal_plastic_strain(snapshot.model(), body, snapshot.state());
+}
+
 Values gap(const Snapshot& snapshot, Index pair) {
     Values values;
     for_each_slave(snapshot, pair, [&](Index j, const contact::ContactState& contact, bool) {
@@ -298,6 +305,7 @@ constexpr OutputField table[] = {
     {"stress_min", FieldPlace::body, 1, "Pa", false, principal<0>},
     {"strain", FieldPlace::body, 6, "", false, strain}, // tensor components: shears are halves of the angles
     {"energy_density", FieldPlace::body, 1, "J/m^3", false, energy_density},
+    {"plastic_strain", FieldPlace::body, 1, "", false, plastic_strain},
     {"reaction", FieldPlace::body, 3, "N", false, reaction},
     {"out_of_balance", FieldPlace::body, 3, "N", false, out_of_balance},   // of a failed iterate; 0 otherwise
     {"penetration", FieldPlace::body, 1, "m", false, penetration},         // in another body, by the audit; 0 outside

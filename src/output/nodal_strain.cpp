@@ -63,6 +63,22 @@ std::vector<double> nodal_strain(const model::Body& body, const Field& u) {
     return mean.values();
 }
 
+std::vector<double> nodal_plastic_strain(const model::Model& model, Index b, const model::State& state) {
+    const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
+    NodalMean mean(body.nodes(), 1);
+    for_each_element(body, [&](const ElementOf& element) {
+        const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(element.block)];
+        const std::vector<Index> nodes = nodes_of(body, element);
+        const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, state.u);
+        Vector strain = Vector::Zero(kernel.nodes());
+        (void)kernel.nodal_plastic_strain({X, ue, history_of(model, b, element, state)}, strain);
+        const double volume = kernel.volume(X);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            mean.add(nodes[i], Eigen::Matrix<double, 1, 1>(std::max(0.0, strain(static_cast<Index>(i)))), volume);
+    });
+    return mean.values();
+}
+
 std::vector<double> nodal_energy_density(const model::Model& model, Index b, const model::State& state) {
     const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
     NodalMean mean(body.nodes(), 1);

@@ -11,6 +11,10 @@ namespace osculate::output {
 /// Green-Lagrange (H + H^T + H^T H)/2 at finite strain. From the quadrature points carried to the nodes, as stresses are.
 [[nodiscard]] std::vector<double> nodal_strain(const model::Body& body, const Field& u);
 
+/// Equivalent plastic strain (nodes), carried to the nodes as stresses are; 0 in elastic elements.
+[[nodiscard]] std::vector<double> nodal_plastic_strain(const model::Model& model, Index body,
+                                                       const model::State& state);
+
 /// Strain energy per reference volume (nodes), J/m^3: the mean of each element around.
 [[nodiscard]] std::vector<double> nodal_energy_density(const model::Model& model, Index body,
                                                        const model::State& state);

@@ -141,19 +141,20 @@ void write_paraview_script(const std::filesystem::path& folder, const model::Mod
     if (std::ranges::count(fields.slave, "contact_force") > 0) arrows.emplace_back("slave");
     for (const OutputField& f : all_fields())
         if (f.components == 3 && std::ranges::count(vectors, f.name) == 0) vectors.emplace_back(f.name);
-    const std::string text =
-        fmt::format("\"\"\"Shows the frames of this folder: View > Python Shell > Run Script in ParaView, or\n"
-                    "    pvbatch {} PICTURE.png\n\"\"\"\n"
-                    "SCALE = 1.0  # of displacements\n"
-                    "BODIES = {}\nSLAVES = {}\nMASTERS = {}\n"
-                    "# what each part is coloured by, and its unit\n"
-                    "COLOURS = {{\n    \"body\": {},\n    \"slave\": {},\n    \"master\": {},\n}}\n"
-                    "ARROWS = {}\nVECTORS = {}\n",
-                    paraview_script_file, list_of(bodies), list_of(slaves), list_of(masters),
-                    first_of(FieldPlace::body,
-                             {"von_mises", "stress_max", "energy_density", "velocity", "displacement"}, fields.body),
-                    first_of(FieldPlace::slave, {"normal_stress", "gap", "status"}, fields.slave),
-                    first_of(FieldPlace::master, {"normal_stress"}, fields.master), list_of(arrows), list_of(vectors));
+    const std::string text = fmt::format(
+        "\"\"\"Shows the frames of this folder: View > Python Shell > Run Script in ParaView, or\n"
+        "    pvbatch {} PICTURE.png\n\"\"\"\n"
+        "SCALE = 1.0  # of displacements\n"
+        "BODIES = {}\nSLAVES = {}\nMASTERS = {}\n"
+        "# what each part is coloured by, and its unit\n"
+        "COLOURS = {{\n    \"body\": {},\n    \"slave\": {},\n    \"master\": {},\n}}\n"
+        "ARROWS = {}\nVECTORS = {}\n",
+        paraview_script_file, list_of(bodies), list_of(slaves), list_of(masters),
+        first_of(FieldPlace::body,
+                 {"von_mises", "plastic_strain", "stress_max", "energy_density", "velocity", "displacement"},
+                 fields.body),
+        first_of(FieldPlace::slave, {"normal_stress", "gap", "status"}, fields.slave),
+        first_of(FieldPlace::master, {"normal_stress"}, fields.master), list_of(arrows), list_of(vectors));
     write_atomic(folder / paraview_script_file, text + body_of_script);
 }
 

@@ -58,6 +58,16 @@ public:
             fault({"bodies", body, "mesh", "cad", "smallest"}, "at most size, " + number_text(m.size) + " m",
                   number_text(m.smallest) + " m");
     }
+    void check_hardening(const std::string& name, const Body& body) {
+        const auto* plastic = std::get_if<ElasticPlastic>(&body.material);
+        if (plastic == nullptr || plastic->yield_stress.is_value()) return;
+        const std::vector<std::string> key{"bodies", name, "material", "elastic_plastic", "yield_stress"};
+        if (std::holds_alternative<Expression>(plastic->yield_stress.form))
+            fault(key, "a value, or a table over the equivalent plastic strain", "an expression");
+        else if (const double first = std::get<Table>(plastic->yield_stress.form).rows.front()[0]; first != 0)
+            fault(key, "a table that begins at a plastic strain of 0", number_text(first));
+    }
+
     void check_path(const std::string& body, const char* tag, const std::string& path) {
         std::error_code ignored;
         if (!path.empty() && !std::filesystem::is_regular_file(path, ignored))
@@ -459,6 +469,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     for (const auto& [name, body] : scene.bodies)
         std::visit([&, &n = name](const auto& source) { rules.check_mesh(n, source); }, body.mesh.source);
     for (const auto& [name, body] : scene.bodies) rules.check_formulation(name, body);
+    for (const auto& [name, body] : scene.bodies) rules.check_hardening(name, body);
     for (const auto& [name, body] : scene.bodies) rules.check_rigid(name, body);
     rules.check_rigid_sets(scene);
     rules.check_couplings(scene);

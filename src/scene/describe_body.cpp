@@ -276,6 +276,18 @@ void describe(Visitor& v, ElasticConstants& m) {
              m.density);
 }
 
+void describe(Visitor& v, ElasticPlastic& m) {
+    describe(v, static_cast<ElasticConstants&>(m));
+    v.course({.name = "yield_stress",
+              .meaning =
+                  "Yield stress in uniaxial tension: a value, or a table whose first column is the equivalent plastic "
+                  "strain, from 0, in place of time; constant after its last row.",
+              .unit = dimension::pressure,
+              .range = range::positive,
+              .required = true},
+             m.yield_stress);
+}
+
 void describe(Visitor& v, MeshSpec& mesh) {
     static const Words tags{"block", "half_tube", "contactor", "ball", "cylinder", "tube", "file", "cad"};
     one_of(v, tags,
@@ -328,11 +340,12 @@ void describe(Visitor& v, Body& body) {
                      is_rigid, [&] { describe(v, rigid); });
     body.rigid = is_rigid || is_exact ? std::optional(rigid) : std::nullopt;
     const auto material = [&] {
-        static const Words tags{"linear_elastic", "saint_venant_kirchhoff", "neo_hookean"};
+        static const Words tags{"linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "elastic_plastic"};
         one_of(v, tags,
                {"Isotropic linear elasticity at small strain: no large rotations.",
                 "Hooke's law at finite strain: large rotations, small strains.",
-                "Compressible neo-Hookean elasticity: large rotations, large strains."},
+                "Compressible neo-Hookean elasticity: large rotations, large strains.",
+                "Von Mises plasticity with isotropic hardening: large rotations, large strains."},
                true, body.material, [&v](auto& alternative) { describe(v, alternative); });
     };
     const Key law{.name = "material",

@@ -9,10 +9,10 @@ namespace osculate::scene {
 
 namespace {
 
-const Words body_fields{"displacement",   "velocity",    "acceleration",  "stress",           "strain",
-                        "von_mises",      "stress_max",  "stress_mid",    "stress_min",       "reaction",
-                        "energy_density", "penetration", "contact_force", "contact_pressure", "contact_gap",
-                        "contact_status", "contact_slip"};
+const Words body_fields{"displacement",   "velocity",     "acceleration",  "stress",           "strain",
+                        "von_mises",      "stress_max",   "stress_mid",    "stress_min",       "reaction",
+                        "energy_density", "penetration",  "contact_force", "contact_pressure", "contact_gap",
+                        "contact_status", "contact_slip", "plastic_strain"};
 const Words slave_fields{"gap",       "contact_force", "normal_stress",       "slip",         "status",      "normal",
                          "slip_rate", "area",          "tangential_traction", "friction_use", "master_facet"};
 const Words master_fields{"contact_force", "normal_stress"};

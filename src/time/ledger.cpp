@@ -67,11 +67,15 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibri
     const double change = next.kinetic - ledger.kinetic + next.strain - ledger.strain;
     const double of_weights = equilibrium.rigid() != nullptr ? equilibrium.rigid()->work_of_weights() : 0;
     const double algorithmic = work.inertia + work.internal - of_weights - change;
+    // what flows stays below the mean stress times the flow: the rest, of second order, is the integrator's
+    const double plastic = model.nonlinear ? model.nonlinear->dissipated(model.X, to.material) -
+                                                 model.nonlinear->dissipated(model.X, from.material)
+                                           : 0;
     next.external += external;
     next.friction += friction;
     // an impact is inelastic on purpose
-    next.damping += work.damping + (impact ? algorithmic - contact - friction : 0);
-    next.algorithmic += impact ? 0 : algorithmic;
+    next.damping += work.damping + (impact ? algorithmic - contact - friction : plastic);
+    next.algorithmic += impact ? 0 : algorithmic - plastic;
     next.contact += impact ? 0 : contact + friction;
     next.balance += change - (external + contact - work.damping - algorithmic);
     return next;

@@ -3,6 +3,7 @@
 
 #include "osculate/core/choices.hpp"
 #include "osculate/core/types.hpp"
+#include "osculate/material/j2_plasticity.hpp"
 #include "osculate/material/linear_elastic.hpp"
 #include "osculate/material/neo_hookean.hpp"
 #include "osculate/material/saint_venant_kirchhoff.hpp"
@@ -69,6 +70,11 @@ public:
     /// Stored energy, J: the potential W(u) of elements that have one, the recoverable energy of others.
     [[nodiscard]] virtual Deformation energy(const ElementState& state, double& W) const = 0;
 
+    /// Work that the material has dissipated until a state, J.
+    [[nodiscard]] virtual double dissipated(const ElementState&) const { return 0; }
+    /// Equivalent plastic strain (n), extrapolated from the quadrature points to the nodes. False: the material has none.
+    virtual bool nodal_plastic_strain(const ElementState&, Eigen::Ref<Vector>) const { return false; }
+
     /// Computes a step: internal forces f (3 x n), N, and the history at its end. Without a mean, f = dW/du at the end
     /// if there is a potential. With a mean of end_weight 1/2, without viscosity and without mean dilatation, the work
     /// of f over the step equals the difference of the energies. At finite strain a rigid motion by any angle causes no
@@ -115,5 +121,7 @@ public:
                                                          const material::SaintVenantKirchhoff& material);
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
                                                          const material::NeoHookean& material);
+[[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                                         const material::J2Plasticity& material);
 
 } // namespace osculate::fe

@@ -48,6 +48,8 @@ public:
     [[nodiscard]] MaterialHistory history(const Field& X, const BodyStep& step, int threads) const;
     /// Energy stored in a state, J.
     [[nodiscard]] double energy(const Field& X, const Field& u, const MaterialHistory& history, int threads) const;
+    /// Work that materials have dissipated until a state, J.
+    [[nodiscard]] double dissipated(const Field& X, const MaterialHistory& history) const;
     /// Largest diagonal entry of an undeformed element's stiffness, N/m.
     [[nodiscard]] double largest_stiffness() const { return largest_stiffness_; }
 

@@ -135,7 +135,11 @@ struct SaintVenantKirchhoff : ElasticConstants { ///< finite strain
 struct NeoHookean : ElasticConstants { ///< finite strain
     bool operator==(const NeoHookean&) const = default;
 };
-using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean>;
+struct ElasticPlastic : ElasticConstants { ///< finite strain
+    Course yield_stress;                   ///< Pa, a value, or a table over the equivalent plastic strain
+    bool operator==(const ElasticPlastic&) const = default;
+};
+using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean, ElasticPlastic>;
 
 [[nodiscard]] inline const ElasticConstants& elastic(const Material& material) {
     return std::visit([](const auto& m) -> const ElasticConstants& { return m; }, material);

@@ -15,7 +15,7 @@ struct Ledger {
     double kinetic = 0, strain = 0;
     double external = 0; ///< loads, supports and driven motions
     double friction = 0; ///< dissipated, >= 0
-    double damping = 0;  ///< dissipated, by damping and by inelastic impacts
+    double damping = 0;  ///< dissipated, by damping, by inelastic impacts and by plastic flow
     double algorithmic =
         0;              ///< dissipated by the integrator: work of inertia and stiffness beyond their energies' change
     double contact = 0; ///< work of normal contact forces; 0 while bodies stay in contact, > 0 is spurious energy

@@ -121,6 +121,14 @@ std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation fo
                 return fe::make_kernel(type, formulation, material::SaintVenantKirchhoff(elastic));
             },
             [&](const scene::NeoHookean&) { return fe::make_kernel(type, formulation, material::NeoHookean(elastic)); },
+            [&](const scene::ElasticPlastic& plastic) {
+                material::Hardening hardening;
+                if (const auto* table = std::get_if<scene::Table>(&plastic.yield_stress.form))
+                    hardening.rows = table->rows;
+                else
+                    hardening.rows = {{0, plastic.yield_stress.value()}};
+                return fe::make_kernel(type, formulation, material::J2Plasticity(elastic, std::move(hardening)));
+            },
         },
         spec);
 }

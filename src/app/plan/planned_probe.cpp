@@ -79,8 +79,8 @@ std::array<std::string, 3> asks_too_much(const scene::Probe& spec, const model::
         if (!model.bodies[static_cast<std::size_t>(body)].rigid) return found;
         const std::string& name = model.bodies[static_cast<std::size_t>(body)].name;
         for (const std::string& field : fields)
-            for (const char* of_strain :
-                 {"stress", "von_mises", "stress_max", "stress_mid", "stress_min", "strain", "energy_density"})
+            for (const char* of_strain : {"stress", "von_mises", "stress_max", "stress_mid", "stress_min", "strain",
+                                          "energy_density", "plastic_strain"})
                 if (field == of_strain)
                     return std::array<std::string, 3>{key + ".fields",
                                                       "fields that rigid body '" + name + "' has, as displacement",

@@ -6,5 +6,7 @@ template std::unique_ptr<ElementKernel>
 make_finite_strain_kernel<Hex8, material::SaintVenantKirchhoff, true>(const material::SaintVenantKirchhoff&);
 template std::unique_ptr<ElementKernel>
 make_finite_strain_kernel<Hex8, material::NeoHookean, true>(const material::NeoHookean&);
+template std::unique_ptr<ElementKernel>
+make_finite_strain_kernel<Hex8, material::J2Plasticity, true>(const material::J2Plasticity&);
 
 } // namespace osculate::fe

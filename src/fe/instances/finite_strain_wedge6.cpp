@@ -6,5 +6,7 @@ template std::unique_ptr<ElementKernel>
 make_finite_strain_kernel<Wedge6, material::SaintVenantKirchhoff, false>(const material::SaintVenantKirchhoff&);
 template std::unique_ptr<ElementKernel>
 make_finite_strain_kernel<Wedge6, material::NeoHookean, false>(const material::NeoHookean&);
+template std::unique_ptr<ElementKernel>
+make_finite_strain_kernel<Wedge6, material::J2Plasticity, false>(const material::J2Plasticity&);
 
 } // namespace osculate::fe

@@ -115,10 +115,38 @@ private:
         return text;
     }
 
+    /// Of a material whose moduli depend on temperature: those of the one temperature that the body has at the ends of all
+    /// steps.
+    std::array<double, 2> at_temperature(const DeckMaterial& m, const DeckBody& body) {
+        std::map<Index, double> now;
+        for (const Index p : body.points) now[p] = 0;
+        const auto take = [&](const std::vector<DeckTemperature>& list) {
+            for (const DeckTemperature& t : list)
+                for (const Index p : t.points)
+                    if (const auto at = now.find(p); at != now.end()) at->second = t.value;
+        };
+        take(model_.initial_temperatures);
+        std::set<double> all;
+        for (const DeckStep& step : model_.steps) {
+            take(step.temperatures);
+            for (const auto& [p, T] : now) all.insert(T);
+        }
+        if (all.size() > 1) {
+            model_.lose(m.place, "*ELASTIC of material " + m.name,
+                        "moduli that depend on temperature, in a body of more than one: those of its first line are used "
+                        "instead");
+            return *m.elastic;
+        }
+        const double T = all.empty() ? 0 : *all.begin();
+        model_.note(m.place, "*ELASTIC of material " + m.name,
+                    fmt::format("moduli of the temperature {} are used", number(T)));
+        return {interpolated(m.by_temperature, T, 1), interpolated(m.by_temperature, T, 2)};
+    }
+
     std::string material_of(const DeckBody& body) {
         std::array<double, 2> elastic{1, 0};
         std::string law = nlgeom_ ? "saint_venant_kirchhoff" : "linear_elastic";
-        double density = 0;
+        double density = 0, expansion = 0;
         const std::vector<std::array<double, 2>>* hardening = nullptr;
         const auto found =
             body.section == nullptr ? model_.materials.end() : model_.materials.find(body.section->material);
@@ -128,8 +156,10 @@ private:
         } else {
             const DeckMaterial& m = found->second;
             density = m.density;
+            expansion = m.expansion;
             if (m.elastic) {
                 elastic = *m.elastic;
+                if (!m.by_temperature.empty()) elastic = at_temperature(m, body);
                 if (!m.hardening.empty()) {
                     law = "elastic_plastic";
                     hardening = &m.hardening;
@@ -150,6 +180,7 @@ private:
         }
         std::string text = "{" + law + ": {E: " + number(units_.stress * elastic[0]) + ", nu: " + number(elastic[1]);
         if (density > 0) text += ", density: " + number(units_.density * density);
+        if (expansion != 0) text += ", expansion: " + number(expansion);
         if (hardening != nullptr) {
             text += ", yield_stress: {table: [";
             for (const auto& [strain, stress] : *hardening)
@@ -380,6 +411,7 @@ private:
         map("follower_pressure", stages_[s].follower_pressure, false);
         map("body_force", stages_[s].body_force, false);
         map("nodal_force", stages_[s].nodal_force, false);
+        map("temperature", stages_[s].temperature, false);
         return text;
     }
 

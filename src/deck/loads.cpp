@@ -55,6 +55,7 @@ void DeckLoads::write(std::vector<StageLoads>& stages) {
     }
     write_pressures(stages);
     write_forces(stages);
+    write_temperatures(stages);
 }
 
 void DeckLoads::forget(const DeckStep& step) {
@@ -225,6 +226,47 @@ void DeckLoads::write_forces(std::vector<StageLoads>& stages) {
         for (const std::string& set : sets_.of_points(static_cast<std::size_t>(key.first), points, "loaded"))
             for (std::size_t s = 0; s < stages.size(); ++s)
                 if (!key.second[s].empty()) stages[s].nodal_force[set] = key.second[s];
+}
+
+/// Above those at the start, for bodies that expand. Nodes of a body that are as warm in all steps are a set, or the body.
+void DeckLoads::write_temperatures(std::vector<StageLoads>& stages) {
+    if (std::ranges::all_of(model_.steps, [](const DeckStep& step) { return step.temperatures.empty(); })) return;
+    const auto points = static_cast<std::size_t>(model_.mesh.raw.points.size());
+    std::vector<double> start(points, 0);
+    for (const DeckTemperature& t : model_.initial_temperatures)
+        for (const Index p : t.points) start[static_cast<std::size_t>(p)] = t.value;
+    std::vector<std::vector<double>> history(points); // by step
+    std::vector<double> now = start;
+    for (const DeckStep& step : model_.steps) {
+        for (const DeckTemperature& t : step.temperatures)
+            for (const Index p : t.points) now[static_cast<std::size_t>(p)] = t.value;
+        for (std::size_t p = 0; p < points; ++p) history[p].push_back(now[p]);
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const auto material = bodies_[b].section == nullptr ? model_.materials.end()
+                                                            : model_.materials.find(bodies_[b].section->material);
+        if (material == model_.materials.end() || material->second.expansion == 0) continue;
+        const DeckMaterial& m = material->second;
+        // strain at a temperature, of that from which expansions count, over the expansion of the scene
+        const auto grown = [&](double T) {
+            return m.expansions.empty() ? T : interpolated(m.expansions, T, 1) * (T - m.zero) / m.expansion;
+        };
+        std::map<std::vector<std::string>, std::vector<Index>> groups;
+        for (const Index p : bodies_[b].points) {
+            const auto i = static_cast<std::size_t>(p);
+            std::vector<std::string> values;
+            for (const double T : history[i]) values.push_back(number(grown(T) - grown(start[i])));
+            groups[values].push_back(p);
+        }
+        for (const auto& [values, alike] : groups) {
+            const bool whole = alike.size() == bodies_[b].points.size();
+            const std::vector<std::string> names =
+                whole ? std::vector<std::string>{bodies_[b].name} : sets_.of_points(b, alike, "warm");
+            for (const std::string& name : names)
+                for (std::size_t s = 0; s < stages.size(); ++s)
+                    if (values[s] != (s == 0 ? "0" : values[s - 1])) stages[s].temperature[name] = values[s];
+        }
+    }
 }
 
 void DeckLoads::write_pressures(std::vector<StageLoads>& stages) {

@@ -24,7 +24,7 @@ struct Units {
 
 /// Entries of a stage: name of a set or a body -> value as a scene has it.
 struct StageLoads {
-    std::map<std::string, std::string> displacement, pressure, follower_pressure, body_force, nodal_force;
+    std::map<std::string, std::string> displacement, pressure, follower_pressure, body_force, nodal_force, temperature;
 };
 
 /// Pressures are kept face by face and gravity body by body over all steps, so that what a step changes on some faces stays on
@@ -78,6 +78,7 @@ private:
     void end_step(std::size_t s, StageLoads& stage);
     void write_pressures(std::vector<StageLoads>& stages);
     void write_forces(std::vector<StageLoads>& stages);
+    void write_temperatures(std::vector<StageLoads>& stages);
     [[nodiscard]] double density(const DeckBody& body) const;
 
     DeckModel& model_;

@@ -59,7 +59,6 @@ const std::map<std::string, Reason> reasons{
     {"CYCLICHARDENING", elastic_only},
     {"CREEP", elastic_only},
     {"ORIENTATION", {"materials are isotropic", false}},
-    {"EXPANSION", heat}, // without a *TEMPERATURE it does nothing
     {"CONDUCTIVITY", heat},
     {"SPECIFICHEAT", heat},
     {"GAPCONDUCTANCE", heat},
@@ -126,6 +125,10 @@ private:
         if (word == "MATERIAL") return begin_material(card);
         if (word == "ELASTIC" || word == "DENSITY" || word == "HYPERELASTIC") return material_data(card);
         if (word == "PLASTIC") return hardening(card);
+        if (word == "EXPANSION") return expansion(card);
+        if (word == "TEMPERATURE" && step_ != nullptr) return temperatures(card, step_->temperatures);
+        if (word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE")
+            return temperatures(card, model_.initial_temperatures);
         if (word == "SOLIDSECTION") return section(card);
         if (word == "SURFACEINTERACTION") {
             interaction_ = capitals_of(card, "NAME");
@@ -147,9 +150,7 @@ private:
         if (word == "SURFACEBEHAVIOR") return surface_behavior(card);
         const auto known = reasons.find(word);
         const Reason reason = known != reasons.end() ? known->second : Reason{"it has no counterpart", true};
-        const bool of_heat = word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE";
-        model_.left_out.push_back(
-            {deck_.place(card), "*" + card.keyword, of_heat ? heat.why : reason.why, reason.lost && !of_heat});
+        model_.left_out.push_back({deck_.place(card), "*" + card.keyword, reason.why, reason.lost});
     }
 
     static bool is_analysis(const std::string& word) {
@@ -185,6 +186,43 @@ private:
         m.place = deck_.place(card);
     }
 
+    void expansion(const DeckCard& card) {
+        const auto found = model_.materials.find(material_);
+        if (found == model_.materials.end() || card.first == card.last) return lose(card, "no material, or no data");
+        const std::string type = capitals_of(card, "TYPE");
+        if (!type.empty() && type != "ISO") return lose(card, "only isotropic expansion has a counterpart");
+        DeckMaterial& m = found->second;
+        if (const std::string* zero = card.parameter("ZERO"); zero != nullptr && !to_number(*zero, m.zero))
+            return lose(card, "ZERO is no number");
+        m.expansion = numbers(*deck_.begin(card), 1)[0];
+        if (card.last - card.first == 1) return;
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            const std::vector<double> v = numbers(*line, 2);
+            if (!m.expansions.empty() && v[1] <= m.expansions.back()[0]) return lose(card, "temperatures must ascend");
+            m.expansions.push_back({v[1], v[0]});
+        }
+        for (const auto& [t, a] : m.expansions) // what the scene has, other expansions are scaled to it
+            if (m.expansion == 0) m.expansion = a;
+        note(card, "temperatures are scaled so that thermal strains at the ends of steps are those of the table");
+    }
+
+    void temperatures(const DeckCard& card, std::vector<DeckTemperature>& list) {
+        for (const char* unknown : {"AMPLITUDE", "USER", "FILE", "BSTEP"})
+            if (given(card, unknown) != nullptr) return lose(card, std::string(unknown) + " has no counterpart");
+        if (is_new(card)) return lose(card, "OP=NEW has no counterpart: temperatures stay until they change");
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            split_fields(line->text, fields_);
+            DeckTemperature t;
+            t.place = deck_.place(*line);
+            const std::string shown(line->text.substr(0, 60));
+            t.points = points_of(fields_[0]);
+            if (t.points.empty() || fields_.size() < 2 || !to_number(fields_[1], t.value))
+                lose(t.place, shown, "not understood");
+            else
+                list.push_back(std::move(t));
+        }
+    }
+
     void hardening(const DeckCard& card) {
         const auto found = model_.materials.find(material_);
         if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
@@ -211,7 +249,8 @@ private:
         const auto found = model_.materials.find(material_);
         if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
         if (card.first == card.last) return lose(card, "it has no data");
-        if (card.last - card.first > 1) note(card, "only its first line counts: nothing depends on temperature");
+        if (card.last - card.first > 1 && card.keyword != "ELASTIC")
+            note(card, "only its first line counts: nothing depends on temperature");
         const std::vector<double> v = numbers(*deck_.begin(card), 2);
         if (card.keyword == "DENSITY") {
             found->second.density = v[0];
@@ -219,6 +258,12 @@ private:
             const std::string type = capitals_of(card, "TYPE");
             if (!type.empty() && type != "ISO" && type != "ISOTROPIC") return lose(card, "materials are isotropic");
             found->second.elastic = {v[0], v[1]};
+            for (auto line = deck_.begin(card); card.last - card.first > 1 && line != deck_.end(card); ++line) {
+                const std::vector<double> row = numbers(*line, 3);
+                auto& table = found->second.by_temperature;
+                if (!table.empty() && row[2] <= table.back()[0]) return lose(card, "temperatures must ascend");
+                table.push_back({row[2], row[0], row[1]});
+            }
         } else {
             if (card.parameter("NEOHOOKE") == nullptr) return lose(card, "only NEO HOOKE has a counterpart");
             found->second.neo_hookean = {v[0], v[1]};

@@ -26,6 +26,29 @@ struct DeckMaterial {
     std::optional<std::array<double, 2>> neo_hookean; ///< C10, D1
     std::vector<std::array<double, 2>> hardening;     ///< equivalent plastic strain, yield stress; empty: elastic
     double density = 0;
+    double expansion = 0; ///< thermal, 1/K; of the first row
+    std::vector<std::array<double, 2>>
+        expansions;  ///< temperature, expansion from `zero` to it; more than one row or none
+    double zero = 0; ///< temperature from which expansions count
+    std::vector<std::array<double, 3>> by_temperature; ///< temperature, E, nu; more than one row or none
+};
+
+/// Linear between the rows of a table over its first column, constant beyond.
+template <std::size_t n>
+[[nodiscard]] double interpolated(const std::vector<std::array<double, n>>& rows, double at, std::size_t column) {
+    if (at <= rows.front()[0]) return rows.front()[column];
+    for (std::size_t i = 1; i < rows.size(); ++i)
+        if (at <= rows[i][0])
+            return rows[i - 1][column] +
+                   (rows[i][column] - rows[i - 1][column]) * (at - rows[i - 1][0]) / (rows[i][0] - rows[i - 1][0]);
+    return rows.back()[column];
+}
+
+/// Temperature of points.
+struct DeckTemperature {
+    std::vector<Index> points;
+    double value = 0;
+    std::string place;
 };
 
 struct DeckSection {
@@ -83,6 +106,7 @@ struct DeckStep {
     std::vector<DeckValues> held, forces;
     std::vector<DeckPressure> pressures;
     std::vector<DeckGravity> gravity;
+    std::vector<DeckTemperature> temperatures;
     bool forget_held = false, forget_forces = false;             ///< OP=NEW
     bool forget_on_elements = false, forget_on_surfaces = false; ///< OP=NEW of *DLOAD, of *DSLOAD
 
@@ -96,6 +120,7 @@ struct DeckModel {
     std::map<std::string, DeckInteraction> interactions; ///< by names in capitals
     std::vector<DeckPair> pairs, ties;
     std::vector<DeckValues> held; ///< in all steps
+    std::vector<DeckTemperature> initial_temperatures;
     std::map<std::string, Amplitude> amplitudes;
     std::vector<DeckStep> steps;
     std::vector<LeftOut> left_out;

@@ -48,11 +48,13 @@ void BodyForces::add_pressures(double factor, bool end, const Field& u, Field& f
     add_follower_forces(scaled, model_, u, f);
 }
 
-bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt) {
+bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pressures,
+                       const std::vector<double>& temperature, double dt) {
     pressures_ = std::move(pressures);
     const model::HistoryPlace last = model::history_place(model_.bodies, model_.bodies.size() - 1);
     require(state.material.size() == last.first + last.size, "the state does not hold the histories of these elements");
     history_start_ = state.material;
+    if (!temperature.empty() && nonlinear()) model_.nonlinear->heat(temperature, history_start_);
     if (dynamics_ != nullptr || !history_start_.empty()) u_start_ = state.u;
     if (dynamics_ == nullptr) return false;
     const Integrator& w = dynamics_->integrator;

@@ -9,7 +9,7 @@ BodyTerm::BodyTerm(const model::Model& model, const Dynamics* dynamics, bool fol
 
 bool BodyTerm::begin(const model::State& state, const Iterate&, const StepLoad& load, double dt) {
     const ScopedTimer timer(timings_, Part::assembly);
-    return bodies_.begin(state, load.pressures, dt);
+    return bodies_.begin(state, load.pressures, load.temperature, dt);
 }
 
 bool BodyTerm::evaluate(const Iterate& at) {

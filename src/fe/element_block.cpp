@@ -22,53 +22,55 @@ template <class E> void refuse(HexFormulation formulation) {
 }
 
 template <class Material>
-std::unique_ptr<ElementKernel> make(mesh::CellType type, HexFormulation formulation, const Material& material) {
+std::unique_ptr<ElementKernel> make(mesh::CellType type, HexFormulation formulation, const Material& material,
+                                    bool heated) {
     return with_element(type, [&]<class E>() -> std::unique_ptr<ElementKernel> {
         if constexpr (std::is_same_v<E, Hex8>) {
             if (formulation == HexFormulation::incompatible_modes)
                 throw std::invalid_argument(
                     "incompatible modes are for small strain; at finite strain use b_bar or full");
-            if (formulation == HexFormulation::b_bar) return make_finite_strain_kernel<E, Material, true>(material);
+            if (formulation == HexFormulation::b_bar)
+                return make_finite_strain_kernel<E, Material, true>(material, heated);
         }
         refuse<E>(formulation);
         if constexpr (std::is_same_v<E, Hex20>)
             if (formulation == HexFormulation::reduced)
-                return make_finite_strain_kernel<Hex20Reduced, Material, false>(material);
-        return make_finite_strain_kernel<E, Material, false>(material);
+                return make_finite_strain_kernel<Hex20Reduced, Material, false>(material, heated);
+        return make_finite_strain_kernel<E, Material, false>(material, heated);
     });
 }
 
 } // namespace
 
 std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                           const material::LinearElastic& material) {
+                                           const material::LinearElastic& material, bool heated) {
     return with_element(type, [&]<class E>() -> std::unique_ptr<ElementKernel> {
         if constexpr (std::is_same_v<E, Hex8>) {
-            if (formulation == HexFormulation::b_bar) return make_small_strain_kernel<BBarHex>(material);
+            if (formulation == HexFormulation::b_bar) return make_small_strain_kernel<BBarHex>(material, heated);
             if (formulation == HexFormulation::incompatible_modes)
-                return make_small_strain_kernel<IncompatibleModesHex>(material);
+                return make_small_strain_kernel<IncompatibleModesHex>(material, heated);
         }
         refuse<E>(formulation);
         if constexpr (std::is_same_v<E, Hex20>)
             if (formulation == HexFormulation::reduced)
-                return make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(material);
-        return make_small_strain_kernel<DisplacementStrain<E>>(material);
+                return make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(material, heated);
+        return make_small_strain_kernel<DisplacementStrain<E>>(material, heated);
     });
 }
 
 std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                           const material::SaintVenantKirchhoff& material) {
-    return make(type, formulation, material);
+                                           const material::SaintVenantKirchhoff& material, bool heated) {
+    return make(type, formulation, material, heated);
 }
 
 std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                           const material::NeoHookean& material) {
-    return make(type, formulation, material);
+                                           const material::NeoHookean& material, bool heated) {
+    return make(type, formulation, material, heated);
 }
 
 std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                           const material::J2Plasticity& material) {
-    return make(type, formulation, material);
+                                           const material::J2Plasticity& material, bool heated) {
+    return make(type, formulation, material, heated);
 }
 
 } // namespace osculate::fe

@@ -27,11 +27,11 @@ class FiniteStrainKernel final : public SolidKernel<E> {
     using Moduli = std::array<Mat6, E::points>;
 
 public:
-    explicit FiniteStrainKernel(const Material& material) : material_(material) {}
+    FiniteStrainKernel(const Material& material, bool heated) : SolidKernel<E>(heated), material_(material) {}
 
     [[nodiscard]] bool linear() const override { return false; }
     [[nodiscard]] bool finite_strain() const override { return true; }
-    [[nodiscard]] std::size_t history_size() const override { return E::points * memory; }
+    [[nodiscard]] std::size_t history_size() const override { return E::points * stride(); }
 
     void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const override {
         const Positions rest = Positions::Zero();
@@ -75,11 +75,11 @@ public:
         require(step.X.cols() == n && step.u.cols() == n && f.cols() == n, "update: sizes do not match the element");
         require(!step.mean || step.u_start.cols() == n, "update: a mean over a step wants its start");
         f.setZero();
+        if (stride() > 0) std::ranges::copy(step.history_start, history.begin());
         if constexpr (memory > 0) {
-            std::ranges::copy(step.history_start, history.begin());
             const Kinematics end(this->table_, step.X, step.u);
             for (std::size_t q = 0; q < E::points && end.deformation.admissible(); ++q)
-                law(step.history_start, q).end(end.strain(q), history.subspan(q * memory, memory));
+                law(step.history_start, q).end(end.strain(q), history.subspan((q + 1) * stride() - memory, memory));
         }
         return step.mean ? mean_force({*this, step}, f)
                          : force(Kinematics(this->table_, step.X, step.u), step.history_start, f);
@@ -119,23 +119,46 @@ private:
         if constexpr (requires { Material::memory; }) return Material::memory;
         return std::size_t{0};
     }();
-    /// Those of a point; none in the undeformed initial state if `history` is empty.
-    static std::span<const double> of_point(std::span<const double> history, std::size_t q) {
-        return history.empty() ? history : history.subspan(q * memory, memory);
+    /// All numbers of a point: the thermal strain, if there is one, then those.
+    [[nodiscard]] std::size_t stride() const { return memory + (this->heated_ ? 1 : 0); }
+    /// What the material remembers of a point; nothing in the undeformed initial state if `history` is empty.
+    std::span<const double> of_point(std::span<const double> history, std::size_t q) const {
+        return history.empty() ? history : history.subspan((q + 1) * stride() - memory, memory);
     }
+
+    /// The law of a point that has grown by a factor s without stress: F = s F_m, E = s^2 E_m + (s^2 - 1)/2 1, and energy,
+    /// per volume before it grew, of E_m alone.
+    template <class Law> struct Grown {
+        Law law;
+        double square, grown; ///< s^2, (s^2 - 1)/2
+
+        Grown(Law own, double thermal)
+            : law(own), square((1 + thermal) * (1 + thermal)), grown(thermal + thermal * thermal / 2) {}
+
+        [[nodiscard]] Mat3 mechanical(const Mat3& E_all) const {
+            return grown == 0 ? E_all : Mat3((E_all - grown * Mat3::Identity()) / square);
+        }
+        [[nodiscard]] double energy(const Mat3& E_all) const { return law.energy(mechanical(E_all)); }
+        /// Energy whose derivative is the stress of a step.
+        [[nodiscard]] double potential(const Mat3& E_all) const {
+            if constexpr (memory > 0)
+                return law.potential(mechanical(E_all));
+            else
+                return law.energy(mechanical(E_all));
+        }
+        [[nodiscard]] Mat3 pk2(const Mat3& E_all) const { return law.pk2(mechanical(E_all)) / square; }
+        [[nodiscard]] Mat6 tangent(const Mat3& E_all) const {
+            return law.tangent(mechanical(E_all)) / (square * square);
+        }
+        void end(const Mat3& E_all, std::span<double> remembered) const { law.end(mechanical(E_all), remembered); }
+    };
     /// The law of a point in a step that begins with a history.
-    decltype(auto) law([[maybe_unused]] std::span<const double> history, [[maybe_unused]] std::size_t q) const {
+    [[nodiscard]] auto law(std::span<const double> history, std::size_t q) const {
+        const double thermal = this->thermal_strain(history, q);
         if constexpr (memory > 0)
-            return material_.at(of_point(history, q));
+            return Grown<typename Material::At>(material_.at(of_point(history, q)), thermal);
         else
-            return (material_);
-    }
-    /// Energy whose derivative is the stress of a step.
-    static double potential(const auto& law, const Mat3& strain) {
-        if constexpr (memory > 0)
-            return law.potential(strain);
-        else
-            return law.energy(strain);
+            return Grown<const Material&>(material_, thermal);
     }
 
     static constexpr Deformation overflow{-std::numeric_limits<double>::infinity()};
@@ -329,7 +352,7 @@ private:
               mean(kernel.table_, X, w.end_weight * u1 + (1 - w.end_weight) * u0), weights(w) {
             if (!deformation().admissible()) return;
             for (std::size_t q = 0; q < E::points; ++q) {
-                const auto& law = kernel.law(history, q);
+                const auto law = kernel.law(history, q);
                 const Mat3 E0 = start.strain(q), E1 = end.strain(q), S0 = law.pk2(E0), S1 = law.pk2(E1),
                            half = (S0 + S1) / 2;
                 DE[q] = E1 - E0;
@@ -337,7 +360,7 @@ private:
                 const double square = DE[q].squaredNorm();
                 g[q] = 0;
                 if (square > least_increment * least_increment)
-                    g[q] = (potential(law, E1) - potential(law, E0) - half.cwiseProduct(DE[q]).sum()) / square;
+                    g[q] = (law.potential(E1) - law.potential(E0) - half.cwiseProduct(DE[q]).sum()) / square;
                 S[q] = half + g[q] * DE[q] + (w.end_weight - 0.5) * S_difference[q];
                 if (w.viscosity > 0)
                     S[q] += w.viscosity * material::stress_matrix(law.tangent(E0) * material::strain_vector(DE[q]));
@@ -352,7 +375,7 @@ private:
         [[nodiscard]] Moduli moduli(const FiniteStrainKernel& kernel) const {
             Moduli D;
             for (std::size_t q = 0; q < E::points; ++q) {
-                const auto& law = kernel.law(history, q);
+                const auto law = kernel.law(history, q);
                 const Mat6 D1 = law.tangent(end.strain(q));
                 D[q] = weights.end_weight * D1;
                 if (weights.viscosity > 0) D[q] += weights.viscosity * law.tangent(start.strain(q));
@@ -442,8 +465,8 @@ private:
 };
 
 template <class E, class Material, bool mean_dilatation>
-std::unique_ptr<ElementKernel> make_finite_strain_kernel(const Material& material) {
-    return std::make_unique<FiniteStrainKernel<E, Material, mean_dilatation>>(material);
+std::unique_ptr<ElementKernel> make_finite_strain_kernel(const Material& material, bool heated) {
+    return std::make_unique<FiniteStrainKernel<E, Material, mean_dilatation>>(material, heated);
 }
 
 } // namespace osculate::fe

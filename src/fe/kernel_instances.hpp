@@ -9,11 +9,12 @@ namespace osculate::fe {
 
 /// @tparam Formulation  of fe/small_strain.hpp
 template <class Formulation>
-[[nodiscard]] std::unique_ptr<ElementKernel> make_small_strain_kernel(const material::LinearElastic& material);
+[[nodiscard]] std::unique_ptr<ElementKernel> make_small_strain_kernel(const material::LinearElastic& material,
+                                                                      bool heated);
 
 /// @tparam E               reference element
 /// @tparam mean_dilatation see FiniteStrainKernel
 template <class E, class Material, bool mean_dilatation>
-[[nodiscard]] std::unique_ptr<ElementKernel> make_finite_strain_kernel(const Material& material);
+[[nodiscard]] std::unique_ptr<ElementKernel> make_finite_strain_kernel(const Material& material, bool heated);
 
 } // namespace osculate::fe

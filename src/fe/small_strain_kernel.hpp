@@ -5,6 +5,8 @@
 #include "fe/small_strain.hpp"
 #include "fe/solid_kernel.hpp"
 
+#include <algorithm>
+
 namespace osculate::fe {
 
 template <class Formulation> class SmallStrainKernel final : public SolidKernel<typename Formulation::Element> {
@@ -13,7 +15,8 @@ template <class Formulation> class SmallStrainKernel final : public SolidKernel<
     using Positions = Eigen::Matrix<double, 3, n>;
 
 public:
-    explicit SmallStrainKernel(const material::LinearElastic& material) : D_(material.stiffness()), formulation_(D_) {}
+    SmallStrainKernel(const material::LinearElastic& material, bool heated)
+        : SolidKernel<E>(heated), D_(material.stiffness()), formulation_(D_) {}
 
     void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const override {
         require(X.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n, "stiffness: sizes do not match the element");
@@ -27,7 +30,8 @@ public:
         Ke = (K + K.transpose()) / 2;
     }
 
-    [[nodiscard]] bool linear() const override { return true; }
+    [[nodiscard]] bool linear() const override { return !this->heated_; }
+    [[nodiscard]] std::size_t history_size() const override { return this->heated_ ? std::size_t{E::points} : 0; }
     [[nodiscard]] bool finite_strain() const override { return false; }
 
     Deformation energy(const ElementState& state, double& W) const override {
@@ -37,20 +41,22 @@ public:
         formulation_(this->table_, Positions(state.X), points);
         const Positions displacement = state.u;
         for (std::size_t q = 0; q < points.B.size(); ++q) {
-            const Vec6 strain = points.B[q] * displacement.reshaped();
+            const Vec6 strain = elastic(points.B[q] * displacement.reshaped(), state.history, q);
             W += strain.dot(D_ * strain) / 2 * points.volumes[q];
         }
         return {};
     }
 
-    Deformation update(const ElementStep& step, std::span<double>, Eigen::Ref<Eigen::Matrix3Xd> f) const override {
+    Deformation update(const ElementStep& step, std::span<double> history,
+                       Eigen::Ref<Eigen::Matrix3Xd> f) const override {
         require(step.X.cols() == n && step.u.cols() == n && f.cols() == n, "update: sizes do not match the element");
+        if (this->heated_) std::ranges::copy(step.history_start, history.begin());
         StrainPoints<E> points;
         formulation_(this->table_, Positions(step.X), points);
         const Positions displacement = felt(step);
         Positions sum = Positions::Zero();
         for (std::size_t q = 0; q < points.B.size(); ++q) {
-            const Vec6 sigma = D_ * (points.B[q] * displacement.reshaped());
+            const Vec6 sigma = D_ * elastic(points.B[q] * displacement.reshaped(), step.history_start, q);
             sum.reshaped() += points.B[q].transpose() * (sigma * points.volumes[q]);
         }
         f = sum;
@@ -71,13 +77,18 @@ public:
         const Positions displacement = state.u;
         Eigen::Matrix<double, 6, E::points> sigma;
         for (std::size_t q = 0; q < points.B.size(); ++q) {
-            sigma.col(static_cast<int>(q)) = D_ * (points.B[q] * displacement.reshaped());
+            sigma.col(static_cast<int>(q)) = D_ * elastic(points.B[q] * displacement.reshaped(), state.history, q);
         }
         stress.noalias() = sigma * this->extrapolation_.transpose();
         return {};
     }
 
 private:
+    /// A strain less the thermal one.
+    [[nodiscard]] Vec6 elastic(Vec6 strain, std::span<const double> history, std::size_t q) const {
+        if (this->heated_) strain.template head<3>().array() -= this->thermal_strain(history, q);
+        return strain;
+    }
     /// The displacements whose stress acts.
     [[nodiscard]] static Positions felt(const ElementStep& step) {
         if (!step.mean) return step.u;
@@ -91,8 +102,8 @@ private:
 };
 
 template <class Formulation>
-std::unique_ptr<ElementKernel> make_small_strain_kernel(const material::LinearElastic& material) {
-    return std::make_unique<SmallStrainKernel<Formulation>>(material);
+std::unique_ptr<ElementKernel> make_small_strain_kernel(const material::LinearElastic& material, bool heated) {
+    return std::make_unique<SmallStrainKernel<Formulation>>(material, heated);
 }
 
 } // namespace osculate::fe

@@ -14,6 +14,15 @@ public:
     using Positions = Eigen::Matrix<double, 3, n>;
 
     [[nodiscard]] int nodes() const final { return n; }
+    [[nodiscard]] bool heated() const final { return heated_; }
+
+    void heat(std::span<const double> strain, std::span<double> history) const final {
+        require(heated_ && strain.size() == n && history.size() == this->history_size(),
+                "heat: sizes do not match the element");
+        const std::size_t stride = history.size() / E::points;
+        const Eigen::Map<const typename E::Shape> nodal(strain.data());
+        for (std::size_t q = 0; q < E::points; ++q) history[q * stride] = table_.N[q].dot(nodal);
+    }
 
     void body_force(const Eigen::Ref<const Eigen::Matrix3Xd>& X, const Vec3& b,
                     Eigen::Ref<Eigen::Matrix3Xd> f) const final {
@@ -44,6 +53,13 @@ public:
     }
 
 protected:
+    explicit SolidKernel(bool heated) : heated_(heated) {}
+    /// The thermal strain at a point: the first of its numbers in a history.
+    [[nodiscard]] double thermal_strain(std::span<const double> history, std::size_t q) const {
+        return heated_ && !history.empty() ? history[q * (history.size() / E::points)] : 0;
+    }
+
+    bool heated_;
     ShapeTable<E> table_{E::quadrature()};
     Eigen::Matrix<double, n, E::points> extrapolation_ = extrapolation<E>();
 

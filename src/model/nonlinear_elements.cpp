@@ -50,6 +50,7 @@ NonlinearElements::NonlinearElements(const std::vector<Body>& bodies, const line
             block.kernel = bodies[b].kernels[k].get();
             block.body = static_cast<Index>(b);
             block.first_element = begin;
+            block.expansion = block.kernel->heated() ? bodies[b].expansion : 0;
             block.size = elements.size();
             block.history_first = history;
             block.history_size = block.kernel->history_size();
@@ -169,6 +170,21 @@ double NonlinearElements::energy(const Field& X, const Field& u, const MaterialH
             [&](Index k, Index) { sum += W[k]; });
     }
     return sum;
+}
+
+void NonlinearElements::heat(const std::vector<double>& temperature, MaterialHistory& history) const {
+    for (const Block& block : blocks_) {
+        if (block.expansion == 0) continue;
+        const auto n = static_cast<std::size_t>(block.kernel->nodes());
+        std::vector<double> strain(n);
+        for (Index e = 0; e < block.size; ++e) {
+            for (std::size_t i = 0; i < n; ++i)
+                strain[i] = block.expansion *
+                            temperature[static_cast<std::size_t>(block.node[static_cast<std::size_t>(e) * n + i])];
+            block.kernel->heat(
+                strain, std::span(history).subspan(block.history_first + e * block.history_size, block.history_size));
+        }
+    }
 }
 
 double NonlinearElements::dissipated(const Field& X, const MaterialHistory& history) const {

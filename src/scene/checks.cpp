@@ -410,6 +410,8 @@ public:
         for (const auto& [key, named] :
              {std::pair{"pressure", &stage.pressure}, std::pair{"follower_pressure", &stage.follower_pressure}})
             for (const auto& [set, pressure] : *named) check_course({"stages", name, key, set}, pressure, stage, {});
+        for (const auto& [part, temperature] : stage.temperature)
+            check_course({"stages", name, "temperature", part}, temperature, stage, {});
         for (const auto& [key, named] :
              {std::pair{"body_force", &stage.body_force}, std::pair{"nodal_force", &stage.nodal_force}})
             for (const auto& [on, force] : *named)

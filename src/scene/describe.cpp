@@ -381,6 +381,21 @@ void describe(Visitor& v, Stage& stage) {
                          .required = true},
                         value);
           });
+    named(
+        v,
+        {.name = "temperature",
+         .meaning =
+             "Temperature of the nodes of bodies or sets, reached at the end of the stage; where several name a node, "
+             "the last one counts.",
+         .item = "body or set"},
+        stage.temperature, [&](const std::string& part, Course& value) {
+            v.course({.name = part,
+                      .meaning = "Above the temperature at which the body has no thermal strain.",
+                      .unit = dimension::temperature,
+                      .range = {.low = -1e5, .high = 1e5},
+                      .required = true},
+                     value);
+        });
     named(v,
           {.name = "nodal_force",
            .meaning = "Force on the nodes of sets, reached at the end of the stage.",

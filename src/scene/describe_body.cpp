@@ -274,6 +274,11 @@ void describe(Visitor& v, ElasticConstants& m) {
               .unit = dimension::density,
               .range = range::not_negative},
              m.density);
+    v.number({.name = "expansion",
+              .meaning = "Thermal expansion, see stages.<stage>.temperature.",
+              .unit = dimension::expansion,
+              .range = {.low = -1, .high = 1}},
+             m.expansion);
 }
 
 void describe(Visitor& v, ElasticPlastic& m) {

@@ -37,7 +37,8 @@ std::vector<UnitClass> unit_classes() {
 }
 
 Dimension product(Dimension a, int p, Dimension b, int q) {
-    return {p * a.length + q * b.length, p * a.mass + q * b.mass, p * a.time + q * b.time, p * a.angle + q * b.angle};
+    return {p * a.length + q * b.length, p * a.mass + q * b.mass, p * a.time + q * b.time, p * a.angle + q * b.angle,
+            p * a.temperature + q * b.temperature};
 }
 
 std::string power(const UnitClass& c, int p) {
@@ -54,7 +55,10 @@ std::string unit_pattern(Dimension dimension) {
     for (const UnitClass& a : classes)
         for (int p = -most; p <= most; ++p) {
             if (p == 0) continue;
-            if (product(a.dimension, p, a.dimension, 0) == dimension) alternatives.push_back(power(a, p));
+            if (product(a.dimension, p, a.dimension, 0) == dimension) {
+                alternatives.push_back(power(a, p));
+                if (p < 0) alternatives.push_back("1 */ *" + power(a, -p));
+            }
             for (const UnitClass& b : classes)
                 for (int q = std::abs(p) - most; q <= most - std::abs(p); ++q) {
                     if (&a == &b || p < 0 || q == 0 || product(a.dimension, p, b.dimension, q) != dimension) continue;

@@ -35,6 +35,7 @@ inline constexpr std::array symbols{
     Symbol{"min", {dimension::time, 60, 1}, false},
     Symbol{"h", {dimension::time, 3600, 1}, false},
     Symbol{"deg", {dimension::angle, std::numbers::pi, 180}, false},
+    Symbol{"K", {dimension::temperature}, false},
 };
 
 struct Prefix {

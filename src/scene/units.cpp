@@ -26,6 +26,8 @@ constexpr std::array named_dimensions{
     NamedDimension{dimension::length, "length", "m"},
     NamedDimension{dimension::time, "time", "s"},
     NamedDimension{dimension::angle, "angle", "rad"},
+    NamedDimension{dimension::temperature, "temperature", "K"},
+    NamedDimension{dimension::expansion, "thermal expansion", "1/K"},
     NamedDimension{dimension::force, "force", "N"},
     NamedDimension{dimension::pressure, "pressure", "Pa"},
     NamedDimension{dimension::density, "density", "kg/m^3"},
@@ -77,7 +79,7 @@ std::string_view trim(std::string_view text) {
     return text;
 }
 
-/// unit = factor { ("*" | "/" | " ") factor };  factor = symbol [ "^" integer ].
+/// unit = [ "1" "/" ] factor { ("*" | "/" | " ") factor };  factor = symbol [ "^" integer ].
 class UnitParser {
 public:
     UnitParser(std::string_view text, Quantity& result) : rest_(text), result_(result) {}
@@ -85,6 +87,11 @@ public:
     void parse() {
         const std::string whole(rest_);
         bool divide = false;
+        rest_ = trim(rest_);
+        if (rest_.starts_with('1') && trim(rest_.substr(1)).starts_with('/')) { // "1/K"
+            rest_ = trim(rest_.substr(1)).substr(1);
+            divide = true;
+        }
         while (result_.problem.empty()) {
             rest_ = trim(rest_);
             if (!factor(divide)) break;
@@ -132,6 +139,7 @@ private:
         result_.dimension.mass += power * unit->dimension.mass;
         result_.dimension.time += power * unit->dimension.time;
         result_.dimension.angle += power * unit->dimension.angle;
+        result_.dimension.temperature += power * unit->dimension.temperature;
         return true;
     }
 
@@ -175,6 +183,7 @@ std::string unit_of(Dimension dimension) {
     factor("m", dimension.length);
     factor("s", dimension.time);
     factor("rad", dimension.angle);
+    factor("K", dimension.temperature);
     return text;
 }
 

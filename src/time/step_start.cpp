@@ -51,6 +51,11 @@ equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, con
             pressure.course >= 0 ? value[pressure.course] : pressure.start + ramp * (pressure.end - pressure.start);
         load.pressures.push_back({&pressure.faces, now, now});
     }
+    if (!stage.temperatures.empty()) load.temperature.assign(model.X.size(), 0);
+    for (const NodeTemperature& part : stage.temperatures) {
+        const double now = part.course >= 0 ? value[part.course] : part.start + ramp * (part.end - part.start);
+        for (const Index node : part.nodes) load.temperature[static_cast<std::size_t>(node)] = now;
+    }
     load.prescribed = prescribed_start;
     for (Index node = 0; node < model.nodes(); ++node)
         for (int k = 0; k < 3; ++k)
@@ -326,7 +331,9 @@ double reference_force(const RunContext& context, const Stage& stage, const line
                        const model::State& state, const equilibrium::StepLoad& load, double dt) {
     const model::Model& model = context.model;
     const StepperOptions& options = context.options;
-    Field internal = model::internal_force(model, state.at_rest(), options.threads);
+    model::MaterialHistory material = state.material;
+    if (!load.temperature.empty() && model.nonlinear) model.nonlinear->heat(load.temperature, material);
+    Field internal = model::internal_force(model, {state.u, state.u, material}, options.threads);
     double external = 0;
     if (load.pressures.empty()) {
         external = norm(load.force);
@@ -392,7 +399,7 @@ double reference_force(const RunContext& context, const Stage& stage, const line
         model::spread_displacements(model, body, model::turned(state.rigid[k].orientation, theta), u);
     }
     model::move_tied(model, u);
-    const double driven = norm(model::internal_force(model, {state.u, u, state.material}, options.threads)) / part;
+    const double driven = norm(model::internal_force(model, {state.u, u, material}, options.threads)) / part;
     return std::max(driven, round_off);
 }
 

@@ -50,7 +50,9 @@ public:
     /// @param dependence  what nodes with follower pressures may depend on; it must outlive this object
     void add_to_tangent(std::function<void(linear::BlockMatrix&)> part, const linear::Dependence& dependence);
     /// Opens a step. True if this changed the tangent.
-    bool begin(const model::State& state, std::vector<FollowerLoad> pressures, double dt);
+    /// @param temperature  (nodes) at its end, see StepLoad; empty: none
+    bool begin(const model::State& state, std::vector<FollowerLoad> pressures, const std::vector<double>& temperature,
+               double dt);
     /// Adds or changes springs, in statics. Afterwards tangent() is another matrix.
     void stabilise(Stabilisation springs);
     /// Removes the springs; tangent() is again the matrix without them.

@@ -17,6 +17,7 @@ struct StepLoad {
     Field force;                           ///< (nodes) external forces, N
     Field prescribed;                      ///< (nodes) displacement of the held components, local axes, m
     std::vector<FollowerLoad> pressures{}; ///< during this step
+    std::vector<double> temperature{};     ///< (nodes) at its end, above that without thermal strain, K; empty: none
 };
 
 /// A point of the iteration.

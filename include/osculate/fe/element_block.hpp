@@ -56,12 +56,17 @@ public:
 
     [[nodiscard]] virtual int nodes() const = 0;
 
-    /// Whether the tangent equals the stiffness for every u. Such an element has no history.
+    /// Whether the tangent equals the stiffness and the forces are K u for every u. Such an element has no history.
     [[nodiscard]] virtual bool linear() const = 0;
     /// Whether strains are computed from F, so that a rotation of the element causes no strain.
     [[nodiscard]] virtual bool finite_strain() const = 0;
     /// Length of the history that an element keeps from step to step; all zeros in the undeformed initial state.
     [[nodiscard]] virtual std::size_t history_size() const { return 0; }
+
+    /// Whether the history holds thermal strains, set by heat(). They act on a step from its start.
+    [[nodiscard]] virtual bool heated() const { return false; }
+    /// Writes thermal strains, those of the nodes (n), into a history. @pre heated()
+    virtual void heat(std::span<const double> strain, std::span<double> history) const = 0;
 
     /// Stiffness (3n x 3n) of the undeformed element without history, N/m, exactly symmetric; degrees of freedom node
     /// by node, x y z.
@@ -115,13 +120,15 @@ public:
 
 /// The kernel of a cell type: small strain for LinearElastic, finite strain for the others. The formulation affects
 /// only hexahedra; std::invalid_argument for incompatible modes at finite strain.
+/// @param heated  temperatures change
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                                         const material::LinearElastic& material);
+                                                         const material::LinearElastic& material, bool heated = false);
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                                         const material::SaintVenantKirchhoff& material);
+                                                         const material::SaintVenantKirchhoff& material,
+                                                         bool heated = false);
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                                         const material::NeoHookean& material);
+                                                         const material::NeoHookean& material, bool heated = false);
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                                         const material::J2Plasticity& material);
+                                                         const material::J2Plasticity& material, bool heated = false);
 
 } // namespace osculate::fe

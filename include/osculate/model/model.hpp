@@ -23,6 +23,7 @@ struct Body {
     Index first_node = 0;                                    ///< global number of its node 0
     std::vector<std::unique_ptr<fe::ElementKernel>> kernels; ///< one per element block
     double density = 0;                                      ///< kg/m^3
+    double expansion = 0;                                    ///< thermal, 1/K
     bool rigid = false; ///< moves as one, see RigidBody; its kernels know volumes alone
 
     [[nodiscard]] Index nodes() const { return mesh.node_count(); }

@@ -50,6 +50,9 @@ public:
     [[nodiscard]] double energy(const Field& X, const Field& u, const MaterialHistory& history, int threads) const;
     /// Work that materials have dissipated until a state, J.
     [[nodiscard]] double dissipated(const Field& X, const MaterialHistory& history) const;
+    /// Gives elements the thermal strains of temperatures, in a history of theirs.
+    /// @param temperature  (nodes) above that without thermal strain, K
+    void heat(const std::vector<double>& temperature, MaterialHistory& history) const;
     /// Largest diagonal entry of an undeformed element's stiffness, N/m.
     [[nodiscard]] double largest_stiffness() const { return largest_stiffness_; }
 
@@ -57,6 +60,7 @@ private:
     /// A block of elements of the same kind.
     struct Block {
         const fe::ElementKernel* kernel = nullptr;
+        double expansion = 0;                            ///< thermal, 1/K
         Index body = -1, first_element = 0, size = 0;    ///< first_element: number in its body
         std::size_t history_first = 0, history_size = 0; ///< start for the first element; numbers per element
         std::vector<Index> node;                         ///< (size x n) global

@@ -121,9 +121,10 @@ struct MeshSpec {
 // ---- bodies --------------------------------------------------------------------------------------------------------
 
 struct ElasticConstants {
-    double E = 0;       ///< Young's modulus, Pa
-    double nu = 0;      ///< Poisson's ratio
-    double density = 0; ///< kg/m^3; 0: none, sufficient for statics
+    double E = 0;         ///< Young's modulus, Pa
+    double nu = 0;        ///< Poisson's ratio
+    double density = 0;   ///< kg/m^3; 0: none, sufficient for statics
+    double expansion = 0; ///< thermal, 1/K
     bool operator==(const ElasticConstants&) const = default;
 };
 struct LinearElastic : ElasticConstants { ///< small strain
@@ -369,6 +370,7 @@ struct Stage {
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
     Named<std::array<Course, 3>> body_force;  ///< body -> N/m^3
     Named<std::array<Course, 3>> nodal_force; ///< set -> on each of its nodes, N
+    Named<Course> temperature;                ///< body or set -> above that at which it has no thermal strain, K
     Named<std::array<std::optional<Course>, 6>>
         motion; ///< rigid body or coupling -> displacement and rotation components, m, rad
     Named<std::array<Course, 3>> force, moment; ///< rigid body or coupling -> at its reference point, N, N m

@@ -6,10 +6,10 @@
 
 namespace osculate::scene {
 
-/// Exponents of the base units m, kg, s and rad. The angle is a separate dimension, so that an angle is not accepted as
+/// Exponents of the base units m, kg, s, rad and K. The angle is a separate dimension, so that an angle is not accepted as
 /// a number.
 struct Dimension {
-    int length = 0, mass = 0, time = 0, angle = 0;
+    int length = 0, mass = 0, time = 0, angle = 0, temperature = 0;
     bool operator==(const Dimension&) const = default;
 };
 
@@ -29,6 +29,8 @@ inline constexpr Dimension force_per_volume{-2, 1, -2, 0};
 inline constexpr Dimension mass{0, 1, 0, 0};
 inline constexpr Dimension inertia{2, 1, 0, 0};
 inline constexpr Dimension moment{2, 1, -2, 0};
+inline constexpr Dimension temperature{0, 0, 0, 0, 1}; ///< a difference
+inline constexpr Dimension expansion{0, 0, 0, 0, -1};
 } // namespace dimension
 
 /// "pressure", "force per volume"; the SI unit if the dimension has no name, "number" if it has no unit.
@@ -46,7 +48,7 @@ struct Quantity {
 };
 
 /// A number, or a number and a unit: products and quotients (left to right) of m, g, s, N, Pa, J, W, Hz, rad with SI
-/// prefixes, and t, bar, min, h, deg, each with an integer power.
+/// prefixes, and t, bar, min, h, deg, K, also as 1/K, each with an integer power.
 [[nodiscard]] Quantity parse_quantity(std::string_view text);
 
 /// The shortest decimal that reads back as the same double.

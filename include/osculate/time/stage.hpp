@@ -34,6 +34,13 @@ struct FollowerPressure {
     Index course = -1;                    ///< course of the stage that it follows instead; -1: none
 };
 
+/// Temperature of nodes above that at which they have no thermal strain.
+struct NodeTemperature {
+    std::vector<Index> nodes;
+    double start = 0, end = 0; ///< K, ramped like the stage
+    Index course = -1;         ///< course of the stage that it follows instead; -1: none
+};
+
 struct Stage {
     std::string name;
     double duration = 1; ///< s
@@ -50,6 +57,7 @@ struct Stage {
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< added to these forces
     std::vector<FollowerPressure> follower_pressures;
+    std::vector<NodeTemperature> temperatures; ///< the last that names a node counts
 };
 
 } // namespace osculate::time

@@ -19,6 +19,10 @@ void Driving::update(const scene::Stage& stage) {
     for (const auto& [set, value] : stage.pressure) pressure[set] = value;
     for (const auto& [set, value] : stage.follower_pressure) follower_pressure[set] = value;
     for (const auto& [body, value] : stage.body_force) body_force[body] = value;
+    for (const auto& [part, value] : stage.temperature) {
+        std::erase_if(temperature, [&, &name = part](const auto& before) { return before.first == name; });
+        temperature.emplace_back(part, value);
+    }
     for (const auto& [set, value] : stage.nodal_force) nodal_force[set] = value;
     for (const auto& [body, components] : stage.motion)
         for (std::size_t k = 0; k < components.size(); ++k)
@@ -33,6 +37,7 @@ void Driving::settle(double duration) {
             if (component) settle_one(*component, duration);
     for (auto& [set, value] : pressure) settle_one(value, duration);
     for (auto& [set, value] : follower_pressure) settle_one(value, duration);
+    for (auto& [part, value] : temperature) settle_one(value, duration);
     for (auto* vectors : {&body_force, &nodal_force, &force, &moment})
         for (auto& [body, components] : *vectors)
             for (auto& component : components) settle_one(component, duration);

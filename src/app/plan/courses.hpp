@@ -16,10 +16,12 @@ namespace osculate::app {
 struct Driving {
     std::map<std::string, std::array<std::optional<scene::Course>, 3>> displacement; ///< by set
     std::map<std::string, scene::Course> pressure, follower_pressure;                ///< by set
-    std::map<std::string, std::array<scene::Course, 3>> body_force;                  ///< by body
-    std::map<std::string, std::array<scene::Course, 3>> nodal_force;                 ///< by set
-    std::map<std::string, std::array<std::optional<scene::Course>, 6>> motion;       ///< by rigid body
-    std::map<std::string, std::array<scene::Course, 3>> force, moment;               ///< by rigid body
+    std::vector<std::pair<std::string, scene::Course>>
+        temperature; ///< by body or set, in the order in which they are named
+    std::map<std::string, std::array<scene::Course, 3>> body_force;            ///< by body
+    std::map<std::string, std::array<scene::Course, 3>> nodal_force;           ///< by set
+    std::map<std::string, std::array<std::optional<scene::Course>, 6>> motion; ///< by rigid body
+    std::map<std::string, std::array<scene::Course, 3>> force, moment;         ///< by rigid body
 
     /// Takes over what a stage names.
     void update(const scene::Stage& stage);

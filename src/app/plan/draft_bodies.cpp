@@ -111,23 +111,26 @@ std::optional<Unfit> unfit_formulation(const mesh::Mesh& mesh, HexFormulation fo
     return {};
 }
 
-std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation formulation,
-                                          const scene::Material& spec) {
+std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation formulation, const scene::Material& spec,
+                                          bool heated) {
     const material::LinearElastic elastic{scene::elastic(spec).E, scene::elastic(spec).nu};
     return std::visit(
         Overloaded{
-            [&](const scene::LinearElastic&) { return fe::make_kernel(type, formulation, elastic); },
+            [&](const scene::LinearElastic&) { return fe::make_kernel(type, formulation, elastic, heated); },
             [&](const scene::SaintVenantKirchhoff&) {
-                return fe::make_kernel(type, formulation, material::SaintVenantKirchhoff(elastic));
+                return fe::make_kernel(type, formulation, material::SaintVenantKirchhoff(elastic), heated);
             },
-            [&](const scene::NeoHookean&) { return fe::make_kernel(type, formulation, material::NeoHookean(elastic)); },
+            [&](const scene::NeoHookean&) {
+                return fe::make_kernel(type, formulation, material::NeoHookean(elastic), heated);
+            },
             [&](const scene::ElasticPlastic& plastic) {
                 material::Hardening hardening;
                 if (const auto* table = std::get_if<scene::Table>(&plastic.yield_stress.form))
                     hardening.rows = table->rows;
                 else
                     hardening.rows = {{0, plastic.yield_stress.value()}};
-                return fe::make_kernel(type, formulation, material::J2Plasticity(elastic, std::move(hardening)));
+                return fe::make_kernel(type, formulation, material::J2Plasticity(elastic, std::move(hardening)),
+                                       heated);
             },
         },
         spec);
@@ -220,8 +223,12 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
             draft.faults.push_back(fault("bodies." + name + ".hex_formulation", unfit->expected, unfit->found));
             return;
         }
+        body.expansion = scene::elastic(spec.material).expansion;
+        const bool heated = !body.rigid && body.expansion != 0 &&
+                            std::ranges::any_of(draft.scene.stages,
+                                                [](const auto& stage) { return stage.second.temperature.size() > 0; });
         for (const mesh::ElementBlock& block : body.mesh.blocks)
-            body.kernels.push_back(kernel(block.type, spec.hex_formulation, spec.material));
+            body.kernels.push_back(kernel(block.type, spec.hex_formulation, spec.material, heated));
         auto& X = draft.plan.model.X.values();
         X.insert(X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
         draft.exterior.push_back(mesh::exterior_facets(body.mesh));

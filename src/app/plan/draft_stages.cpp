@@ -162,6 +162,18 @@ void add_constraints(const Draft& draft, const Driving& driving, CourseList& cou
     }
 }
 
+/// Nodes of a set, or of a body.
+std::vector<Index> nodes_of_part(Draft& draft, const std::string& part, const std::string& key) {
+    for (const model::Set& set : draft.plan.model.sets)
+        if (set.name == part) return set.nodes;
+    std::vector<Index> nodes;
+    for (const model::Body& body : draft.plan.model.bodies)
+        if (body.name == part)
+            for (Index i = 0; i < body.nodes(); ++i) nodes.push_back(body.first_node + i);
+    if (nodes.empty()) draft.faults.push_back(fault(key + "." + part, "the name of a body or set", "'" + part + "'"));
+    return nodes;
+}
+
 } // namespace
 
 /// Held directions of every stage and external forces at its ends.
@@ -201,6 +213,16 @@ void add_stages(Draft& draft) {
             stage.follower_pressures.push_back(
                 {draft.faces(draft.set(set_name)), known ? ramped(was->second) : 0, ramped(value),
                  value.is_value() ? -1 : courses.index("follower_pressure." + set_name, value)});
+        }
+        for (const auto& [part, value] : now.temperature) {
+            const auto was = std::ranges::find(before.temperature, part, [](const auto& one) { return one.first; });
+            if (std::ranges::none_of(draft.plan.model.bodies,
+                                     [](const model::Body& body) { return body.expansion != 0; }))
+                draft.faults.push_back(fault("stages." + name + ".temperature." + part,
+                                             "a body with a thermal expansion: material.<law>.expansion", "none"));
+            stage.temperatures.push_back({nodes_of_part(draft, part, "stages." + name + ".temperature"),
+                                          was != before.temperature.end() ? ramped(was->second) : 0, ramped(value),
+                                          value.is_value() ? -1 : courses.index("temperature." + part, value)});
         }
         for (const auto& [key, loaded] :
              {std::pair{"pressure", &now.pressure}, std::pair{"follower_pressure", &now.follower_pressure}})

@@ -3,10 +3,10 @@
 namespace osculate::fe {
 
 template std::unique_ptr<ElementKernel>
-make_finite_strain_kernel<Hex8, material::SaintVenantKirchhoff, false>(const material::SaintVenantKirchhoff&);
+make_finite_strain_kernel<Hex8, material::SaintVenantKirchhoff, false>(const material::SaintVenantKirchhoff&, bool);
 template std::unique_ptr<ElementKernel>
-make_finite_strain_kernel<Hex8, material::NeoHookean, false>(const material::NeoHookean&);
+make_finite_strain_kernel<Hex8, material::NeoHookean, false>(const material::NeoHookean&, bool);
 template std::unique_ptr<ElementKernel>
-make_finite_strain_kernel<Hex8, material::J2Plasticity, false>(const material::J2Plasticity&);
+make_finite_strain_kernel<Hex8, material::J2Plasticity, false>(const material::J2Plasticity&, bool);
 
 } // namespace osculate::fe

@@ -3,6 +3,6 @@
 namespace osculate::fe {
 
 template std::unique_ptr<ElementKernel>
-make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(const material::LinearElastic&);
+make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(const material::LinearElastic&, bool);
 
 } // namespace osculate::fe

@@ -2,6 +2,7 @@
 
 namespace osculate::fe {
 
-template std::unique_ptr<ElementKernel> make_small_strain_kernel<IncompatibleModesHex>(const material::LinearElastic&);
+template std::unique_ptr<ElementKernel> make_small_strain_kernel<IncompatibleModesHex>(const material::LinearElastic&,
+                                                                                       bool);
 
 } // namespace osculate::fe

@@ -3,8 +3,8 @@
 namespace osculate::fe {
 
 template std::unique_ptr<ElementKernel>
-make_small_strain_kernel<DisplacementStrain<Tet4>>(const material::LinearElastic&);
+make_small_strain_kernel<DisplacementStrain<Tet4>>(const material::LinearElastic&, bool);
 template std::unique_ptr<ElementKernel>
-make_small_strain_kernel<DisplacementStrain<Wedge6>>(const material::LinearElastic&);
+make_small_strain_kernel<DisplacementStrain<Wedge6>>(const material::LinearElastic&, bool);
 
 } // namespace osculate::fe

@@ -300,6 +300,7 @@ private:
                     text += "  " + fresh_name(slave + "_on_" + master, taken) + ":\n    slave: " + slave +
                             "\n    master: {set: " + master + (mortar ? "" : ", surface: facets") + "}\n";
                     if (!mortar) text += "    discretisation: node  # node to surface\n";
+                    if (pair.adjust > 0) text += "    adjust: " + number(units_.length * pair.adjust) + "\n";
                     text += law_of(pair);
                 }
             if (!any)

@@ -327,9 +327,12 @@ private:
         if (!p.mortar && !type.empty() && type != "NODETOSURFACE" && type != "MASSLESS")
             lose(card, "TYPE=" + type + " is not known: node to surface is used instead");
         p.place = deck_.place(card);
-        for (const char* name : {"ADJUST", "SMALLSLIDING"})
-            if (given(card, name) != nullptr)
-                note(card, std::string(name) + ": nodes stay where they are, and slide as far as they do");
+        if (const std::string* adjust = given(card, "ADJUST");
+            adjust != nullptr && (!to_number(*adjust, p.adjust) || p.adjust < 0)) {
+            p.adjust = 0;
+            lose(card, "ADJUST=" + *adjust + ": only a distance has a counterpart");
+        }
+        if (given(card, "SMALLSLIDING") != nullptr) note(card, "SMALLSLIDING: nodes slide as far as they do");
         p.tied = card.parameter("TIED") != nullptr;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             split_fields(line->text, fields_);

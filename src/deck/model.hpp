@@ -69,6 +69,7 @@ struct DeckPair {
     bool mortar = false;                    ///< surface to surface, and mortar
     bool tied = false;
     double tolerance = 0; ///< of a tie's positions; 0: not given
+    double adjust = 0;    ///< distance up to which slave nodes are moved onto the master; 0: none is
     std::string place;
 };
 

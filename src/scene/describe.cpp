@@ -136,6 +136,12 @@ void describe(Visitor& v, Pair& pair) {
                        .unit = dimension::force_per_volume,
                        .range = range::positive},
                       pair.stick_stiffness);
+    v.optional_number({.name = "adjust",
+                       .meaning = "Slave nodes above the master's facets, or in them, as near as this are moved onto them "
+                                  "before the run, without strain.",
+                       .unit = dimension::length,
+                       .range = range::positive},
+                      pair.adjust);
     v.number({.name = "closing_tolerance",
               .meaning = "The first solve closes nodes whose gap is smaller than this fraction of the facet size.",
               .range = range::fraction},

@@ -31,6 +31,8 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
         const Vec3 sum = add_contact(equilibrium.contact()[p], state.contact[p].lambda, contact);
         if (!state.contact[p].pair->mirrored()) balance.left_over = std::max(balance.left_over, sum.norm());
     }
+    for (const model::SkinNode& one : model.skin) // of the same body, and of its carriers together
+        contact[static_cast<std::size_t>(one.host)] += contact[static_cast<std::size_t>(one.node)];
     const Field outer = equilibrium.bodies().outer_forces(state);
     const Field &load = equilibrium.external_force(), &unbalanced = equilibrium.unbalanced();
     std::vector<Vec3> reaction_of(model.bodies.size(), Vec3::Zero()); // at reference points

@@ -128,6 +128,20 @@ TEST(ForceBalance, KnowsTheForcesThatAct) {
     });
 }
 
+TEST(ForceBalance, ClosesOverFacesWithMidsideNodes) {
+    for (const char* element : {"tet10", "hex20"}) {
+        std::string text = columns;
+        const std::string plain = "divisions: [2, 2, 2]}";
+        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
+            text.replace(at, plain.size(), std::string("divisions: [2, 2, 2], element: ") + element + "}");
+        run(text, [](const time::AcceptedStep& step, Plan& plan) {
+            EXPECT_FALSE(plan.model.skin.empty());
+            const time::ForceBalance forces = time::force_balance(plan.model, step.equilibrium, step.state);
+            EXPECT_LT(forces.left_over, balance * pressure);
+        });
+    }
+}
+
 TEST(ForceBalance, SeesAContactForceThatWasTamperedWith) {
     run(columns, [](const time::AcceptedStep& step, Plan& plan) {
         model::State tampered = step.state;

@@ -22,6 +22,12 @@ class Importing : public Imports {};
 
 const std::string pressed = "*STEP\n*STATIC, DIRECT\n.25,1.\n*DSLOAD\nTop,P,5.\n*NODE PRINT, NSET=All\nU\n*END STEP\n";
 
+/// The properties with more of their material.
+std::string before_elastic(const std::string& more) {
+    std::string text = properties;
+    return text.insert(text.find("*ELASTIC"), more);
+}
+
 TEST_F(Importing, MakesABodyOfEveryPieceInSi) {
     const scene::Scene scene = checked(import(pressed));
     ASSERT_EQ(scene.bodies.size(), 2u);
@@ -167,6 +173,34 @@ TEST_F(Importing, FormulationsFollowTheElements) {
     EXPECT_EQ(checked(import(pressed)).bodies[0].second.hex_formulation, HexFormulation::full);
 }
 
+TEST_F(Importing, PlasticBodiesHaveTheirHardeningCurve) {
+    const std::string model = mesh_of_cubes + before_elastic("*PLASTIC\n200.,0.\n300.,.1\n");
+    const scene::Scene scene = checked(import(pressed, DeckUnits::mm, model));
+    const auto& law = std::get<scene::ElasticPlastic>(scene.bodies[0].second.material);
+    const scene::Table expected{{{0, 200e6}, {0.1, 300e6}}};
+    EXPECT_EQ(std::get<scene::Table>(law.yield_stress.form), expected);
+}
+
+TEST_F(Importing, TemperaturesCountFromTheInitialOnes) {
+    const std::string model = mesh_of_cubes + before_elastic("*EXPANSION\n1.2E-5\n");
+    const scene::Scene scene = checked(
+        import("*INITIAL CONDITIONS, TYPE=TEMPERATURE\nAll,20.\n*STEP\n*STATIC\n*TEMPERATURE\nAll,100.\n*END STEP\n"
+               "*STEP\n*STATIC\n*END STEP\n",
+               DeckUnits::mm, model));
+    EXPECT_DOUBLE_EQ(scene::elastic(scene.bodies[0].second.material).expansion, 1.2e-5);
+    ASSERT_EQ(scene.stages[0].second.temperature.size(), scene.bodies.size());
+    EXPECT_EQ(scene.stages[0].second.temperature[0].first, scene.bodies[0].first);
+    EXPECT_DOUBLE_EQ(scene.stages[0].second.temperature[0].second.value(), 80);
+    EXPECT_TRUE(scene.stages[1].second.temperature.empty()) << "it stays";
+}
+
+TEST_F(Importing, LeavesOutEigenfrequenciesAfterStatics) {
+    const ImportedScene imported = import(pressed + "*STEP, PERTURBATION\n*FREQUENCY\n5\n*END STEP\n");
+    EXPECT_THAT(imported.lost, IsEmpty());
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("eigenfrequencies are not computed")));
+    EXPECT_EQ(checked(imported).stages.size(), 1u);
+}
+
 // ---- what is lost ----
 
 TEST_F(Importing, TakesContactOfQuadraticTetrahedra) {
@@ -184,10 +218,10 @@ TEST_F(Importing, TakesContactOfQuadraticTetrahedra) {
 TEST_F(Importing, TellsWhatIsLostFromWhatBodiesDoWithout) {
     const auto lost = [&](const std::string& model_data) { return import(model_data + pressed).lost; };
     EXPECT_THAT(lost(""), IsEmpty());
-    for (const char* card :
-         {"*TIE, CYCLIC SYMMETRY, NAME=T\nUnder,Over\n", "*TEMPERATURE\nAll,20.\n", "*SPRING, ELSET=S\n\n100.\n",
-          "*INITIAL CONDITIONS, TYPE=VELOCITY\nAll,3,-1.\n", "*MATERIAL, NAME=P\n*PLASTIC\n100.,0.\n",
-          "*SURFACE BEHAVIOR, NO SEPARATION\n", "*BOUNDARY\nNone,1\n"})
+    for (const char* card : {"*TIE, CYCLIC SYMMETRY, NAME=T\nUnder,Over\n", "*TEMPERATURE\nAll,20.\n",
+                             "*SPRING, ELSET=S\n\n100.\n", "*INITIAL CONDITIONS, TYPE=VELOCITY\nAll,3,-1.\n",
+                             "*MATERIAL, NAME=P\n*PLASTIC, HARDENING=KINEMATIC\n100.,0.\n",
+                             "*SURFACE BEHAVIOR, NO SEPARATION\n", "*BOUNDARY\nNone,1\n"})
         EXPECT_EQ(lost(card).size(), 1u) << card;
     for (const char* card : {"*RESTART, WRITE\n", "*TIME POINTS, NAME=T\n1.\n", "*CONTROLS, PARAMETERS=FIELD\n.005\n",
                              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nAll,20.\n"})

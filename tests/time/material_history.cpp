@@ -56,6 +56,7 @@ public:
     void mass(const Eigen::Ref<const Eigen::Matrix3Xd>& X, double rho, Eigen::Ref<Matrix> Me) const override {
         elastic_->mass(X, rho, Me);
     }
+    void heat(std::span<const double>, std::span<double>) const override {}
     void lumped_mass(const Eigen::Ref<const Eigen::Matrix3Xd>& X, double rho, Eigen::Ref<Vector> m) const override {
         elastic_->lumped_mass(X, rho, m);
     }

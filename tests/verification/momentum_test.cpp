@@ -128,15 +128,12 @@ TEST(TwoBlocks, KeepTheirAngularMomentumAtFiniteStrain) {
 }
 
 TEST(TwoBlocks, OfQuadraticElementsKeepTheirMomentaToo) {
-    for (const char* element : {"tet10", "hex20"}) {
-        const Changes small = meet("blend", "0.1", 60, false, element),
-                      finite = meet("facets", "0.1", 60, true, element);
-        EXPECT_LT(small.linear, 1e-11);
-        EXPECT_LT(small.moment, 1e-11);
-        EXPECT_LT(small.angular, 0.01);
-        EXPECT_LT(finite.linear, 1e-7);
-        EXPECT_LT(finite.angular, 2e-4); // of first order in the step, which is twice as long as above
-    }
+    const Changes small = meet("blend", "0.1", 40, false, "hex20"), finite = meet("facets", "0.1", 40, true, "tet10");
+    EXPECT_LT(small.linear, 1e-11);
+    EXPECT_LT(small.moment, 1e-10); // each force acts on some thirty nodes
+    EXPECT_LT(small.angular, 0.01);
+    EXPECT_LT(finite.linear, 1e-7);
+    EXPECT_LT(finite.angular, 3e-4); // of first order in the step, which is three times as long as above
 }
 
 } // namespace

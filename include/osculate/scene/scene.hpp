@@ -268,6 +268,7 @@ struct Pair {
     double friction = 0;                          ///< Coulomb's coefficient mu
     std::variant<ExactContact, LinearOverclosure> pressure_overclosure;
     std::optional<double> stick_stiffness; ///< Pa/m; none: nodes stick exactly
+    std::optional<double> adjust;          ///< slave nodes as near as this are moved onto the master at the start, m
     double closing_tolerance = 0.02;       ///< of the facet size: the first solve closes nodes with a smaller gap
     double initial_overlap_limit = 0.1;    ///< of the facet size: a deeper initial overlap is a fault
     double stiffness_scale =

@@ -64,6 +64,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft);
     settle_dynamics(draft.scene);
     settle_pairs(draft);
+    adjust_slaves(draft);
+    throw_faults(draft);
     add_skins(draft);
     throw_faults(draft);
     add_stages(draft);

@@ -51,6 +51,8 @@ void add_couplings(Draft& draft);
 void add_ties(Draft& draft);
 /// Projectors on the directions that supports leave free, of nodes that have any.
 [[nodiscard]] std::map<Index, Mat3> free_directions(const Draft& draft);
+/// Slave nodes of pairs that ask for it, moved onto the master.
+void adjust_slaves(Draft& draft);
 /// Skins of all surfaces in contact whose faces have midside nodes, with their nodes behind all others.
 void add_skins(Draft& draft);
 /// Held directions of every stage, and external forces at its ends but for gravity.

@@ -132,9 +132,10 @@ private:
             for (const auto& [p, T] : now) all.insert(T);
         }
         if (all.size() > 1) {
-            model_.lose(m.place, "*ELASTIC of material " + m.name,
-                        "moduli that depend on temperature, in a body of more than one: those of its first line are used "
-                        "instead");
+            model_.lose(
+                m.place, "*ELASTIC of material " + m.name,
+                "moduli that depend on temperature, in a body of more than one: those of its first line are used "
+                "instead");
             return *m.elastic;
         }
         const double T = all.empty() ? 0 : *all.begin();

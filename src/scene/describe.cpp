@@ -137,8 +137,9 @@ void describe(Visitor& v, Pair& pair) {
                        .range = range::positive},
                       pair.stick_stiffness);
     v.optional_number({.name = "adjust",
-                       .meaning = "Slave nodes above the master's facets, or in them, as near as this are moved onto them "
-                                  "before the run, without strain.",
+                       .meaning =
+                           "Slave nodes above the master's facets, or in them, as near as this are moved onto them "
+                           "before the run, without strain.",
                        .unit = dimension::length,
                        .range = range::positive},
                       pair.adjust);

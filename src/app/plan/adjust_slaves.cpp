@@ -48,8 +48,7 @@ void adjust_slaves(Draft& draft) {
             continue;
         }
         for (const auto& [node, X] : places(m, slave, master, *pair.adjust))
-            m.X[static_cast<std::size_t>(node)] =
-                body.mesh.nodes[static_cast<std::size_t>(node - body.first_node)] = X;
+            m.X[static_cast<std::size_t>(node)] = body.mesh.nodes[static_cast<std::size_t>(node - body.first_node)] = X;
         for (const std::string& what : mesh::faults(body.mesh))
             draft.faults.push_back(
                 fault(key, "a smaller one: elements fold where nodes are moved onto the master", what));

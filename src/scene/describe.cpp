@@ -138,7 +138,7 @@ void describe(Visitor& v, Pair& pair) {
                       pair.stick_stiffness);
     v.optional_number({.name = "adjust",
                        .meaning =
-                           "Slave nodes above the master's facets, or in them, as near as this are moved onto them "
+                           "Slave nodes as near to the master's surface as this, outside or inside, are moved onto it "
                            "before the run, without strain.",
                        .unit = dimension::length,
                        .range = range::positive},
@@ -394,7 +394,7 @@ void describe(Visitor& v, Stage& stage) {
          .meaning =
              "Temperature of the nodes of bodies or sets, reached at the end of the stage; where several name a node, "
              "the last one counts.",
-         .item = "body or set"},
+         .item = "part"},
         stage.temperature, [&](const std::string& part, Course& value) {
             v.course({.name = part,
                       .meaning = "Above the temperature at which the body has no thermal strain.",

@@ -75,6 +75,7 @@ field stress_mid             . . . . . . . . . . . . . .
 field stress_min             . . . . . . . . . . . . . .
 field strain                 . . . . . . . . . . . . . .
 field energy_density         . . . . . . . . . . . . . .
+field plastic_strain         . . . . . . . . . . . . . .
 field reaction               x . x . . x x x x x x x x x
 field out_of_balance         . . . . . . . . . . . . . .
 field penetration            . . . . . . . . . . . . . .

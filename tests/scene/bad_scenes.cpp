@@ -31,7 +31,7 @@ TEST(BadScene, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(faults[0].key, "contact.joint.frcition");
     EXPECT_EQ(faults[0].expected,
               "one of the keys slave, master, between, discretisation, friction, pressure_overclosure, "
-              "stick_stiffness, closing_tolerance, "
+              "stick_stiffness, adjust, closing_tolerance, "
               "initial_overlap_limit, stiffness_scale");
     EXPECT_EQ(faults[0].found, "unknown key 'frcition'");
     EXPECT_EQ(faults[0].nearest, "friction");
@@ -221,7 +221,8 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
             "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
             "for both",
             "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, control, ramp, "
-            "displacement, pressure, follower_pressure, body_force, nodal_force, motion, force, moment, found unknown "
+            "displacement, pressure, follower_pressure, body_force, temperature, nodal_force, motion, force, moment, "
+            "found unknown "
             "key 'stpes' "
             "(did "
             "you mean 'steps'?)",
@@ -244,7 +245,7 @@ TEST(BadScene, FaultInAnOverride) {
     expect_override_fault({"contact.joint.ring", "1"},
                           "--set: contact.joint.ring: expected one of the keys slave, master, between, discretisation, "
                           "friction, pressure_overclosure, "
-                          "stick_stiffness, closing_tolerance, "
+                          "stick_stiffness, adjust, closing_tolerance, "
                           "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
 }
 

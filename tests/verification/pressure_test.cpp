@@ -149,17 +149,10 @@ std::vector<Fault> faults_with(const std::vector<scene::Override>& overrides) {
     return {};
 }
 
-TEST(ContactOfTet10, IsRefusedOnEitherSideWithWhatToDo) {
+TEST(ContactOfTet10, IsTakenOnEitherSide) {
     EXPECT_TRUE(faults_with({}).empty());
-    for (const auto& [body, key] :
-         {std::pair{"upper", "contact.touch.slave"}, std::pair{"lower", "contact.touch.master.set"}}) {
-        const auto faults = faults_with({{"bodies." + std::string(body) + ".mesh.block.element", "tet10"}});
-        ASSERT_EQ(faults.size(), 1u) << "and no other that follows from it";
-        EXPECT_EQ(faults[0].key, key);
-        EXPECT_THAT(faults[0].found, testing::HasSubstr("32 of its 32 facets"));
-        EXPECT_THAT(faults[0].found, testing::HasSubstr("tet10 elements of body '" + std::string(body) + "'"));
-        EXPECT_THAT(faults[0].expected, testing::HasSubstr("`element: tet4`, "));
-    }
+    for (const char* body : {"upper", "lower"})
+        EXPECT_TRUE(faults_with({{"bodies." + std::string(body) + ".mesh.block.element", "tet10"}}).empty());
 }
 
 TEST(ContactOfTet10, IsNoneWhereOtherFacesOfTheBodyTouchNothing) {

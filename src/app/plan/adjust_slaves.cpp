@@ -1,34 +1,31 @@
 /// Slave nodes that are moved onto the master before a run.
 
 #include "app/fault.hpp"
+#include "app/plan/contact_pairs.hpp"
 #include "app/plan/draft.hpp"
+#include "app/plan/gaps.hpp"
 #include "app/plan/rigid_surface.hpp"
-#include "osculate/contact/master_surface.hpp"
-#include "osculate/contact/search.hpp"
 #include "osculate/mesh/quality.hpp"
 
-#include <fmt/format.h>
+#include <cmath>
+#include <stdexcept>
 
 namespace osculate::app {
 
 namespace {
 
-/// Places on the master of the nodes that are near enough.
-std::vector<std::pair<Index, Vec3>> places(const model::Model& m, const model::Set& slave, const model::Set& master,
-                                           double distance) {
-    const mesh::HalfEdgeSurface surface(master.facets, m.X.values());
-    std::vector<Vec3> vertices;
-    for (const Index node : surface.vertex_nodes()) vertices.push_back(m.X[static_cast<std::size_t>(node)]);
-    contact::FacetSearch search(surface);
-    search.build(vertices);
-    const std::unique_ptr<contact::MasterSurface> facets = contact::make_facets_surface(surface);
+/// Places on the master, as contact sees it, of the nodes that are near enough.
+std::vector<std::pair<Index, Vec3>> places(Draft& draft, const std::string& name, scene::Pair spec,
+                                           const model::Set& slave, const model::Set& master) {
+    spec.discretisation = Discretisation::node; // distances of nodes, no averages
+    const auto pair = make_contact_pair(draft.scene, name, spec, draft.plan.model, slave, master, nullptr);
+    model::ContactEvaluation evaluation(*pair);
+    (void)initial_gaps(evaluation, draft.plan.model.X, draft.timings, draft.threads);
     std::vector<std::pair<Index, Vec3>> found;
-    for (const Index node : mesh::nodes_of(slave.facets)) {
-        const contact::FacetHit hit = search.global(m.X[static_cast<std::size_t>(node)], vertices);
-        if (hit.facet < 0 || hit.overhang > 0 || hit.distance > distance) continue;
-        contact::ContactPoint point;
-        facets->evaluate(m.X[static_cast<std::size_t>(node)], hit, vertices, point, nullptr);
-        if (point.found) found.emplace_back(node, point.foot);
+    for (Index j = 0; j < pair->size(); ++j) {
+        const contact::ContactPoint& point = evaluation.point(j);
+        if (point.found && std::abs(point.gap) <= *spec.adjust)
+            found.emplace_back(pair->slaves().node[static_cast<std::size_t>(j)], point.foot);
     }
     return found;
 }
@@ -47,7 +44,13 @@ void adjust_slaves(Draft& draft) {
             draft.faults.push_back(fault(key, "a slave that deforms", "rigid body '" + body.name + "'"));
             continue;
         }
-        for (const auto& [node, X] : places(m, slave, master, *pair.adjust))
+        std::vector<std::pair<Index, Vec3>> found;
+        try {
+            found = places(draft, name, pair, slave, master);
+        } catch (const std::runtime_error&) { // of the master's surface: add_pairs tells of it
+            continue;
+        }
+        for (const auto& [node, X] : found)
             m.X[static_cast<std::size_t>(node)] = body.mesh.nodes[static_cast<std::size_t>(node - body.first_node)] = X;
         for (const std::string& what : mesh::faults(body.mesh))
             draft.faults.push_back(

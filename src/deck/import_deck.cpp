@@ -144,6 +144,32 @@ private:
         return {interpolated(m.by_temperature, T, 1), interpolated(m.by_temperature, T, 2)};
     }
 
+    std::string orthotropic_of(const DeckBody& body, const DeckMaterial& m) {
+        if (nlgeom_)
+            model_.lose(m.place, "NLGEOM with the orthotropic material " + m.name, "such bodies are at small strain");
+        const std::array<double, 9>& c = *m.orthotropic;
+        const auto three = [&](std::size_t first, double unit) {
+            return "[" + number(unit * c[first]) + ", " + number(unit * c[first + 1]) + ", " +
+                   number(unit * c[first + 2]) + "]";
+        };
+        std::string text =
+            "{orthotropic: {E: " + three(0, units_.stress) + ", nu: " + three(3, 1) + ", G: " + three(6, units_.stress);
+        if (!body.section->orientation.empty()) {
+            const auto at = model_.orientations.find(body.section->orientation);
+            if (at == model_.orientations.end()) {
+                model_.lose(body.section->place, "ORIENTATION=" + body.section->orientation,
+                            "there is none of that name");
+            } else {
+                const auto& [a, b] = at->second;
+                text += fmt::format(", axes: [[{}, {}, {}], [{}, {}, {}]]", number(a[0]), number(a[1]), number(a[2]),
+                                    number(b[0]), number(b[1]), number(b[2]));
+            }
+        }
+        if (m.density > 0) text += ", density: " + number(units_.density * m.density);
+        if (m.expansion != 0) text += ", expansion: " + number(m.expansion);
+        return text + "}}";
+    }
+
     std::string material_of(const DeckBody& body) {
         std::array<double, 2> elastic{1, 0};
         std::string law = nlgeom_ ? "saint_venant_kirchhoff" : "linear_elastic";
@@ -167,6 +193,8 @@ private:
                     if (!nlgeom_)
                         model_.note(m.place, "*PLASTIC without NLGEOM", "plastic bodies are at finite strain");
                 }
+            } else if (m.orthotropic) {
+                return orthotropic_of(body, m);
             } else if (m.neo_hookean && (*m.neo_hookean)[0] > 0 && (*m.neo_hookean)[1] > 0) {
                 const double mu = 2 * (*m.neo_hookean)[0], K = 2 / (*m.neo_hookean)[1];
                 elastic = {9 * K * mu / (3 * K + mu), (3 * K - 2 * mu) / (2 * (3 * K + mu))};

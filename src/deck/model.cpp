@@ -58,7 +58,6 @@ const std::map<std::string, Reason> reasons{
     {"PLASTIC", elastic_only},
     {"CYCLICHARDENING", elastic_only},
     {"CREEP", elastic_only},
-    {"ORIENTATION", {"materials are isotropic", false}},
     {"CONDUCTIVITY", heat},
     {"SPECIFICHEAT", heat},
     {"GAPCONDUCTANCE", heat},
@@ -126,6 +125,7 @@ private:
         if (word == "ELASTIC" || word == "DENSITY" || word == "HYPERELASTIC") return material_data(card);
         if (word == "PLASTIC") return hardening(card);
         if (word == "EXPANSION") return expansion(card);
+        if (word == "ORIENTATION") return orientation(card);
         if (word == "TEMPERATURE" && step_ != nullptr) return temperatures(card, step_->temperatures);
         if (word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE")
             return temperatures(card, model_.initial_temperatures);
@@ -245,6 +245,36 @@ private:
         found->second.hardening = std::move(rows);
     }
 
+    void orthotropic(const DeckCard& card, bool constants, DeckMaterial& m) {
+        std::vector<double> v;
+        for (auto line = deck_.begin(card); line != deck_.end(card) && v.size() < 9; ++line)
+            for (const double value : numbers(*line, 1))
+                if (v.size() < 9) v.push_back(value);
+        if (v.size() < 9 || card.last - card.first > 2) return lose(card, "nine constants have a counterpart");
+        if (constants) {
+            m.orthotropic = {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
+            return;
+        }
+        Mat3 D; // normal stresses over strains
+        D << v[0], v[1], v[3], v[1], v[2], v[4], v[3], v[4], v[5];
+        const Mat3 C = D.inverse();
+        if (!C.allFinite() || !(C.diagonal().minCoeff() > 0) || !(std::min({v[6], v[7], v[8]}) > 0))
+            return lose(card, "some strains store no energy");
+        m.orthotropic = {
+            1 / C(0, 0), 1 / C(1, 1), 1 / C(2, 2), -C(1, 0) / C(0, 0), -C(2, 0) / C(0, 0), -C(2, 1) / C(1, 1),
+            v[6],        v[7],        v[8]};
+    }
+
+    void orientation(const DeckCard& card) {
+        const std::string system = capitals_of(card, "SYSTEM");
+        if (!system.empty() && system != "RECTANGULAR") return lose(card, "only rectangular axes have a counterpart");
+        if (card.last - card.first != 1) return lose(card, "only two points have a counterpart");
+        const std::vector<double> v = numbers(*deck_.begin(card), 6);
+        const std::array<Vec3, 2> axes{Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
+        if (!(axes[0].cross(axes[1]).norm() > 0)) return lose(card, "its points are on one line");
+        model_.orientations[capitals_of(card, "NAME")] = axes;
+    }
+
     void material_data(const DeckCard& card) {
         const auto found = model_.materials.find(material_);
         if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
@@ -256,7 +286,11 @@ private:
             found->second.density = v[0];
         } else if (card.keyword == "ELASTIC") {
             const std::string type = capitals_of(card, "TYPE");
-            if (!type.empty() && type != "ISO" && type != "ISOTROPIC") return lose(card, "materials are isotropic");
+            if (type == "ORTHO" || type == "ORTHOTROPIC" || type == "ENGINEERINGCONSTANTS" ||
+                type == "ENGINEERING CONSTANTS")
+                return orthotropic(card, type.starts_with("ENG"), found->second);
+            if (!type.empty() && type != "ISO" && type != "ISOTROPIC")
+                return lose(card, "materials are isotropic or orthotropic");
             found->second.elastic = {v[0], v[1]};
             for (auto line = deck_.begin(card); card.last - card.first > 1 && line != deck_.end(card); ++line) {
                 const std::vector<double> row = numbers(*line, 3);
@@ -282,7 +316,7 @@ private:
             at != model_.mesh.element_set_names.end())
             s.elements = at->second;
         if (s.cells.empty()) return lose(card, "no element set '" + s.elements + "'");
-        if (card.parameter("ORIENTATION") != nullptr) note(card, "ORIENTATION: materials are isotropic");
+        s.orientation = capitals_of(card, "ORIENTATION");
         model_.sections.push_back(std::move(s));
     }
 

@@ -25,6 +25,7 @@ struct DeckMaterial {
     std::optional<std::array<double, 2>> elastic;     ///< E, nu
     std::optional<std::array<double, 2>> neo_hookean; ///< C10, D1
     std::vector<std::array<double, 2>> hardening;     ///< equivalent plastic strain, yield stress; empty: elastic
+    std::optional<std::array<double, 9>> orthotropic; ///< E1 E2 E3, nu12 nu13 nu23, G12 G13 G23
     double density = 0;
     double expansion = 0; ///< thermal, 1/K; of the first row
     std::vector<std::array<double, 2>>
@@ -54,6 +55,7 @@ struct DeckTemperature {
 struct DeckSection {
     std::vector<Index> cells;
     std::string elements, material; ///< names; the material's in capitals
+    std::string orientation;        ///< in capitals
     std::string place;
 };
 
@@ -118,7 +120,8 @@ struct DeckModel {
     mesh::DeckMesh mesh;
     std::map<std::string, DeckMaterial> materials; ///< by names in capitals
     std::vector<DeckSection> sections;
-    std::map<std::string, DeckInteraction> interactions; ///< by names in capitals
+    std::map<std::string, std::array<Vec3, 2>> orientations; ///< by names in capitals: first axis, and one of its plane
+    std::map<std::string, DeckInteraction> interactions;     ///< by names in capitals
     std::vector<DeckPair> pairs, ties;
     std::vector<DeckValues> held; ///< in all steps
     std::vector<DeckTemperature> initial_temperatures;

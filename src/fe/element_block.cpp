@@ -42,20 +42,32 @@ std::unique_ptr<ElementKernel> make(mesh::CellType type, HexFormulation formulat
 
 } // namespace
 
-std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
-                                           const material::LinearElastic& material, bool heated) {
+namespace {
+std::unique_ptr<ElementKernel> make_linear(mesh::CellType type, HexFormulation formulation, const Mat6& stiffness,
+                                           bool heated) {
     return with_element(type, [&]<class E>() -> std::unique_ptr<ElementKernel> {
         if constexpr (std::is_same_v<E, Hex8>) {
-            if (formulation == HexFormulation::b_bar) return make_small_strain_kernel<BBarHex>(material, heated);
+            if (formulation == HexFormulation::b_bar) return make_small_strain_kernel<BBarHex>(stiffness, heated);
             if (formulation == HexFormulation::incompatible_modes)
-                return make_small_strain_kernel<IncompatibleModesHex>(material, heated);
+                return make_small_strain_kernel<IncompatibleModesHex>(stiffness, heated);
         }
         refuse<E>(formulation);
         if constexpr (std::is_same_v<E, Hex20>)
             if (formulation == HexFormulation::reduced)
-                return make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(material, heated);
-        return make_small_strain_kernel<DisplacementStrain<E>>(material, heated);
+                return make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(stiffness, heated);
+        return make_small_strain_kernel<DisplacementStrain<E>>(stiffness, heated);
     });
+}
+} // namespace
+
+std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                           const material::LinearElastic& material, bool heated) {
+    return make_linear(type, formulation, material.stiffness(), heated);
+}
+
+std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                           const material::Orthotropic& material, bool heated) {
+    return make_linear(type, formulation, material.stiffness(), heated);
 }
 
 std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,

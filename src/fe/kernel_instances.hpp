@@ -8,9 +8,9 @@
 namespace osculate::fe {
 
 /// @tparam Formulation  of fe/small_strain.hpp
+/// @param stiffness     d stress / d strain
 template <class Formulation>
-[[nodiscard]] std::unique_ptr<ElementKernel> make_small_strain_kernel(const material::LinearElastic& material,
-                                                                      bool heated);
+[[nodiscard]] std::unique_ptr<ElementKernel> make_small_strain_kernel(const Mat6& stiffness, bool heated);
 
 /// @tparam E               reference element
 /// @tparam mean_dilatation see FiniteStrainKernel

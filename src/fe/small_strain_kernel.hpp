@@ -15,8 +15,7 @@ template <class Formulation> class SmallStrainKernel final : public SolidKernel<
     using Positions = Eigen::Matrix<double, 3, n>;
 
 public:
-    SmallStrainKernel(const material::LinearElastic& material, bool heated)
-        : SolidKernel<E>(heated), D_(material.stiffness()), formulation_(D_) {}
+    SmallStrainKernel(const Mat6& stiffness, bool heated) : SolidKernel<E>(heated), D_(stiffness), formulation_(D_) {}
 
     void stiffness(const Eigen::Ref<const Eigen::Matrix3Xd>& X, Eigen::Ref<Matrix> Ke) const override {
         require(X.cols() == n && Ke.rows() == 3 * n && Ke.cols() == 3 * n, "stiffness: sizes do not match the element");
@@ -102,8 +101,8 @@ private:
 };
 
 template <class Formulation>
-std::unique_ptr<ElementKernel> make_small_strain_kernel(const material::LinearElastic& material, bool heated) {
-    return std::make_unique<SmallStrainKernel<Formulation>>(material, heated);
+std::unique_ptr<ElementKernel> make_small_strain_kernel(const Mat6& stiffness, bool heated) {
+    return std::make_unique<SmallStrainKernel<Formulation>>(stiffness, heated);
 }
 
 } // namespace osculate::fe

@@ -378,7 +378,8 @@ public:
 
     void check_formulation(const std::string& name, const Body& body) {
         if (body.hex_formulation == HexFormulation::incompatible_modes && body.has_material &&
-            !std::holds_alternative<LinearElastic>(body.material))
+            !std::holds_alternative<LinearElastic>(body.material) &&
+            !std::holds_alternative<Orthotropic>(body.material))
             fault({"bodies", name, "hex_formulation"}, "full or b_bar with a material at finite strain",
                   "incompatible_modes");
     }

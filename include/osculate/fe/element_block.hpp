@@ -6,6 +6,7 @@
 #include "osculate/material/j2_plasticity.hpp"
 #include "osculate/material/linear_elastic.hpp"
 #include "osculate/material/neo_hookean.hpp"
+#include "osculate/material/orthotropic.hpp"
 #include "osculate/material/saint_venant_kirchhoff.hpp"
 #include "osculate/mesh/mesh.hpp"
 
@@ -118,11 +119,13 @@ public:
     [[nodiscard]] virtual double volume(const Eigen::Ref<const Eigen::Matrix3Xd>& X) const = 0;
 };
 
-/// The kernel of a cell type: small strain for LinearElastic, finite strain for the others. The formulation affects
+/// The kernel of a cell type: small strain for LinearElastic and Orthotropic, finite strain for the others. The formulation affects
 /// only hexahedra; std::invalid_argument for incompatible modes at finite strain.
 /// @param heated  temperatures change
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
                                                          const material::LinearElastic& material, bool heated = false);
+[[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
+                                                         const material::Orthotropic& material, bool heated = false);
 [[nodiscard]] std::unique_ptr<ElementKernel> make_kernel(mesh::CellType type, HexFormulation formulation,
                                                          const material::SaintVenantKirchhoff& material,
                                                          bool heated = false);

@@ -136,11 +136,19 @@ struct SaintVenantKirchhoff : ElasticConstants { ///< finite strain
 struct NeoHookean : ElasticConstants { ///< finite strain
     bool operator==(const NeoHookean&) const = default;
 };
+/// Small strain. E and nu of ElasticConstants stand for those along the axes: the largest modulus, and 0.3.
+struct Orthotropic : ElasticConstants {
+    Vec3 moduli = Vec3::Zero(); ///< Young's moduli along the axes, Pa
+    Vec3 ratios = Vec3::Zero(); ///< nu_12, nu_13, nu_23
+    Vec3 shear = Vec3::Zero();  ///< G_12, G_13, G_23, Pa
+    Mat3 axes = Mat3::Identity();
+    bool operator==(const Orthotropic&) const = default;
+};
 struct ElasticPlastic : ElasticConstants { ///< finite strain
     Course yield_stress;                   ///< Pa, a value, or a table over the equivalent plastic strain
     bool operator==(const ElasticPlastic&) const = default;
 };
-using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean, ElasticPlastic>;
+using Material = std::variant<LinearElastic, SaintVenantKirchhoff, NeoHookean, ElasticPlastic, Orthotropic>;
 
 [[nodiscard]] inline const ElasticConstants& elastic(const Material& material) {
     return std::visit([](const auto& m) -> const ElasticConstants& { return m; }, material);

@@ -64,7 +64,7 @@ private:
 
     void materials() {
         static constexpr const char* laws[] = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean",
-                                               "elastic_plastic"};
+                                               "elastic_plastic", "orthotropic"};
         static_assert(std::size(laws) == std::variant_size_v<scene::Material>, "a law without its word");
         for (const auto& [name, body] : scene_.bodies) {
             if (body.rigid) continue;

@@ -123,6 +123,10 @@ std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation fo
             [&](const scene::NeoHookean&) {
                 return fe::make_kernel(type, formulation, material::NeoHookean(elastic), heated);
             },
+            [&](const scene::Orthotropic& o) {
+                return fe::make_kernel(type, formulation, material::Orthotropic{o.moduli, o.ratios, o.shear, o.axes},
+                                       heated);
+            },
             [&](const scene::ElasticPlastic& plastic) {
                 material::Hardening hardening;
                 if (const auto* table = std::get_if<scene::Table>(&plastic.yield_stress.form))
@@ -219,6 +223,14 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
         body.rigid = spec.rigid.has_value();
         body.mesh = std::move(meshes[b]);
         body.first_node = draft.plan.model.nodes();
+        if (const auto* o = std::get_if<scene::Orthotropic>(&spec.material);
+            o != nullptr && !body.rigid && !material::Orthotropic{o->moduli, o->ratios, o->shear, o->axes}.stable()) {
+            draft.faults.push_back(
+                fault("bodies." + name + ".material.orthotropic.nu",
+                      "ratios with which every strain stores energy, as nu_12^2 < E_1/E_2",
+                      fmt::format("[{:.4g}, {:.4g}, {:.4g}]", o->ratios[0], o->ratios[1], o->ratios[2])));
+            return;
+        }
         if (const auto unfit = unfit_formulation(body.mesh, spec.hex_formulation)) {
             draft.faults.push_back(fault("bodies." + name + ".hex_formulation", unfit->expected, unfit->found));
             return;

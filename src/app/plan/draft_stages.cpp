@@ -164,13 +164,19 @@ void add_constraints(const Draft& draft, const Driving& driving, CourseList& cou
 
 /// Nodes of a set, or of a body.
 std::vector<Index> nodes_of_part(Draft& draft, const std::string& part, const std::string& key) {
-    for (const model::Set& set : draft.plan.model.sets)
-        if (set.name == part) return set.nodes;
     std::vector<Index> nodes;
+    for (const model::Set& set : draft.plan.model.sets)
+        if (set.name == part) nodes = set.nodes;
     for (const model::Body& body : draft.plan.model.bodies)
-        if (body.name == part)
+        if (body.name == part && nodes.empty())
             for (Index i = 0; i < body.nodes(); ++i) nodes.push_back(body.first_node + i);
-    if (nodes.empty()) draft.faults.push_back(fault(key + "." + part, "the name of a body or set", "'" + part + "'"));
+    if (nodes.empty()) {
+        draft.faults.push_back(fault(key + "." + part, "the name of a body or set", "'" + part + "'"));
+    } else if (const model::Body& body = *model::body_of(draft.plan.model, nodes.front());
+               body.rigid || body.expansion == 0) {
+        draft.faults.push_back(fault(key + "." + part, "a body that deforms and has a thermal expansion",
+                                     "'" + body.name + "', which does not grow"));
+    }
     return nodes;
 }
 
@@ -216,10 +222,6 @@ void add_stages(Draft& draft) {
         }
         for (const auto& [part, value] : now.temperature) {
             const auto was = std::ranges::find(before.temperature, part, [](const auto& one) { return one.first; });
-            if (std::ranges::none_of(draft.plan.model.bodies,
-                                     [](const model::Body& body) { return body.expansion != 0; }))
-                draft.faults.push_back(fault("stages." + name + ".temperature." + part,
-                                             "a body with a thermal expansion: material.<law>.expansion", "none"));
             stage.temperatures.push_back({nodes_of_part(draft, part, "stages." + name + ".temperature"),
                                           was != before.temperature.end() ? ramped(was->second) : 0, ramped(value),
                                           value.is_value() ? -1 : courses.index("temperature." + part, value)});

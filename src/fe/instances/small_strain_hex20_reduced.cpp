@@ -2,7 +2,6 @@
 
 namespace osculate::fe {
 
-template std::unique_ptr<ElementKernel>
-make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(const material::LinearElastic&, bool);
+template std::unique_ptr<ElementKernel> make_small_strain_kernel<DisplacementStrain<Hex20Reduced>>(const Mat6&, bool);
 
 } // namespace osculate::fe

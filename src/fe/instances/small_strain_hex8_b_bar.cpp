@@ -2,6 +2,6 @@
 
 namespace osculate::fe {
 
-template std::unique_ptr<ElementKernel> make_small_strain_kernel<BBarHex>(const material::LinearElastic&, bool);
+template std::unique_ptr<ElementKernel> make_small_strain_kernel<BBarHex>(const Mat6&, bool);
 
 } // namespace osculate::fe

@@ -2,9 +2,7 @@
 
 namespace osculate::fe {
 
-template std::unique_ptr<ElementKernel>
-make_small_strain_kernel<DisplacementStrain<Tet4>>(const material::LinearElastic&, bool);
-template std::unique_ptr<ElementKernel>
-make_small_strain_kernel<DisplacementStrain<Wedge6>>(const material::LinearElastic&, bool);
+template std::unique_ptr<ElementKernel> make_small_strain_kernel<DisplacementStrain<Tet4>>(const Mat6&, bool);
+template std::unique_ptr<ElementKernel> make_small_strain_kernel<DisplacementStrain<Wedge6>>(const Mat6&, bool);
 
 } // namespace osculate::fe

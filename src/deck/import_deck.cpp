@@ -105,7 +105,8 @@ private:
             const std::string material = material_of(body);
             text += "}\n    material: " + material + "\n";
             std::string formulation = body.formulation;
-            if (formulation == "incompatible_modes" && !material.starts_with("{linear_elastic")) {
+            if (formulation == "incompatible_modes" && !material.starts_with("{linear_elastic") &&
+                !material.starts_with("{orthotropic")) {
                 formulation = "b_bar";
                 model_.note(body.section == nullptr ? model_.mesh.raw.file : body.section->place, "C3D8I or C3D8R",
                             "incompatible modes are for small strain: b_bar is used instead");
@@ -183,6 +184,8 @@ private:
         } else {
             const DeckMaterial& m = found->second;
             density = m.density;
+            if (!m.hardening.empty() && !m.elastic)
+                model_.lose(m.place, "*PLASTIC of material " + m.name, "only isotropic Hookean materials yield");
             expansion = m.expansion;
             if (m.elastic) {
                 elastic = *m.elastic;

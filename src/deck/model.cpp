@@ -233,8 +233,7 @@ private:
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             const std::vector<double> v = numbers(*line, 2);
             if (v.size() > 2 && v[2] != temperature.value_or(v[2])) {
-                note(card, "only the rows of its first temperature count: nothing depends on temperature");
-                break;
+                return lose(card, "yield stresses that depend on temperature have no counterpart");
             }
             if (v.size() > 2) temperature = v[2];
             if (!(v[0] > 0) || v[1] < 0 || (rows.empty() ? v[1] != 0 : v[1] <= rows.back()[0]))

@@ -181,6 +181,20 @@ TEST_F(Importing, PlasticBodiesHaveTheirHardeningCurve) {
     EXPECT_EQ(std::get<scene::Table>(law.yield_stress.form), expected);
 }
 
+TEST_F(Importing, LosesFlowThatNoLawHas) {
+    const auto lost = [&](const std::string& more, const std::string& elastic) {
+        std::string model = mesh_of_cubes + before_elastic(more);
+        if (!elastic.empty()) {
+            const std::string plain = "*ELASTIC\n210000.,.3\n";
+            model.replace(model.find(plain), plain.size(), elastic);
+        }
+        return import(pressed, DeckUnits::mm, model).lost;
+    };
+    EXPECT_THAT(lost("*PLASTIC\n200.,0.,20.\n150.,0.,300.\n", ""), Contains(HasSubstr("depend on temperature")));
+    EXPECT_THAT(lost("*PLASTIC\n200.,0.\n", "*HYPERELASTIC, NEO HOOKE\n10.,.01\n"),
+                Contains(HasSubstr("only isotropic Hookean materials yield")));
+}
+
 TEST_F(Importing, TemperaturesCountFromTheInitialOnes) {
     const std::string model = mesh_of_cubes + before_elastic("*EXPANSION\n1.2E-5\n");
     const scene::Scene scene = checked(

@@ -54,8 +54,8 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
             {body.first_node, body.nodes(), !bodies_.bodies().dynamic() && loose(body, model.X, constraints_)});
     std::vector<Index> slaves;
     for (const linear::Coupling& c : couplings_) slaves.push_back(c.slave);
-    condensed_ = std::make_unique<linear::CondensedTangent>(constraints_, K, model.X, condensed, choice.nodes,
-                                                            std::move(slaves), threads);
+    condensed_ = std::make_unique<Condensation>(model, constraints_, K, std::move(condensed), std::move(slaves), choice,
+                                                threads);
 }
 
 const linear::BlockMatrix& EquilibriumTangent::stiffness() const {
@@ -92,7 +92,7 @@ void EquilibriumTangent::commit() {
     if (kept_patterns_ != patterns_built_) kept_couplings_ = couplings_;
     kept_patterns_ = patterns_built_;
     if (preconditioner_) preconditioner_->keep_pattern();
-    if (condensed_) condensed_->keep();
+    if (condensed_) condensed_->commit();
 }
 
 void EquilibriumTangent::rollback() {
@@ -102,14 +102,17 @@ void EquilibriumTangent::rollback() {
         kept_patterns_ = patterns_built_;
     }
     if (preconditioner_) preconditioner_->restore_pattern();
-    if (condensed_) condensed_->restore();
+    if (condensed_) condensed_->rollback();
 }
 
 EquilibriumMemory EquilibriumTangent::memory() const {
     EquilibriumMemory memory;
     if (kept_patterns_ > 0) memory.couplings = kept_couplings_;
     if (preconditioner_) memory.springs = preconditioner_->kept_pattern();
-    if (condensed_ && condensed_->kept() != nullptr) memory.laws = *condensed_->kept();
+    if (condensed_) {
+        memory.condensed = condensed_->kept_nodes();
+        if (const linear::ContactLaws* laws = condensed_->kept_laws()) memory.laws = *laws;
+    }
     return memory;
 }
 
@@ -120,7 +123,7 @@ void EquilibriumTangent::recall(const EquilibriumMemory& memory) {
         kept_patterns_ = patterns_built_;
     }
     if (preconditioner_ && memory.springs) preconditioner_->restore_pattern(*memory.springs);
-    if (condensed_ && memory.laws) condensed_->restore(*memory.laws);
+    if (condensed_) condensed_->recall(memory.condensed, memory.laws ? &*memory.laws : nullptr);
 }
 
 solve::FactorStatus EquilibriumTangent::factorise() {
@@ -172,13 +175,14 @@ bool EquilibriumTangent::solve(const ConstVectorRef& b, VectorRef x, double allo
     // condensation takes for granted that a body's solution balances: where displacements are large and forces small, round-off
     // is in the way, and only the tangent itself tells
     constexpr int most_corrections = 2;
-    if (!condensed_->covers(contact_.bearing())) return false;
-    condensed_->set(contact_.bearing());
+    linear::CondensedTangent& condensed = condensed_->tangent_for(contact_.bearing());
+    if (!condensed.covers(contact_.bearing())) return false;
+    condensed.set(contact_.bearing());
     const Index size = unknowns_.size();
     Vector left = b, more(size), product(size);
     x.setZero();
     for (int k = 0; k <= most_corrections; ++k) {
-        if (!condensed_->solve(unknowns_, contact_.open_laws(), left, more, allowed, timings_)) return false;
+        if (!condensed.solve(unknowns_, contact_.open_laws(), left, more, allowed, timings_)) return false;
         if (!more.allFinite()) return false;
         x += more;
         const ScopedTimer timer(timings_, Part::solve);

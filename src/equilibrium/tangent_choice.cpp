@@ -6,9 +6,8 @@
 
 namespace osculate::equilibrium {
 
-bool CondensationCost::pays() const {
-    constexpr double as_fast = 6; // dense operations are some three times quicker, and a few factorisations usual
-    constexpr double most = 4e9;  // bytes
+bool CondensationCost::pays(double as_fast) const {
+    constexpr double most = 4e9; // bytes
     return condensed <= as_fast * factorising && bytes <= most;
 }
 
@@ -30,18 +29,22 @@ std::vector<Index> contact_nodes(const model::Model& model, const model::Contact
 
 CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs,
                                    const model::ContactScope* scope) {
+    std::size_t contacts = 0;
+    for (const auto& pair : pairs)
+        if (!pair->slaves().edges) contacts += static_cast<std::size_t>(pair->size()); // few edges of many cross
+    return condensation_cost(model, contact_nodes(model, pairs, scope), contacts);
+}
+
+CondensationCost condensation_cost(const model::Model& model, const std::vector<Index>& nodes, std::size_t contacts) {
     constexpr double nested_dissection = 14; // operations of METIS and CHOLMOD over the square of a body's unknowns
     constexpr double laws = 2;               // T's of a solve
-    std::vector<char> touched(model.X.size(), 0);
-    for (const Index node : contact_nodes(model, pairs, scope)) touched[node] = 1;
-    double forces = 0;
-    for (const auto& pair : pairs)
-        if (!pair->slaves().edges) forces += 3.0 * static_cast<double>(pair->size()); // few edges of many cross
+    const double forces = 3.0 * static_cast<double>(contacts);
     CondensationCost cost;
     for (const model::Body& body : model.bodies) {
         const double all = 3.0 * static_cast<double>(body.nodes());
-        const double kept = 3.0 * static_cast<double>(std::count(touched.begin() + body.first_node,
-                                                                 touched.begin() + body.first_node + body.nodes(), 1));
+        const auto first = std::ranges::lower_bound(nodes, body.first_node),
+                   last = std::ranges::lower_bound(nodes, body.first_node + body.nodes());
+        const double kept = 3.0 * static_cast<double>(last - first);
         cost.factorising += nested_dissection * all * all;
         cost.condensed += kept * kept * kept;
         cost.bytes += sizeof(double) * kept * kept;
@@ -81,10 +84,13 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned =
         choice.multigrid || ((contact || !symmetric || !model.ties.empty()) && asked != LinearSolver::direct);
+    // steps of dynamics change their length and with it the inverses; general contact reaches many more nodes than bear
+    const bool grows = scope != nullptr && !dynamic, asks = asked == LinearSolver::condensed;
     choice.condensed = !model.nonlinear && !model.has_dependent_nodes() && !follows && !choice.multigrid &&
-                       choice.products &&
-                       (asked == LinearSolver::condensed || (asked == LinearSolver::automatic && pays));
-    if (choice.condensed) choice.nodes = contact_nodes(model, pairs, scope);
+                       choice.products && (asks || (asked == LinearSolver::automatic && (pays || grows)));
+    choice.grows = choice.condensed && grows;
+    choice.at_any_cost = choice.grows && asks;
+    if (choice.condensed && !grows) choice.nodes = contact_nodes(model, pairs, scope);
     return choice;
 }
 

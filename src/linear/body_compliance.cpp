@@ -4,9 +4,10 @@
 
 namespace osculate::linear {
 
-BodyCompliance::BodyCompliance(const Constraints& constraints, Index first_node, Index nodes,
-                               const std::vector<Index>& kept, std::vector<Index> sprung)
-    : constraints_(constraints), sprung_(std::move(sprung)) {
+BodyCompliance::BodyCompliance(const Constraints& constraints, Index first_node, Index nodes, std::vector<Index> kept,
+                               std::vector<Index> sprung)
+    : constraints_(constraints), first_node_(first_node), nodes_(nodes), kept_(std::move(kept)),
+      sprung_(std::move(sprung)) {
     // equations ascend with the nodes
     first_ = constraints.equations();
     for (Index node = first_node; node < first_node + nodes; ++node)
@@ -16,7 +17,7 @@ BodyCompliance::BodyCompliance(const Constraints& constraints, Index first_node,
                 last_ = e + 1;
             }
     std::vector<solve::SparseIndex> own;
-    for (const Index node : kept)
+    for (const Index node : kept_)
         for (int k = 0; k < 3; ++k)
             if (const Index e = constraints.equation(node, k); e != Constraints::held) {
                 equations_.push_back(e);
@@ -48,7 +49,9 @@ solve::FactorStatus BodyCompliance::factorise(const solve::SparseMatrix& K, doub
             }
     ++K_.revision;
     const solve::FactorStatus status = solver_->factorise(K_);
-    if (status == solve::FactorStatus::ok && !equations_.empty()) W_ = solver_->compliance();
+    factorised_ = status == solve::FactorStatus::ok;
+    spring_ = spring;
+    if (factorised_ && !equations_.empty()) W_ = solver_->compliance();
     return status;
 }
 

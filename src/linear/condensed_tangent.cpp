@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace osculate::linear {
 
@@ -14,7 +15,8 @@ namespace {
 /// GMRES iterations beyond which T is worth making anew.
 constexpr int worth_keeping = 10;
 
-/// Three of the nodes, as far from one line as can be had.
+} // namespace
+
 std::vector<Index> three_apart(const std::vector<Index>& nodes, const Field& X) {
     const auto farthest = [&](auto&& distance) {
         return *std::max_element(nodes.begin(), nodes.end(),
@@ -31,11 +33,9 @@ std::vector<Index> three_apart(const std::vector<Index>& nodes, const Field& X) 
     return result;
 }
 
-} // namespace
-
 CondensedTangent::CondensedTangent(const Constraints& constraints, const BlockMatrix& K, const Field& X,
                                    const std::vector<CondensedBody>& bodies, std::vector<Index> contact,
-                                   std::vector<Index> slaves, int threads)
+                                   std::vector<Index> slaves, int threads, const CondensedTangent* before)
     : constraints_(constraints), K_(&K), threads_(threads), slaves_(std::move(slaves)), nodes_(std::move(contact)),
       place_(X.size(), -1) {
     for (std::size_t c = 0; c < nodes_.size(); ++c) place_[nodes_[c]] = static_cast<Index>(c);
@@ -48,7 +48,11 @@ CondensedTangent::CondensedTangent(const Constraints& constraints, const BlockMa
         body_of_.insert(body_of_.end(), kept.size(), static_cast<Index>(bodies_.size()));
         if (body.loose && !kept.empty()) sprung = three_apart(kept, X);
         for (const Index node : sprung) sprung_.push_back(place_[node]);
-        bodies_.emplace_back(constraints, body.first_node, body.nodes, kept, std::move(sprung));
+        const std::size_t b = bodies_.size();
+        if (before != nullptr && before->bodies_[b]->keeps(kept, sprung))
+            bodies_.push_back(before->bodies_[b]);
+        else
+            bodies_.push_back(std::make_shared<BodyCompliance>(constraints, body.first_node, body.nodes, kept, sprung));
         Index next = first_.back();
         for (const Index node : kept)
             for (int k = 0; k < 3; ++k)
@@ -58,19 +62,34 @@ CondensedTangent::CondensedTangent(const Constraints& constraints, const BlockMa
     }
 }
 
+void CondensedTangent::begin(double mass_factor, bool changed) {
+    mass_factor_ = mass_factor;
+    if (changed) {
+        factorised_ = false;
+        for (const auto& body : bodies_) body->stiffness_changed();
+    }
+    if (schur_ && schur_->mass_factor != mass_factor) schur_ = nullptr;
+}
+
 void CondensedTangent::factorise_bodies() {
     factorised_ = true;
     usable_ = true;
-    ++factorisations_;
-    PenaltyStiffness all(constraints_, *K_);
-    all.set_springs({});
     spring_ = 0;
     for (const Index c : sprung_) {
         const Index node = nodes_[c];
         spring_ = std::max(spring_, K_->block(K_->slot(node, node)).diagonal().maxCoeff());
     }
-    for (BodyCompliance& body : bodies_) // not side by side: METIS takes from one source of random numbers
-        usable_ = body.factorise(all.matrix(), spring_) == solve::FactorStatus::ok && usable_;
+    std::optional<PenaltyStiffness> all;
+    for (std::shared_ptr<BodyCompliance>& body : bodies_) { // not side by side: METIS has one source of random numbers
+        if (body->is_factorised(spring_)) continue;
+        if (body.use_count() > 1) body = std::make_shared<BodyCompliance>(body->afresh());
+        if (!all) {
+            all.emplace(constraints_, *K_);
+            all->set_springs({});
+        }
+        usable_ = body->factorise(all->matrix(), spring_) == solve::FactorStatus::ok && usable_;
+    }
+    factorisations_ += all ? 1 : 0;
 }
 
 bool CondensedTangent::covers(const std::vector<BearingContact>& contacts) const {
@@ -136,7 +155,7 @@ void CondensedTangent::apply_compliance(const double* f, double* u) const {
         const Index n = first_[b + 1] - first_[b];
         if (n == 0) return;
         Eigen::Map<Vector>(u + first_[b], n).noalias() =
-            bodies_[b].W().selfadjointView<Eigen::Lower>() * Eigen::Map<const Vector>(f + first_[b], n);
+            bodies_[b]->W().selfadjointView<Eigen::Lower>() * Eigen::Map<const Vector>(f + first_[b], n);
     });
 }
 
@@ -176,7 +195,8 @@ void CondensedTangent::factorise(SchurComplement& schur) const {
                 for (int c = 0; c < 3; ++c)
                     if (const Index r = reduced_[3 * static_cast<std::size_t>(t.node) + static_cast<std::size_t>(c)];
                         r >= 0 && local(c) != 0)
-                        u.segment(first_[b], first_[b + 1] - first_[b]) += local(c) * bodies_[b].W().col(r - first_[b]);
+                        u.segment(first_[b], first_[b + 1] - first_[b]) +=
+                            local(c) * bodies_[b]->W().col(r - first_[b]);
             }
             relative(schur, u.data(), w);
             for (Index i = 0; i < count; ++i) T.block<3, 1>(3 * i, column) = schur.B[i] * w.segment<3>(3 * i);
@@ -270,14 +290,14 @@ bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, cons
             if (const Index e = constraints_.equation(slaves_[j], k); e != Constraints::held) r(e) += local(k);
     }
     Vector v(equations);
-    for (const BodyCompliance& body : bodies_) body.solve(r.data(), v.data());
+    for (const auto& body : bodies_) body->solve(r.data(), v.data());
 
     // x0 = P^-1 b: within the bodies it is exact
     const Index size = n + forces();
     Vector u(n), f = Vector::Zero(n), more(n), rest(size), y(size), right(forces());
     for (std::size_t body = 0; body < bodies_.size(); ++body)
-        for (std::size_t i = 0; i < bodies_[body].equations().size(); ++i)
-            u(first_[body] + static_cast<Index>(i)) = v(bodies_[body].equations()[i]);
+        for (std::size_t i = 0; i < bodies_[body]->equations().size(); ++i)
+            u(first_[body] + static_cast<Index>(i)) = v(bodies_[body]->equations()[i]);
     for (std::size_t j = 0; j < contacts_->size(); ++j)
         right.segment<3>(3 * static_cast<Index>(j)) = law((*contacts_)[j].law.coupling);
     Vector force = contact_forces(u, right.data());
@@ -311,9 +331,9 @@ bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, cons
     }
 
     for (std::size_t body = 0; body < bodies_.size(); ++body)
-        for (std::size_t i = 0; i < bodies_[body].equations().size(); ++i)
-            r(bodies_[body].equations()[i]) += f(first_[body] + static_cast<Index>(i));
-    for (const BodyCompliance& body : bodies_) body.solve(r.data(), x.data());
+        for (std::size_t i = 0; i < bodies_[body]->equations().size(); ++i)
+            r(bodies_[body]->equations()[i]) += f(first_[body] + static_cast<Index>(i));
+    for (const auto& body : bodies_) body->solve(r.data(), x.data());
     for (std::size_t j = 0; j < contacts_->size(); ++j)
         lambda[(*contacts_)[j].law.coupling] = force.segment<3>(3 * static_cast<Index>(j));
     for (std::size_t j = 0; j < slaves_.size(); ++j) {

@@ -169,6 +169,7 @@ Json to_json(const equilibrium::EquilibriumMemory& memory) {
     Json json{{"couplings", links(memory.couplings)}};
     if (memory.springs) json["springs"] = links(*memory.springs);
     if (memory.laws) json["laws"] = to_json(*memory.laws);
+    if (!memory.condensed.empty()) json["condensed"] = packed(memory.condensed);
     return json;
 }
 
@@ -177,6 +178,7 @@ equilibrium::EquilibriumMemory equilibrium_memory(const Json& json) {
     memory.couplings = links<linear::Coupling>(member(json, "couplings"), "couplings");
     if (json.contains("springs")) memory.springs = links<linear::Spring>(json["springs"], "springs");
     if (json.contains("laws")) memory.laws = contact_laws(json["laws"]);
+    if (json.contains("condensed")) memory.condensed = unpacked<Index>(json, "condensed");
     return memory;
 }
 

@@ -73,6 +73,7 @@ std::string misfit(const equilibrium::EquilibriumMemory& memory, const model::Mo
     if (memory.springs)
         for (const linear::Spring& spring : *memory.springs)
             if (!within(spring.slave, model.nodes()) || !within(spring.masters, model.nodes())) return "springs";
+    if (!within(memory.condensed, model.nodes()) || !std::ranges::is_sorted(memory.condensed)) return "condensed nodes";
     if (!memory.laws) return {};
     const linear::ContactLaws& laws = *memory.laws;
     const std::size_t count = laws.terms.size();

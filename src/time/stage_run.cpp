@@ -360,8 +360,10 @@ void StageRun::install(std::vector<model::ContactHistory> contact, model::Contac
     state.contact.insert(state.contact.end(), std::make_move_iterator(contact.begin()),
                          std::make_move_iterator(contact.end()));
     state.scope = std::make_shared<const model::ContactScope>(std::move(scope));
+    const auto condensed = equilibrium().kept_condensation();
     machinery_ = nullptr; // its memory first
     machinery_ = std::make_unique<Machinery>(context_, stage_, dynamics(), constraints_, state);
+    equilibrium().go_on_from(condensed);
 }
 
 void StageRun::find_pairs(double expected, std::vector<model::WatchedNode> watched) {

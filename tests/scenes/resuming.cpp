@@ -84,6 +84,24 @@ TEST_F(Resume, LeavesTheFilesOfTheRunThatWasNotBroken) {
     }
 }
 
+/// Nodes to condense on come as contact moves: they are part of what a run goes on from.
+TEST_F(Resume, GoesOnWithTheNodesThatContactHasReached) {
+    const std::vector<std::string> slide{scene_file("tests/scenes/general_slide.yaml"), "--quiet"};
+    std::vector<std::string> whole{"run", "-o", "whole"}, broken{"run", "-o", "run", "--checkpoint-every", "5"};
+    for (auto* run : {&whole, &broken}) run->insert(run->end(), slide.begin(), slide.end());
+    ASSERT_EQ(osculate(whole).code, 0);
+    ASSERT_EQ(summary_of(folder / "whole")["gmres_iterations"], 0) << "all solves are condensed";
+    ASSERT_EQ(osculate(broken).code, 0);
+    EXPECT_THAT(differing(folder / "run", folder / "whole"), IsEmpty());
+    for (const char* from : {"run/checkpoint/state", "run/checkpoint/state.previous"}) {
+        fs::copy_file(folder / from, folder / "kept", fs::copy_options::overwrite_existing);
+        fs::remove(folder / "run/summary.json");
+        const Outcome outcome = resume({"--from", "kept"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(differing(folder / "run", folder / "whole"), IsEmpty()) << from;
+    }
+}
+
 TEST_F(Resume, RefusesWhatItCannotGoOnFrom) {
     const auto refusal = [&](const std::vector<std::string>& more = {}) {
         const Outcome outcome = resume(more);

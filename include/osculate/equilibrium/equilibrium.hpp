@@ -43,6 +43,11 @@ public:
     /// Data that the last commit() kept for later steps; recall() restores it. Call only between attempts.
     [[nodiscard]] EquilibriumMemory memory() const { return tangent_.memory(); }
     void recall(const EquilibriumMemory& memory) { tangent_.recall(memory); }
+    /// What another equilibrium with the same stiffness of the bodies may go on from, see Condensation::go_on_from().
+    [[nodiscard]] std::shared_ptr<const linear::CondensedTangent> kept_condensation() const {
+        return tangent_.kept_condensation();
+    }
+    void go_on_from(const std::shared_ptr<const linear::CondensedTangent>& last) { tangent_.go_on_from(last); }
     /// Begins again at the start of the step: facets are as they were there.
     void forget_paths() { contact_.forget_paths(); }
     /// Whether solves stop as soon as they come back to statuses or gain nothing for a while, since a rung that needs no

@@ -16,6 +16,7 @@ struct EquilibriumMemory {
     std::vector<linear::Coupling> couplings{};            ///< of the tangent matrix; empty: as at the stage's start
     std::optional<std::vector<linear::Spring>> springs{}; ///< of the preconditioner, without stiffness; none: not made
     std::optional<linear::ContactLaws> laws{};            ///< none: to be made
+    std::vector<Index> condensed{}; ///< nodes of a condensation that grows, ascending; empty: there is none yet
 };
 
 } // namespace osculate::equilibrium

@@ -2,10 +2,10 @@
 /// The derivative of the residual, and all means to invert it: products, condensed contact, preconditioner, matrix.
 
 #include "osculate/equilibrium/body_term.hpp"
+#include "osculate/equilibrium/condensation.hpp"
 #include "osculate/equilibrium/contact_term.hpp"
 #include "osculate/equilibrium/equilibrium_memory.hpp"
 #include "osculate/equilibrium/tangent_choice.hpp"
-#include "osculate/linear/condensed_tangent.hpp"
 #include "osculate/linear/contact_preconditioner.hpp"
 #include "osculate/linear/folded_matrix.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
@@ -37,6 +37,13 @@ public:
     /// Data that the last commit() kept for later steps; recall() restores it.
     [[nodiscard]] EquilibriumMemory memory() const;
     void recall(const EquilibriumMemory& memory);
+    /// See Condensation; null: there is none.
+    [[nodiscard]] std::shared_ptr<const linear::CondensedTangent> kept_condensation() const {
+        return condensed_ ? condensed_->kept() : nullptr;
+    }
+    void go_on_from(const std::shared_ptr<const linear::CondensedTangent>& last) {
+        if (condensed_ && last) condensed_->go_on_from(*last);
+    }
     [[nodiscard]] long patterns_built() const { return patterns_built_; }
 
     [[nodiscard]] bool preconditions() const { return preconditioner_ != nullptr; }
@@ -48,7 +55,9 @@ public:
     [[nodiscard]] solve::SparseIndex failing_equation() const override { return preconditioner_->failing_equation(); }
     void linearise() override;
     void multiply(const ConstVectorRef& x, VectorRef y) override;
-    [[nodiscard]] bool solves() const override { return condensed_ && !bodies_.bodies().stabilised(); }
+    [[nodiscard]] bool solves() const override {
+        return condensed_ && !bodies_.bodies().stabilised() && condensed_->serves(contact_.bearing());
+    }
     [[nodiscard]] bool solve(const ConstVectorRef& b, VectorRef x, double allowed) override;
     [[nodiscard]] int factorisations() const override { return condensed_ ? condensed_->factorisations() : 0; }
 
@@ -76,7 +85,7 @@ private:
     long patterns_built_ = 0, kept_patterns_ = 0;
     std::unique_ptr<linear::SystemMatrix> matrix_;                  ///< null: not needed yet
     std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< see TangentChoice; null: not used
-    std::unique_ptr<linear::CondensedTangent> condensed_;           ///< see TangentChoice; null: not used
+    std::unique_ptr<Condensation> condensed_;                       ///< see TangentChoice; null: not used
     bool stale_preconditioner_ = false, stale_matrix_ = false;      ///< the stiffness of the bodies has changed since
     Field product_u_, product_f_;                                   ///< scratch of multiply()
 };

@@ -14,11 +14,16 @@ struct CondensationCost {
     double factorising = 0; ///< one sparse factorisation of all bodies
     double bytes = 0;
     /// Whether condensation pays off within a few iterations and its matrices fit into memory.
-    [[nodiscard]] bool pays() const;
+    /// @param as_fast  operations that take as long as one of a factorisation: dense ones are some three times quicker, and a
+    ///                 few factorisations are usual
+    [[nodiscard]] bool pays(double as_fast = 6) const;
 };
 /// @param scope  of the pairs that general contact has found; null: there are none, or nothing is known about them
 [[nodiscard]] CondensationCost condensation_cost(const model::Model& model, const model::ContactPairs& pairs,
                                                  const model::ContactScope* scope = nullptr);
+/// The same on these nodes, global, with so many contacts.
+[[nodiscard]] CondensationCost condensation_cost(const model::Model& model, const std::vector<Index>& nodes,
+                                                 std::size_t contacts);
 /// Nodes that contact may reach, global, ascending: slaves and masters, of pairs of general contact only as far as the scope goes.
 [[nodiscard]] std::vector<Index> contact_nodes(const model::Model& model, const model::ContactPairs& pairs,
                                                const model::ContactScope* scope = nullptr);
@@ -30,7 +35,9 @@ struct TangentChoice {
     bool multigrid = false;      ///< multigrid inverts this preconditioner
     bool condensed = false;      ///< linear::CondensedTangent first
     bool factorisable = true;    ///< the whole tangent may be factorised if GMRES fails
-    std::vector<Index> nodes{};  ///< contact_nodes() where condensed
+    bool grows = false;          ///< condensed on the nodes that bear, see Condensation
+    bool at_any_cost = false;    ///< and even where this does not pay off
+    std::vector<Index> nodes{};  ///< contact_nodes() where condensed and not on those that bear
 
     [[nodiscard]] bool operator==(const TangentChoice&) const = default;
 };

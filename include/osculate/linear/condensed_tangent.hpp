@@ -22,6 +22,9 @@ struct CondensedBody {
     bool loose = false; ///< only contact holds it, neither supports nor inertia
 };
 
+/// Three of the nodes, as far from one line as can be had; fewer where two of them would be the same. Ascending.
+[[nodiscard]] std::vector<Index> three_apart(const std::vector<Index>& nodes, const Field& X);
+
 /// With the bodies' stiffness K, contact forces lambda and, with respect to the displacements u_c of the contact nodes,
 /// the derivatives A, D of the contact laws and E, G of the forces, the tangent reads
 ///     K u + G u_c + E lambda = r_e,    A u_c + D lambda = r_c.
@@ -37,22 +40,21 @@ public:
     /// @param X        (nodes) reference positions, m
     /// @param contact  nodes that contact may reach, global, ascending
     /// @param slaves   (couplings) global nodes
+    /// @param before   its inverses of bodies serve where they are over the same nodes; null: there are none
     CondensedTangent(const Constraints& constraints, const BlockMatrix& K, const Field& X,
                      const std::vector<CondensedBody>& bodies, std::vector<Index> contact, std::vector<Index> slaves,
-                     int threads);
+                     int threads, const CondensedTangent* before = nullptr);
     /// Opens an attempt with K with this share of M (0 in statics); changed: K has new values.
-    void begin(double mass_factor, bool changed) {
-        mass_factor_ = mass_factor;
-        if (changed) factorised_ = false;
-        if (schur_ && schur_->mass_factor != mass_factor) schur_ = nullptr;
-    }
+    void begin(double mass_factor, bool changed);
     /// Keeps the current T, or restores the T of the last keep(): a rejected attempt leaves no trace.
     void keep() { kept_ = schur_; }
     void restore() { schur_ = kept_; }
     /// Contact laws of the last kept T, null if T must be computed; and restore() sets T back to that of such laws.
     [[nodiscard]] const ContactLaws* kept() const { return kept_.get(); }
     void restore(const ContactLaws& laws) { schur_ = kept_ = std::make_shared<SchurComplement>(laws); }
-    /// Whether contacts reach none but the nodes that contact may reach.
+    /// Nodes that contact may reach.
+    [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
+    /// Whether contacts reach no others.
     [[nodiscard]] bool covers(const std::vector<BearingContact>& contacts) const;
     /// Sets the contacts of the next solve(): every coupling in contact, in their order. They must outlive it. @pre covers()
     void set(const std::vector<BearingContact>& contacts);
@@ -100,9 +102,9 @@ private:
     std::vector<Index> slaves_; ///< by coupling
     std::vector<Index> nodes_;  ///< contact nodes, global, ascending
     std::vector<Index> place_;  ///< (nodes of the model) number among the contact nodes, -1: none
-    std::vector<BodyCompliance> bodies_;
-    std::vector<Index> body_of_; ///< (contact nodes)
-    std::vector<Index> first_;   ///< (bodies + 1) first reduced displacement
+    std::vector<std::shared_ptr<BodyCompliance>> bodies_; ///< perhaps shared with those before or after
+    std::vector<Index> body_of_;                          ///< (contact nodes)
+    std::vector<Index> first_;                            ///< (bodies + 1) first reduced displacement
     std::vector<Index> reduced_; ///< (3 contact nodes) reduced displacement of a local component, -1: held
     std::vector<Index> sprung_;  ///< contact nodes on springs
     double spring_ = 0;

@@ -76,6 +76,11 @@ double factor_bytes(double unknowns) {
     return 130 * std::pow(unknowns, 1.4);
 }
 
+/// Whether the nodes that are condensed on come as contact does.
+bool grows(const Plan& plan) {
+    return std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.grows; });
+}
+
 double bytes(const Plan& plan, bool multigrid, bool condensed) {
     constexpr double program = 2.8e7;     // libraries, before anything is read
     constexpr double by_multigrid = 5300; // an unknown, PETSc's copies and all
@@ -86,18 +91,20 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
     for (const model::Body& body : plan.model.bodies) sum += element * body.mesh.element_count();
     const double unknowns = 3.0 * plan.model.nodes();
     if (multigrid) return sum + by_multigrid * unknowns;
-    if (!condensed) return sum + factor_bytes(unknowns);
+    const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope());
+    if (!condensed || (grows(plan) && !cost.pays())) return sum + factor_bytes(unknowns);
     for (const model::Body& body : plan.model.bodies) sum += factor_bytes(3.0 * body.nodes());
-    return sum + equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope()).bytes;
+    return sum + cost.bytes;
 }
 
 } // namespace
 
 std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
-    const bool condensed = std::ranges::all_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
-    const bool changing = plan.model.nonlinear != nullptr || !plan.model.pairs.empty() || plan.model.general;
     const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope());
+    const bool condensed = std::ranges::all_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; }) &&
+                           (!grows(plan) || cost.pays());
+    const bool changing = plan.model.nonlinear != nullptr || !plan.model.pairs.empty() || plan.model.general;
     const double all = steps(plan, false) + steps(plan, true), solves = iterations(plan);
     const double nodes = plan.model.nodes(), blocks = plan.model.K.row_end(plan.model.K.rows() - 1);
     const Slaves s = slaves(scene, plan);

@@ -51,8 +51,10 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     say("multigrid", multigrid,
         multigrid ? fmt::format("multigrid cycles over {} nodes instead of factors", plan.model.nodes())
                   : "too few nodes for multigrid to pay off, or the scene asks for another solver");
+    const bool grows = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.grows; });
     say("condensation", condensed,
-        condensed   ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
+        grows       ? std::string("on the contact nodes that bear, as long as it costs less than factorisations")
+        : condensed ? fmt::format("on the contact nodes: {:.2g} operations once, a factorisation of all takes {:.2g}",
                                   cost.condensed, cost.factorising)
         : !contact  ? "the scene has no pair"
         : multigrid ? "multigrid is used"

@@ -43,7 +43,8 @@ public:
                                   "no *STEP with *STATIC or *DYNAMIC, which alone have counterparts");
         stages_.resize(model_.steps.size());
         const std::string bodies = write_bodies(), supports = write_supports(), contact = write_contact(),
-                          ties = write_ties();
+                          ties = write_ties(), rings = write_rings();
+        if (std::ranges::any_of(model_.steps, &DeckStep::dynamic)) damping_ = damping();
         DeckLoads(model_, bodies_, sets_, units_, nlgeom_).write(stages_);
         check_strains();
         ImportedScene scene;
@@ -66,6 +67,7 @@ public:
         if (!sets_.yaml().empty()) text += "sets:\n" + sets_.yaml();
         if (!supports.empty()) text += "supports:\n" + supports;
         if (!ties.empty()) text += "ties:\n" + ties;
+        if (!rings.empty()) text += "cyclic:\n" + rings;
         if (!contact.empty()) text += "contact:\n" + contact;
         text += "stages:\n";
         for (std::size_t s = 0; s < model_.steps.size(); ++s) text += write_stage(s);
@@ -261,17 +263,72 @@ private:
                 model_.lose(step.place, fmt::format("*BOUNDARY, OP=NEW, which lets go of {} components", released),
                             "what is held stays held");
         }
-        std::map<std::pair<int, Holdings>, std::vector<Index>> groups;
-        for (const auto& [p, holdings] : by_point) groups[{sets_.body_of(p), holdings}].push_back(p);
+        struct Group {
+            int body;
+            std::size_t axes; ///< 0: those of the deck
+            bool on_axis;     ///< of these axes
+            Holdings holdings;
+            auto operator<=>(const Group&) const = default;
+        };
+        std::map<Group, std::vector<Index>> groups;
+        for (auto& [p, holdings] : by_point) {
+            const auto turned = model_.transform_of.find(p);
+            const std::size_t axes =
+                turned == model_.transform_of.end() || holds_all(holdings) ? 0 : turned->second + 1;
+            const bool on_axis = axes > 0 && model_.on_axis(p);
+            if (on_axis) hold_across(holdings, p);
+            groups[{sets_.body_of(p), axes, on_axis, holdings}].push_back(p);
+        }
         std::string text;
-        for (const auto& [key, points] : groups)
-            for (const std::string& set : sets_.of_points(static_cast<std::size_t>(key.first), points, "held"))
-                text += write_support(set, key.second);
+        for (const auto& [group, points] : groups)
+            for (const std::string& set : sets_.of_points(static_cast<std::size_t>(group.body), points, "held"))
+                text += write_support(set, group.holdings, axes_of(group.axes, group.on_axis));
         return text;
     }
 
+    /// No direction is radial on an axis: what holds a node there across it holds it in both directions.
+    void hold_across(Holdings& holdings, Index p) {
+        for (const std::size_t d : {0, 1}) {
+            const std::vector<Holding>& list = holdings[d];
+            if (list.empty()) continue;
+            if (std::ranges::any_of(list, [](const Holding& h) { return h.value != 0; }))
+                model_.lose(model_.mesh.raw.file,
+                            fmt::format("*BOUNDARY on a node on the axis of its *TRANSFORM, {}", p),
+                            "no direction there is radial");
+            else if (holdings[1 - d].empty())
+                holdings[1 - d] = list;
+        }
+    }
+
+    /// Whether all components are held for ever, along whatever axes.
+    static bool holds_all(const Holdings& holdings) {
+        return std::ranges::all_of(holdings, [](const std::vector<Holding>& list) {
+            return !list.empty() && list.front().step <= 0 &&
+                   std::ranges::all_of(list, [](const Holding& h) { return h.value == 0; });
+        });
+    }
+
+    /// Axes of a set as a support has them.
+    std::string axes_of(std::size_t transform, bool on_axis) const {
+        if (transform == 0) return "";
+        const auto& [cylinder, points] = model_.transforms[transform - 1];
+        const auto vector = [](const Vec3& v) {
+            return "[" + number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]) + "]";
+        };
+        if (on_axis) {
+            const Vec3 axis = (points[1] - points[0]).normalized();
+            Eigen::Index least = 0;
+            axis.cwiseAbs().minCoeff(&least);
+            const Vec3 across = axis.cross(Vec3::Unit(least)).normalized();
+            return "axes: [" + vector(across) + ", " + vector(axis.cross(across)) + "]";
+        }
+        if (!cylinder) return "axes: [" + vector(points[0]) + ", " + vector(points[1]) + "]";
+        return "cylinder: {point: " + vector(units_.length * points[0]) + ", axis: " + vector(points[1] - points[0]) +
+               "}";
+    }
+
     /// Components held at zero from the start are supports, others driven by stages.
-    std::string write_support(const std::string& set, const Holdings& holdings) {
+    std::string write_support(const std::string& set, const Holdings& holdings, const std::string& axes) {
         std::string fixed;
         for (std::size_t d = 0; d < 3; ++d) {
             const std::vector<Holding>& list = holdings[d];
@@ -291,7 +348,9 @@ private:
                                                 course(units_.length * h.value, h.amplitude);
             }
         }
-        return fixed.empty() ? "" : "  " + set + ": {fix: [" + fixed + "]}\n";
+        if (fixed.empty() && axes.empty()) return "";
+        return "  " + set + ": {" + (fixed.empty() ? "" : "fix: [" + fixed + "]") +
+               (fixed.empty() || axes.empty() ? "" : ", ") + axes + "}\n";
     }
 
     std::string course(double value, const std::string& amplitude) const {
@@ -329,8 +388,10 @@ private:
                             pair.place, "surface to surface from the nodes of " + pair.slave,
                             "nodes alone have no facets to take averages over: node to surface is used instead");
                     // nodes of a deck meet the facets of the mesh; averages over facets are the default in statics
-                    text += "  " + fresh_name(slave + "_on_" + master, taken) + ":\n    slave: " + slave +
-                            "\n    master: {set: " + master + (mortar ? "" : ", surface: facets") + "}\n";
+                    const std::string name = fresh_name(slave + "_on_" + master, taken);
+                    change_pair(pair, name);
+                    text += "  " + name + ":\n    slave: " + slave + "\n    master: {set: " + master +
+                            (mortar ? "" : ", surface: facets") + "}\n";
                     if (!mortar) text += "    discretisation: node  # node to surface\n";
                     if (pair.adjust > 0) text += "    adjust: " + number(units_.length * pair.adjust) + "\n";
                     text += law_of(pair);
@@ -338,6 +399,48 @@ private:
             if (!any)
                 model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
                             "no two pieces of the mesh have them: a body in contact with itself has no counterpart");
+        }
+        return text;
+    }
+
+    /// What the steps change of a pair that the scene calls so.
+    void change_pair(const DeckPair& pair, const std::string& name) {
+        for (std::size_t s = 0; s < model_.steps.size(); ++s) {
+            const DeckStep& step = model_.steps[s];
+            if (const auto at = step.friction.find(pair.interaction); at != step.friction.end())
+                stages_[s].friction[name] = number(at->second);
+            for (const auto& [slave, master, in_force] : step.pairs)
+                if (slave == pair.slave && master == pair.master) stages_[s].pairs[name] = in_force ? "true" : "false";
+        }
+    }
+
+    std::string write_rings() {
+        std::string text;
+        std::set<std::string> taken;
+        for (const DeckRing& ring : model_.rings) {
+            if (ring.sectors == 0) {
+                model_.lose(ring.place, "*TIE, CYCLIC SYMMETRY",
+                            "no *CYCLIC SYMMETRY MODEL says how many sectors there are");
+                continue;
+            }
+            bool any = false;
+            for (std::size_t b = 0; b < bodies_.size(); ++b) {
+                const std::string slave = sets_.of_surface(b, ring.slave), master = sets_.of_surface(b, ring.master);
+                if (slave.empty() || master.empty()) continue;
+                any = true;
+                const auto vector = [](const Vec3& v) {
+                    return "[" + number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]) + "]";
+                };
+                text += fmt::format("  {}: {{slave: {}, master: {}, point: {}, axis: {}, sectors: {}",
+                                    fresh_name(slave + "_and_" + master, taken), slave, master,
+                                    vector(units_.length * ring.axis[0]), vector(ring.axis[1] - ring.axis[0]),
+                                    ring.sectors);
+                if (ring.tolerance > 0) text += ", distance: " + number(units_.length * ring.tolerance) + " m";
+                text += "}\n";
+            }
+            if (!any)
+                model_.lose(ring.place, "cyclic symmetry of " + ring.slave + " and " + ring.master,
+                            "no piece of the mesh has both");
         }
         return text;
     }
@@ -422,13 +525,34 @@ private:
 
     // ---- stages ----
 
+    /// A stage damps all bodies alike.
+    std::string damping() {
+        std::set<std::array<double, 2>> all;
+        std::string place;
+        for (const DeckBody& body : bodies_) {
+            const auto at =
+                body.section == nullptr ? model_.materials.end() : model_.materials.find(body.section->material);
+            all.insert(at == model_.materials.end() ? std::array{0.0, 0.0} : at->second.damping);
+            if (at != model_.materials.end() && at->second.damping != std::array{0.0, 0.0}) place = at->second.place;
+        }
+        const auto [alpha, beta] = *all.rbegin();
+        if (all.size() > 1) {
+            model_.lose(place, "*DAMPING of some materials", "a stage damps all bodies alike: none is damped");
+            return "";
+        }
+        return (alpha > 0 ? ", mass_damping: " + number(alpha) : "") +
+               (beta > 0 ? ", stiffness_damping: " + number(beta) : "");
+    }
+
     std::string write_stage(std::size_t s) {
         const DeckStep& step = model_.steps[s];
         constexpr double most_automatic = 100, most = 1e6; // increments; those of no fixed length may grow
         const double ratio = std::ceil(step.duration / step.increment - 1e-9);
         const double steps = std::clamp(ratio, 1.0, step.direct ? most : most_automatic);
         std::string text = fmt::format("  step_{}:\n", s + 1);
-        if (step.dynamic) text += "    analysis: {dynamic: {integrator: {hht: {alpha: " + number(step.alpha) + "}}}}\n";
+        if (step.dynamic)
+            text +=
+                "    analysis: {dynamic: {integrator: {hht: {alpha: " + number(step.alpha) + "}}" + damping_ + "}}\n";
         if (!step.ramps()) text += "    ramp: step\n";
         text += "    duration: " + number(step.duration) + "\n";
         text += fmt::format("    steps: {}{}\n", static_cast<int>(steps),
@@ -445,6 +569,8 @@ private:
         map("body_force", stages_[s].body_force, false);
         map("nodal_force", stages_[s].nodal_force, false);
         map("temperature", stages_[s].temperature, false);
+        map("friction", stages_[s].friction, false);
+        map("pairs", stages_[s].pairs, false);
         return text;
     }
 
@@ -454,6 +580,7 @@ private:
     std::vector<DeckBody> bodies_;
     DeckSets sets_;
     std::vector<StageLoads> stages_;
+    std::string damping_; ///< of dynamic stages
     bool nlgeom_ = false;
 };
 

@@ -138,8 +138,16 @@ void DeckLoads::add_forces(const DeckStep& step) {
                 force.place = f.place;
                 force.courses.resize(model_.steps.size());
             }
-            force.components[static_cast<std::size_t>(f.first)].add(on_nodes, units_.force() * f.value,
-                                                                    model_.amplitude(f.amplitude));
+            const Mat3 axes = model_.axes_of(p);
+            if (f.first < 2 && model_.on_axis(p)) {
+                model_.lose(f.place, "*CLOAD on a node on the axis of its *TRANSFORM", "no direction there is radial");
+                continue;
+            }
+            for (int k = 0; k < 3; ++k) // what a step gives along an axis takes the place of what was given along it
+                if (const double share = axes(k, f.first); share != 0)
+                    force.components[static_cast<std::size_t>(k)].add(fmt::format("{} {}", on_nodes, f.first),
+                                                                      units_.force() * share * f.value,
+                                                                      model_.amplitude(f.amplitude));
         }
         if (without > 0 && f.value != 0)
             model_.lose(f.place, fmt::format("*CLOAD on {} nodes", without), "no element has them");

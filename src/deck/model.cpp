@@ -53,7 +53,7 @@ const std::map<std::string, Reason> reasons{
     {"SOLVERCONTROLS", settings},
     {"EQUATION", equations},
     {"MPC", equations},
-    {"TIE", {"there is no cyclic symmetry", true}},
+    {"TIE", {"only surfaces that move as one, or the ends of a sector, have a counterpart", true}},
     {"RIGIDBODY", elastic_only},
     {"PLASTIC", elastic_only},
     {"CYCLICHARDENING", elastic_only},
@@ -115,6 +115,7 @@ private:
         if (word == "ENDSTEP") {
             if (step_ != nullptr && !step_taken_) drop_step("it has no analysis");
             step_ = nullptr;
+            changed_.clear();
             return;
         }
         if (read_elsewhere.contains(word)) {
@@ -125,6 +126,7 @@ private:
         if (word == "ELASTIC" || word == "DENSITY" || word == "HYPERELASTIC") return material_data(card);
         if (word == "PLASTIC") return hardening(card);
         if (word == "EXPANSION") return expansion(card);
+        if (word == "DAMPING" && step_ == nullptr) return damping(card);
         if (word == "ORIENTATION") return orientation(card);
         if (word == "TEMPERATURE" && step_ != nullptr) return temperatures(card, step_->temperatures);
         if (word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE")
@@ -140,6 +142,15 @@ private:
         if (word == "TIE" && given(card, "CYCLICSYMMETRY") == nullptr && given(card, "MULTISTAGE") == nullptr &&
             given(card, "FLUIDPERIODIC") == nullptr && given(card, "FLUIDCYCLIC") == nullptr)
             return tie(card);
+        if (word == "TIE" && given(card, "CYCLICSYMMETRY") != nullptr) return ring(card);
+        if (word == "CYCLICSYMMETRYMODEL") return ring_model(card);
+        if (word == "TRANSFORM" && step_ == nullptr) return transform(card);
+        if (word == "CHANGEFRICTION" && step_ != nullptr) {
+            changed_ = capitals_of(card, "INTERACTION");
+            return;
+        }
+        if (word == "MODELCHANGE" && step_ != nullptr && without_blanks(capitals_of(card, "TYPE")) == "CONTACTPAIR")
+            return model_change(card);
         if (word == "AMPLITUDE") return amplitude(card);
         if (word == "BOUNDARY") return boundary(card);
         if (word == "CLOAD" && step_ != nullptr) return forces(card);
@@ -184,6 +195,20 @@ private:
         DeckMaterial& m = model_.materials[material_];
         m.name = name == nullptr ? "" : *name;
         m.place = deck_.place(card);
+    }
+
+    void damping(const DeckCard& card) {
+        const auto found = model_.materials.find(material_);
+        if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
+        for (const char* name : {"STRUCTURAL", "COMPOSITE"})
+            if (given(card, name) != nullptr) return lose(card, std::string(name) + " has no counterpart");
+        const char* const names[] = {"ALPHA", "BETA"};
+        for (std::size_t k = 0; k < 2; ++k)
+            if (const std::string* value = given(card, names[k]);
+                value != nullptr && (!to_number(*value, found->second.damping[k]) || found->second.damping[k] < 0)) {
+                found->second.damping[k] = 0;
+                lose(card, std::string(names[k]) + " is no number, or negative");
+            }
     }
 
     void expansion(const DeckCard& card) {
@@ -340,7 +365,19 @@ private:
     }
 
     void friction(const DeckCard& card) {
-        if (step_ != nullptr) return lose(card, "friction belongs to all stages: it stays what it is before the steps");
+        if (step_ != nullptr) {
+            if (changed_.empty()) return lose(card, "no *CHANGE FRICTION stands before it");
+            if (card.first == card.last) return lose(card, "no coefficient");
+            const std::vector<double> v = numbers(*deck_.begin(card), 1);
+            const auto law = model_.interactions.find(changed_);
+            if (law == model_.interactions.end()) return lose(card, "no *SURFACE INTERACTION is called " + changed_);
+            if (v[0] < 0) return lose(card, "a negative coefficient");
+            if (v.size() > 1 && v[1] > 0 && law->second.stick == 0) law->second.stick = v[1];
+            if (v.size() > 1 && v[1] > 0 && v[1] != law->second.stick)
+                lose(card, "the stick slope stays what it is before the steps");
+            step_->friction[changed_] = v[0];
+            return;
+        }
         if (card.first == card.last || !model_.interactions.contains(interaction_))
             return lose(card, "no coefficient, or no *SURFACE INTERACTION before it");
         const std::vector<double> v = numbers(*deck_.begin(card), 1);
@@ -360,11 +397,11 @@ private:
         if (!p.mortar && !type.empty() && type != "NODETOSURFACE" && type != "MASSLESS")
             lose(card, "TYPE=" + type + " is not known: node to surface is used instead");
         p.place = deck_.place(card);
-        if (const std::string* adjust = given(card, "ADJUST");
-            adjust != nullptr && (!to_number(*adjust, p.adjust) || p.adjust < 0)) {
-            p.adjust = 0;
-            lose(card, "ADJUST=" + *adjust + ": only a distance has a counterpart");
-        }
+        const std::string* adjust = given(card, "ADJUST");
+        const bool by_nodes = adjust != nullptr && !to_number(*adjust, p.adjust);
+        if (by_nodes || p.adjust < 0) p.adjust = 0;
+        if (adjust != nullptr && !by_nodes && p.adjust == 0 && *adjust != "0")
+            note(card, "ADJUST=" + *adjust + ": nothing is moved");
         if (given(card, "SMALLSLIDING") != nullptr) note(card, "SMALLSLIDING: nodes slide as far as they do");
         p.tied = card.parameter("TIED") != nullptr;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
@@ -375,8 +412,84 @@ private:
             }
             p.slave = in_capitals(fields_[0]);
             p.master = in_capitals(fields_[1]);
+            if (by_nodes) p.adjust = adjust_all(card, p.slave, *adjust);
             model_.pairs.push_back(p);
         }
+    }
+
+    /// A distance that moves all slave nodes, where a set of nodes to move has them all.
+    double adjust_all(const DeckCard& card, const std::string& slave, const std::string& set) {
+        std::vector<Index> moved = points_of(set), own;
+        std::ranges::sort(moved);
+        const auto at = model_.mesh.surface_names.find(slave);
+        if (at != model_.mesh.surface_names.end() && model_.mesh.raw.surfaces.contains(at->second))
+            for (const mesh::RawFace& face : model_.mesh.raw.surfaces.at(at->second))
+                own.insert(own.end(), face.nodes.begin(), face.nodes.begin() + face.count);
+        else
+            own = points_of(slave);
+        if (own.empty() || !std::ranges::all_of(own, [&](Index p) { return std::ranges::binary_search(moved, p); })) {
+            lose(card, "ADJUST=" + set + ": only a distance, or a set with all slave nodes, has a counterpart");
+            return 0;
+        }
+        Eigen::AlignedBox3d box;
+        for (const Vec3& x : model_.mesh.raw.points) box.extend(x);
+        return box.diagonal().norm();
+    }
+
+    void model_change(const DeckCard& card) {
+        const bool adds = card.parameter("ADD") != nullptr;
+        if (adds == (card.parameter("REMOVE") != nullptr)) return lose(card, "ADD or REMOVE is expected");
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            split_fields(line->text, fields_);
+            if (fields_.size() < 2) {
+                lose(deck_.place(*line), "*MODEL CHANGE", "a slave and a master are expected");
+                continue;
+            }
+            step_->pairs.emplace_back(in_capitals(fields_[0]), in_capitals(fields_[1]), adds);
+        }
+    }
+
+    void transform(const DeckCard& card) {
+        const std::string* nodes = card.parameter("NSET");
+        const std::vector<Index> points = nodes == nullptr ? std::vector<Index>{} : points_of(*nodes);
+        if (points.empty() || card.first == card.last) return lose(card, "no node set, or no data");
+        const std::string type = capitals_of(card, "TYPE");
+        if (!type.empty() && type != "R" && type != "C") return lose(card, "only TYPE=R and TYPE=C have a counterpart");
+        const std::vector<double> v = numbers(*deck_.begin(card), 6);
+        DeckTransform axes{type == "C", {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])}};
+        if (!(axes.cylinder ? (axes.points[1] - axes.points[0]).norm() > 0
+                            : axes.points[0].cross(axes.points[1]).norm() > 0))
+            return lose(card, "its points are on one line, or the same");
+        for (const Index p : points) model_.transform_of[p] = model_.transforms.size();
+        model_.transforms.push_back(axes);
+    }
+
+    /// The ends of a sector; how many there are says *CYCLIC SYMMETRY MODEL.
+    void ring(const DeckCard& card) {
+        DeckRing one;
+        one.name = capitals_of(card, "NAME");
+        one.place = deck_.place(card);
+        if (const std::string* by = given(card, "POSITIONTOLERANCE"); by != nullptr && !to_number(*by, one.tolerance))
+            lose(card, "POSITION TOLERANCE is no number");
+        if (card.first == card.last) return lose(card, "no sets");
+        split_fields(deck_.begin(card)->text, fields_);
+        if (fields_.size() < 2) return lose(card, "two sets are expected");
+        one.slave = in_capitals(fields_[0]);
+        one.master = in_capitals(fields_[1]);
+        model_.rings.push_back(one);
+    }
+
+    void ring_model(const DeckCard& card) {
+        const std::string name = capitals_of(card, "TIE");
+        const auto at = std::ranges::find(model_.rings, name, &DeckRing::name);
+        if (at == model_.rings.end() || card.first == card.last) return lose(card, "no tie of that name, or no axis");
+        double sectors = 0;
+        if (const std::string* n = given(card, "N"); n == nullptr || !to_number(*n, sectors) || !(sectors >= 2))
+            return lose(card, "N, the number of sectors, is expected");
+        const std::vector<double> v = numbers(*deck_.begin(card), 6);
+        at->sectors = static_cast<int>(sectors);
+        at->axis = {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
+        if (!((at->axis[1] - at->axis[0]).norm() > 0)) lose(card, "two points on the axis are expected");
     }
 
     void tie(const DeckCard& card) {
@@ -645,7 +758,8 @@ private:
 
     const mesh::Deck& deck_;
     DeckModel model_;
-    std::string material_, interaction_;
+    std::string material_, interaction_; ///< the last ones
+    std::string changed_;                ///< interaction whose friction the step changes
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
     bool step_taken_ = false, passing_over_ = false;
@@ -654,6 +768,34 @@ private:
 };
 
 } // namespace
+
+bool DeckModel::on_axis(Index point) const {
+    constexpr double near = 1e-9; // of the distance along the axis
+    const auto at = transform_of.find(point);
+    if (at == transform_of.end() || !transforms[at->second].cylinder) return false;
+    const auto& points = transforms[at->second].points;
+    const Vec3 axis = (points[1] - points[0]).normalized(),
+               arm = mesh.raw.points[static_cast<std::size_t>(point)] - points[0];
+    return !((arm - axis * axis.dot(arm)).norm() > near * arm.norm());
+}
+
+Mat3 DeckModel::axes_of(Index point) const {
+    const auto at = transform_of.find(point);
+    if (at == transform_of.end()) return Mat3::Identity();
+    const auto& [cylinder, points] = transforms[at->second];
+    Mat3 axes;
+    if (cylinder) {
+        axes.col(2) = (points[1] - points[0]).normalized();
+        const Vec3 arm = mesh.raw.points[static_cast<std::size_t>(point)] - points[0];
+        axes.col(0) = (arm - axes.col(2) * axes.col(2).dot(arm)).normalized();
+        axes.col(1) = axes.col(2).cross(axes.col(0));
+    } else {
+        axes.col(0) = points[0].normalized();
+        axes.col(2) = points[0].cross(points[1]).normalized();
+        axes.col(1) = axes.col(2).cross(axes.col(0));
+    }
+    return axes;
+}
 
 DeckModel read_deck_model(const mesh::Deck& deck) {
     return Reader(deck).read();

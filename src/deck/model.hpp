@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace osculate::deck {
@@ -27,7 +28,8 @@ struct DeckMaterial {
     std::vector<std::array<double, 2>> hardening;     ///< equivalent plastic strain, yield stress; empty: elastic
     std::optional<std::array<double, 9>> orthotropic; ///< E1 E2 E3, nu12 nu13 nu23, G12 G13 G23
     double density = 0;
-    double expansion = 0; ///< thermal, 1/K; of the first row
+    std::array<double, 2> damping{0, 0}; ///< of the mass, 1/s; of the stiffness, s
+    double expansion = 0;                ///< thermal, 1/K; of the first row
     std::vector<std::array<double, 2>>
         expansions;  ///< temperature, expansion from `zero` to it; more than one row or none
     double zero = 0; ///< temperature from which expansions count
@@ -75,6 +77,22 @@ struct DeckPair {
     std::string place;
 };
 
+/// Axes of points that are not those of the deck.
+struct DeckTransform {
+    bool cylinder =
+        false; ///< radial, tangential and axial about the line through two points; otherwise x and y, not made orthonormal
+    std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()};
+};
+
+/// A body that stands for a ring.
+struct DeckRing {
+    std::string name, slave, master; ///< in capitals
+    double tolerance = 0;            ///< of its positions; 0: not given
+    int sectors = 0;                 ///< 0: nothing said
+    std::array<Vec3, 2> axis{Vec3::Zero(), Vec3::Zero()};
+    std::string place;
+};
+
 /// Components of points that are held at a value, or forces on them.
 struct DeckValues {
     std::vector<Index> points;
@@ -110,6 +128,9 @@ struct DeckStep {
     std::vector<DeckPressure> pressures;
     std::vector<DeckGravity> gravity;
     std::vector<DeckTemperature> temperatures;
+    std::map<std::string, double> friction; ///< by interactions, in capitals: from this step on
+    std::vector<std::tuple<std::string, std::string, bool>>
+        pairs;                                                   ///< slave, master, whether in force from this step on
     bool forget_held = false, forget_forces = false;             ///< OP=NEW
     bool forget_on_elements = false, forget_on_surfaces = false; ///< OP=NEW of *DLOAD, of *DSLOAD
 
@@ -123,7 +144,10 @@ struct DeckModel {
     std::map<std::string, std::array<Vec3, 2>> orientations; ///< by names in capitals: first axis, and one of its plane
     std::map<std::string, DeckInteraction> interactions;     ///< by names in capitals
     std::vector<DeckPair> pairs, ties;
-    std::vector<DeckValues> held; ///< in all steps
+    std::vector<DeckRing> rings;
+    std::vector<DeckTransform> transforms;
+    std::map<Index, std::size_t> transform_of; ///< number of the last transform of a point
+    std::vector<DeckValues> held;              ///< in all steps
     std::vector<DeckTemperature> initial_temperatures;
     std::map<std::string, Amplitude> amplitudes;
     std::vector<DeckStep> steps;
@@ -137,6 +161,10 @@ struct DeckModel {
     void note(const std::string& place, const std::string& what, const std::string& why) {
         left_out.push_back({place, what, why, false});
     }
+    /// Whether a point is on the axis of its cylindrical axes, so that no direction is radial.
+    [[nodiscard]] bool on_axis(Index point) const;
+    /// Axes of a point that is not, in columns.
+    [[nodiscard]] Mat3 axes_of(Index point) const;
     /// nullptr for an empty name or one that there is none of. @param name  in capitals
     [[nodiscard]] const Amplitude* amplitude(const std::string& name) const {
         const auto at = amplitudes.find(name);

@@ -1,6 +1,7 @@
 #include "osculate/equilibrium/coupling_start.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 
 namespace osculate::equilibrium {
 
@@ -44,12 +45,28 @@ void add_ties(const model::Model& model, linear::Dependence& dependence) {
                 carriers.push_back({node, weight * tied.free, weight * tied.free});
             dependence.set(tied.node, std::move(carriers), Mat3::Identity() - tied.free);
         }
+    for (const model::CyclicSymmetry& ring : model.cyclic)
+        for (const model::LikeNode& one : ring.nodes) {
+            const Mat3 turn = one.free * ring.turn;
+            dependence.set(one.node, {{one.like, turn, turn.transpose()}}, Mat3::Identity() - one.free);
+        }
     for (const model::SkinNode& one : model.skin) {
         std::vector<linear::Dependence::Carrier> carriers;
+        const auto add = [&](Index node, const Mat3& share) {
+            const auto at = std::ranges::find(carriers, node, &linear::Dependence::Carrier::node);
+            linear::Dependence::Carrier& carrier =
+                at != carriers.end() ? *at : carriers.emplace_back(node, Mat3::Zero(), Mat3::Zero());
+            carrier.moves += share;
+            carrier.loads += share.transpose();
+        };
         for (const auto& [node, weight] : one.carriers) {
             const Mat3 share =
                 node == one.host ? Mat3(weight * one.free + Mat3::Identity() - one.free) : Mat3(weight * one.free);
-            carriers.push_back({node, share, share});
+            if (!dependence.depends(node))
+                add(node, share);
+            else // at an end of a sector
+                for (const linear::Dependence::Carrier& like : dependence.carriers(node))
+                    add(like.node, share * like.moves);
         }
         dependence.set(one.node, std::move(carriers));
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 namespace osculate::mesh {
 
@@ -21,8 +22,7 @@ void DeckSurfaces::read(const DeckCard& card) {
 
 void DeckSurfaces::read_faces(const DeckCard& card, const std::string& name) {
     const auto [at, fresh] = mesh_.surface_names.try_emplace(in_capitals(name), name);
-    std::vector<RawFace>& faces = mesh_.raw.surfaces[at->second];
-    if (!fresh) return reading_.fault(card, "surface '" + name + "' is defined twice");
+    std::vector<RawFace>& faces = mesh_.raw.surfaces[at->second]; // a second definition extends the first, as in CalculiX
     for (auto line = reading_.deck.begin(card); line != reading_.deck.end(card); ++line) {
         split_fields(line->text, fields_);
         if (fields_.empty()) continue;
@@ -37,6 +37,9 @@ void DeckSurfaces::read_faces(const DeckCard& card, const std::string& name) {
         else
             add_face(*line, cells, faces);
     }
+    if (fresh) return;
+    std::set<std::array<Index, most_nodes_per_face>> taken;
+    std::erase_if(faces, [&](const RawFace& face) { return !taken.insert(face.nodes).second; });
 }
 
 std::vector<Index> DeckSurfaces::cells_of_line() const {

@@ -129,6 +129,7 @@ bool ContactEvaluation::may_touch(Index j, Index facet) const {
 }
 
 contact::FacetSearch::Choice ContactEvaluation::choice(Index j) const {
+    if (!pair_->options().in_force) return [](Index) { return false; };
     if (pair_->slaves().around.empty()) return {};
     return [this, j](Index facet) { return may_touch(j, facet); };
 }

@@ -53,6 +53,10 @@ ContactPair::ContactPair(std::string name, const std::vector<Vec3>& X, SlaveNode
                   std::make_shared<const MasterSide>(std::move(surface), std::move(master_nodes), std::move(master)),
                   options, smooth) {}
 
+ContactPair::ContactPair(const ContactPair& other, const ContactOptions& options)
+    : name_(other.name_), slaves_(other.slaves_), side_(other.side_), search_(other.search_), options_(options),
+      discretisation_(other.discretisation_->clone()) {}
+
 ContactHistory ContactPair::initial_history() const {
     const std::size_t n = slaves_.node.size();
     return {nullptr, std::vector<Vec3>(n, Vec3::Zero()), std::vector<contact::Status>(n, contact::Status::open),

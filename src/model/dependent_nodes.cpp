@@ -12,6 +12,8 @@ std::vector<Index> dependent_nodes(const Model& model) {
     for (const RigidBody& body : model.rigid) nodes.insert(nodes.end(), body.nodes.begin(), body.nodes.end());
     for (const Tie& tie : model.ties)
         for (const TiedNode& tied : tie.nodes) nodes.push_back(tied.node);
+    for (const CyclicSymmetry& ring : model.cyclic)
+        for (const LikeNode& one : ring.nodes) nodes.push_back(one.node);
     for (const SkinNode& one : model.skin) nodes.push_back(one.node);
     return nodes;
 }
@@ -33,6 +35,11 @@ void move_tied(const Model& model, Field& u) {
             Vec3 sum = Vec3::Zero();
             for (const auto& [node, weight] : tied.carriers) sum += weight * u[static_cast<std::size_t>(node)];
             u[static_cast<std::size_t>(tied.node)] = tied.free * sum;
+        }
+    for (const CyclicSymmetry& ring : model.cyclic)
+        for (const LikeNode& one : ring.nodes) {
+            Vec3& own = u[static_cast<std::size_t>(one.node)];
+            own += one.free * (ring.turn * u[static_cast<std::size_t>(one.like)] - own);
         }
     for (const SkinNode& one : model.skin) {
         Vec3 sum = Vec3::Zero();

@@ -303,6 +303,17 @@ public:
         }
     }
 
+    void check_cyclic(const Scene& scene) {
+        for (const auto& [name, ring] : scene.cyclic)
+            for (const auto& [key, set_name] : {std::pair{"slave", ring.slave}, std::pair{"master", ring.master}}) {
+                const SetSpec* set = find(scene.sets, set_name);
+                const Body* body = set != nullptr ? find(scene.bodies, set->body) : nullptr;
+                if (body != nullptr && body->rigid)
+                    fault({"cyclic", name, key}, "a set of a body that deforms",
+                          "a set of rigid body '" + set->body + "'");
+            }
+    }
+
     void check_motion(const std::string& name, const Stage& stage, const Scene& scene) {
         /// What holds components for the whole run, and where it is written.
         struct Held {
@@ -391,6 +402,12 @@ public:
             fault({"stages", name, "control", "step_size"}, "a dynamic stage", "a static one");
         if (stage.control.error_tolerance && stage.control.step_size == StepSize::fixed)
             fault({"stages", name, "control", "error_tolerance"}, "step_size: controlled", "step_size: fixed");
+        for (const auto& [pair, friction] : stage.friction)
+            if (pair == "general")
+                fault({"stages", name, "friction", pair}, "a pair that the scene names", "general contact");
+        for (const auto& [pair, in_force] : stage.pairs)
+            if (pair == "general")
+                fault({"stages", name, "pairs", pair}, "a pair that the scene names", "general contact");
         const std::vector<std::string> path{"stages", name, "displacement"};
         for (const auto& [set, components] : stage.displacement) {
             const Support* support = find(supports, set);
@@ -477,6 +494,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     rules.check_rigid_sets(scene);
     rules.check_couplings(scene);
     rules.check_ties(scene);
+    rules.check_cyclic(scene);
     rules.check_held(scene);
     rules.check_exact_masters(scene);
     for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene);

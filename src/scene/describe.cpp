@@ -390,6 +390,28 @@ void describe(Visitor& v, Stage& stage) {
           });
     named(
         v,
+        {.name = "friction",
+         .meaning = "Friction of contact pairs from this stage on, instead of contact.<pair>.friction.",
+         .names = Names::pair,
+         .item = "pair"},
+        stage.friction, [&](const std::string& pair, double& value) {
+            v.number(
+                {.name = pair, .meaning = "Coulomb's coefficient.", .range = {.low = 0, .high = 10}, .required = true},
+                value);
+        });
+    named(v,
+          {.name = "pairs",
+           .meaning = "Whether contact pairs are in force, from this stage on.",
+           .names = Names::pair,
+           .item = "pair"},
+          stage.pairs, [&](const std::string& pair, bool& value) {
+              v.flag({.name = pair,
+                      .meaning = "false: the surfaces pass through each other, without a force and unwatched.",
+                      .required = true},
+                     value);
+          });
+    named(
+        v,
         {.name = "temperature",
          .meaning =
              "Temperature of the nodes of bodies or sets, reached at the end of the stage; where several name a node, "
@@ -514,6 +536,11 @@ void describe(Visitor& v, Scene& scene) {
           scene.couplings, group);
     named(v, {.name = "ties", .meaning = "Surfaces that are glued to each other for the whole run.", .item = "tie"},
           scene.ties, group);
+    named(v,
+          {.name = "cyclic",
+           .meaning = "Sectors that stand for whole rings: each end of a sector moves as the other.",
+           .item = "ring"},
+          scene.cyclic, group);
     Entries pairs = entries_of(scene.contact, group);
     bool general = scene.general.has_value();
     GeneralContact all = scene.general.value_or(GeneralContact{});

@@ -64,6 +64,8 @@ void describe(Visitor& v, Rigid& rigid);
 void describe(Visitor& v, RigidSurface& surface);
 void describe(Visitor& v, Coupling& coupling);
 void describe(Visitor& v, Tie& tie);
+void describe(Visitor& v, CyclicSymmetry& symmetry);
+void describe(Visitor& v, Axis& axis);
 void describe(Visitor& v, SetSpec& set);
 void describe(Visitor& v, Support& support);
 void describe(Visitor& v, Pair& pair);

@@ -167,4 +167,29 @@ void describe(Visitor& v, Tie& tie) {
         tie.distance);
 }
 
+void describe(Visitor& v, CyclicSymmetry& symmetry) {
+    v.text({.name = "slave",
+            .meaning = "Nodes at one end of the sector: they move as those at the other end do, turned by one sector.",
+            .required = true,
+            .names = Names::set},
+           symmetry.slave);
+    v.text({.name = "master",
+            .meaning = "Nodes at the other end, one for each node of the slave.",
+            .required = true,
+            .names = Names::set},
+           symmetry.master);
+    describe(v, symmetry.axis);
+    v.integer({.name = "sectors",
+               .meaning = "Number of sectors in the whole ring.",
+               .range = {.low = 2, .high = 1e6},
+               .required = true},
+              symmetry.sectors);
+    v.optional_number({.name = "distance",
+                       .meaning = "How far a node may be from the turned place of its like; it is moved there.",
+                       .unit = dimension::length,
+                       .range = range::positive,
+                       .default_text = "1 % of the master's shortest distance between nodes"},
+                      symmetry.distance);
+}
+
 } // namespace osculate::scene

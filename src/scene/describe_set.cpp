@@ -119,10 +119,33 @@ void describe(Visitor& v, Support& support) {
                       for (std::size_t a = 0; a < 3; ++a)
                           support.fixed[a] = std::ranges::count(fixed, axis_words[a]) > 0;
                   }});
-    if (!support.symmetry)
-        v.axes({.name = "axes",
-                .meaning = "The directions that x and y mean for this set, made orthonormal; z is normal to both."},
-               support.axes);
+    if (support.symmetry) return;
+    v.axes({.name = "axes",
+            .meaning = "The directions that x and y mean for this set, made orthonormal; z is normal to both."},
+           support.axes);
+    bool about = support.cylinder.has_value();
+    Axis axis = support.cylinder.value_or(Axis{});
+    v.optional_group({.name = "cylinder",
+                      .meaning =
+                          "Instead of axes: x, y and z mean radial, tangential and axial about this axis, at each "
+                          "node of the undeformed set."},
+                     about, [&] { describe(v, axis); });
+    support.cylinder = about ? std::optional(axis) : std::nullopt;
+}
+
+void describe(Visitor& v, Axis& axis) {
+    v.vector({.name = "point",
+              .meaning = "A point of the axis.",
+              .unit = dimension::length,
+              .range = range::position,
+              .required = true},
+             axis.point);
+    v.vector({.name = "axis",
+              .meaning = "Direction of the axis.",
+              .range = range::direction,
+              .required = true,
+              .direction = true},
+             axis.direction);
 }
 
 } // namespace osculate::scene

@@ -64,6 +64,7 @@ std::optional<contact::Intrusion> Audit::deepest() const {
     std::optional<contact::Intrusion> worst;
     for (contact::Intrusion one : result_.intrusions) {
         if (model_.general && model_.general->pass_through(one.body, one.other)) continue;
+        if (apart_.contains(ordered(one.body, one.other))) continue;
         const auto drawn = drawn_.find(ordered(one.body, one.other));
         if (drawn != drawn_.end()) one.excess = std::max(0.0, one.excess - drawn->second);
         if (!worst || one.relative() > worst->relative()) worst = one;

@@ -57,6 +57,11 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
             balance.acting += reaction.norm() + load[i].norm() + other.norm() + contact[i].norm();
         }
     }
+    for (const model::CyclicSymmetry& ring :
+         model.cyclic) { // neighbours press on the ends: what is along the axis balances
+        Vec3& sum = sum_of[static_cast<std::size_t>(group[static_cast<std::size_t>(ring.body)])];
+        sum = ring.axis * ring.axis.dot(sum);
+    }
     for (const Vec3& sum : sum_of) balance.left_over = std::max(balance.left_over, sum.norm());
     balance.acting = std::max(balance.acting, equilibrium.reference_force());
     return balance;

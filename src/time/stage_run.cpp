@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 #include <span>
 
 namespace osculate::time {
@@ -23,6 +24,27 @@ equilibrium::TangentChoice tangent_choice(const model::Model& model, const Stage
     return equilibrium::choose_tangent(model, model::pairs_of(state.contact), stage.linear_solver,
                                        stage.dynamics.has_value(), !stage.follower_pressures.empty(),
                                        state.scope.get());
+}
+/// Gives the state the pairs of a stage: what is not in force touches nothing.
+const model::State& change_pairs(RunContext& context, const Stage& stage, model::State& state) {
+    const auto bodies_of = [&](const model::ContactPair& pair) {
+        const Index a = model::body_index(context.model, pair.slaves().node.front()),
+                    b = model::body_index(context.model, pair.master_nodes().front());
+        return std::pair(std::min(a, b), std::max(a, b));
+    };
+    std::set<std::pair<Index, Index>> apart, together;
+    for (std::size_t p = 0; p < context.model.pairs.size(); ++p) {
+        model::ContactHistory& history = state.contact[p];
+        history.pair = stage.pairs.empty() ? context.model.pairs[p] : stage.pairs[p];
+        (history.pair->options().in_force ? together : apart).insert(bodies_of(*history.pair));
+        if (history.pair->options().in_force) continue;
+        auto master = history.master;
+        history = opened(history.pair);
+        history.master = std::move(master);
+    }
+    for (const auto& bodies : together) apart.erase(bodies);
+    if (context.audit) context.audit->pass_over(std::move(apart));
+    return state;
 }
 } // namespace
 
@@ -41,8 +63,8 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
                    const Checkpoint* from)
     : context_(context), stage_(stage), progress_(progress), observer_(observer),
       constraints_(context.model.nodes(), stage.constraints, model::dependent_nodes(context.model)),
-      dynamics_(stage.dynamics),
-      machinery_(std::make_unique<Machinery>(context, stage, dynamics(), constraints_, progress.state)) {
+      dynamics_(stage.dynamics), machinery_(std::make_unique<Machinery>(context, stage, dynamics(), constraints_,
+                                                                        change_pairs(context, stage, progress.state))) {
     const model::Model& model = context.model;
     if (from == nullptr) {
         progress_.displacement_start.reset(model.X.size());

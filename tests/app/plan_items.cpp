@@ -38,6 +38,7 @@ nonlinear elements           . . . x . . . . . . . . . .
 rigid bodies                 . . . . . . . . . . . . . .
 couplings                    . . . . . . . . . . . . . .
 ties                         . . . . . . . . . . . . . .
+cyclic symmetry              . . . . . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .

@@ -229,6 +229,99 @@ TEST_F(Importing, TakesContactOfQuadraticTetrahedra) {
     EXPECT_EQ(scene::parse_scene(imported.text, "imported.yaml").contact.size(), 1u);
 }
 
+TEST_F(Importing, AxesOfTransformedNodesAreThoseOfTheirSupportsAndForces) {
+    const ImportedScene imported =
+        import("*NSET, NSET=Sides\n11,12,13,14\n*TRANSFORM, NSET=Lid, TYPE=C\n0.,0.,0.,0.,0.,10.\n"
+               "*TRANSFORM, NSET=Sides\n0.,1.,0.,-1.,0.,0.\n*BOUNDARY\nSides,1,1\n"
+               "*STEP\n*STATIC\n1.,1.\n*BOUNDARY\nLid,3,3,-1.\n*CLOAD\n11,1,50.\n*END STEP\n");
+    EXPECT_THAT(imported.lost, IsEmpty());
+    const scene::Scene scene = checked(imported);
+    const scene::Support& lid = *scene::find(scene.supports, "Lid");
+    ASSERT_TRUE(lid.cylinder);
+    EXPECT_EQ(lid.cylinder->direction, Vec3(0, 0, 10));
+    EXPECT_EQ(lid.fixed, (std::array{true, true, false}));
+    const scene::Support& sides = *scene::find(scene.supports, "Sides");
+    EXPECT_EQ(sides.axes.col(0), Vec3::UnitY());
+    const auto& force = scene.stages.at(0).second.nodal_force.at(0).second;
+    EXPECT_EQ(force[0].value(), 0);
+    EXPECT_DOUBLE_EQ(force[1].value(), 50);
+}
+
+TEST_F(Importing, NodesOnAnAxisAreHeldInAllDirectionsAcrossIt) {
+    const ImportedScene imported =
+        import("*TRANSFORM, NSET=All, TYPE=C\n10.,10.,0.,10.,10.,5.\n*NSET, NSET=One\n15\n" + pressed);
+    EXPECT_THAT(imported.lost, IsEmpty());
+    const scene::Scene scene = checked(imported);
+    int across = 0;
+    for (const auto& [set, support] : scene.supports)
+        across += !support.cylinder && support.fixed == std::array{true, true, false};
+    EXPECT_EQ(across, 1) << imported.text;
+}
+
+TEST_F(Importing, SectorsAreCyclic) {
+    const std::string ring = "*NSET, NSET=Slave\n3,4,7,8\n*NSET, NSET=Master\n1,2,5,6\n"
+                             "*TIE, CYCLIC SYMMETRY, NAME=T, POSITION TOLERANCE=1.\nSlave,Master\n";
+    const ImportedScene imported =
+        import(ring + "*CYCLIC SYMMETRY MODEL, N=2, TIE=T\n20.,20.,0.,20.,20.,5.\n" + pressed);
+    EXPECT_THAT(imported.lost, IsEmpty());
+    const scene::Scene scene = checked(imported);
+    ASSERT_EQ(scene.cyclic.size(), 1u);
+    EXPECT_EQ(scene.cyclic[0].second.sectors, 2);
+    EXPECT_EQ(scene.cyclic[0].second.axis.point, Vec3(0.02, 0.02, 0));
+    EXPECT_EQ(scene.cyclic[0].second.distance, 1e-3);
+    EXPECT_THAT(import(ring + pressed).lost, ElementsAre(HasSubstr("no *CYCLIC SYMMETRY MODEL")));
+}
+
+TEST_F(Importing, StepsChangeFrictionAndPairs) {
+    const ImportedScene imported =
+        import(pressed + "*STEP\n*STATIC\n1.,1.\n*CHANGE FRICTION, INTERACTION=I\n*FRICTION\n.1,1E6\n*END STEP\n"
+                         "*STEP\n*STATIC\n1.,1.\n*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nunder,over\n*END STEP\n");
+    EXPECT_THAT(imported.lost, IsEmpty());
+    const scene::Scene scene = scene::parse_scene(imported.text, "imported.yaml");
+    const std::string& pair = scene.contact.at(0).first;
+    EXPECT_EQ(*scene::find(scene.stages.at(1).second.friction, pair), 0.1);
+    EXPECT_EQ(*scene::find(scene.stages.at(2).second.pairs, pair), false);
+    EXPECT_THAT(import("*STEP\n*STATIC\n1.,1.\n*FRICTION\n.1\n*END STEP\n").lost,
+                ElementsAre(HasSubstr("no *CHANGE FRICTION stands before it")));
+    EXPECT_THAT(import("*STEP\n*STATIC\n1.,1.\n*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nEall\n*END STEP\n").lost,
+                SizeIs(1));
+}
+
+TEST_F(Importing, DampingOfAllBodiesIsThatOfDynamicStages) {
+    const std::string dynamic = "*STEP\n*DYNAMIC\n.01,1.\n*END STEP\n";
+    const auto with = [&](const std::string& card, const std::string& steps) {
+        return import(steps, DeckUnits::mm, mesh_of_cubes + before_elastic(card));
+    };
+    const ImportedScene damped = with("*DAMPING, ALPHA=5., BETA=2e-4\n", dynamic);
+    EXPECT_THAT(damped.lost, IsEmpty());
+    const scene::Scene scene = scene::parse_scene(damped.text, "imported.yaml");
+    const auto& analysis = std::get<scene::DynamicAnalysis>(scene.stages.at(0).second.analysis);
+    EXPECT_EQ(analysis.mass_damping, 5);
+    EXPECT_EQ(analysis.stiffness_damping, 2e-4);
+    EXPECT_THAT(with("*DAMPING, ALPHA=5.\n", pressed).lost, IsEmpty());
+    EXPECT_THAT(with("*DAMPING, ALPHA=-5.\n", dynamic).lost, SizeIs(1));
+    EXPECT_THAT(with("*DAMPING, STRUCTURAL=.1\n", dynamic).lost, SizeIs(1));
+}
+
+/// As CalculiX reads it.
+TEST_F(Importing, ASecondDefinitionExtendsASurface) {
+    const std::string steps = "*SURFACE, NAME=Top\n2,S2\n2,S3\n" + pressed;
+    const scene::Scene scene = checked(import(steps));
+    for (const model::Set& set : plan_of(scene).model.sets)
+        EXPECT_EQ(set.facets.size(), set.name == "Top" ? 2u : set.facets.size());
+}
+
+TEST_F(Importing, AdjustingASetOfNodesTakesAllSlaves) {
+    const auto with = [&](const std::string& nodes) {
+        std::string model = mesh_of_cubes + "*NSET, NSET=Moved\n" + nodes + "\n" + properties;
+        model.insert(model.find(", TYPE=SURFACE TO"), ", ADJUST=Moved");
+        return import(pressed, DeckUnits::mm, model);
+    };
+    EXPECT_THAT(with("11,12,13,14").lost, IsEmpty());
+    EXPECT_GT(checked(with("11,12,13,14")).contact.at(0).second.adjust.value_or(0), 0.02);
+    EXPECT_THAT(with("11,12").lost, ElementsAre(HasSubstr("a set with all slave nodes")));
+}
+
 TEST_F(Importing, TellsWhatIsLostFromWhatBodiesDoWithout) {
     const auto lost = [&](const std::string& model_data) { return import(model_data + pressed).lost; };
     EXPECT_THAT(lost(""), IsEmpty());

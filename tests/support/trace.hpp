@@ -92,7 +92,7 @@ inline Difference difference(const Trace& a, const Trace& b, const Transformatio
         const double time = by.time * a.steps[k].time;
         if (std::abs(b.steps[k].time - time) > same_time * by.time * a.steps.back().time) d.same_steps = false;
         d.iterations += b.steps[k].iterations - a.steps[k].iterations;
-        for (std::size_t i = 0; i < a.steps[k].u.size(); ++i) {
+        for (std::size_t i = 0; i < number.size(); ++i) { // those behind are of no body's mesh
             const Vec3 expected = by.length * (by.turn * a.steps[k].u[i]);
             u = std::max(u, expected.norm());
             const Vec3& found = b.steps[k].u[static_cast<std::size_t>(number[i])];

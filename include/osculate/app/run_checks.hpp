@@ -47,6 +47,8 @@ public:
 private:
     void add_penetration(const time::AcceptedStep& step);
     void add_audit(const time::AcceptedStep& step);
+    /// Finds slaves that have left the master over the end of its sector.
+    void add_crossing(const time::AcceptedStep& step);
     void add_energies(const time::Ledger& ledger);
 
     const model::Model& model_;
@@ -57,6 +59,8 @@ private:
     double left_over_ = 0, acting_ = 0;             ///< N
     double penetration_ = 0, penetration_m_ = 0;    ///< facet sizes, m
     double excess_ = 0, excessive_ = 0, bound_ = 0; ///< largest ratio of penetration to bound; both, in facet sizes
+    Index crossed_ = -1;                            ///< the first such slave, -1: none has; ...
+    double crossed_time_ = 0;                       ///< ... and when, s
     bool dynamic_ = false;                          ///< a ledger was seen
     double energy_ = 0, balance_ = 0, growth_ = 0;  ///< J
     double contact_ = 0, closing_ = 0;              ///< J, Ledger::contact of the last step; sum of its decreases

@@ -79,6 +79,7 @@ struct ContactOptions {
         4; ///< facet changes of a node in one attempt after which it keeps its facet: it is on an edge
     double closing_tolerance = 0.02; ///< of the facet size: largest distance that counts as touching before any contact
     Discretisation discretisation = Discretisation::node;
+    bool in_force = true; ///< false: no slave finds a facet
 };
 
 class ContactPair {
@@ -95,6 +96,8 @@ public:
                 std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
                 std::shared_ptr<const contact::MasterSurface> master, const ContactOptions& options,
                 const contact::SmoothSlave* smooth = nullptr);
+    /// Another pair but for what the law of contact takes from the options: friction, and whether it is in force.
+    ContactPair(const ContactPair& other, const ContactOptions& options);
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] Index size() const { return static_cast<Index>(slaves_.node.size()); }

@@ -55,6 +55,22 @@ struct Tie {
     Index left_out = 0;  ///< nodes of the slave that are too far from the master, or beside it
 };
 
+/// A node at one end of a sector, and its like at the other: u = free turn u_like, but for the directions along which
+/// something holds it.
+struct LikeNode {
+    Index node = -1, like = -1;
+    Mat3 free = Mat3::Identity(); ///< projector on the directions along which nothing holds the node
+};
+
+/// A sector that stands for a whole ring.
+struct CyclicSymmetry {
+    std::string name;
+    Index body = -1;
+    Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ(); ///< of the ring, m; a unit vector
+    Mat3 turn = Mat3::Identity();                    ///< from an end to the other
+    std::vector<LikeNode> nodes;
+};
+
 /// A node of the skin that a face with midside nodes has in contact, see fe::skin_weights. It belongs to no element, and is
 /// where
 ///     x = x_host + free (sum_a weight_a x_a - x_host)
@@ -71,6 +87,7 @@ struct Model {
              ///< nodes of each rigid body and coupling, both at its reference point, and those of the skin
     std::vector<RigidBody> rigid; ///< what is special about the rigid ones of the bodies; then couplings
     std::vector<Tie> ties;
+    std::vector<CyclicSymmetry> cyclic;
     std::vector<SkinNode> skin; ///< ascending, one number after the other
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
@@ -85,11 +102,13 @@ struct Model {
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
     /// Whether some nodes follow others, see dependent_nodes().
-    [[nodiscard]] bool has_dependent_nodes() const { return !rigid.empty() || !ties.empty() || !skin.empty(); }
+    [[nodiscard]] bool has_dependent_nodes() const {
+        return !rigid.empty() || !ties.empty() || !cyclic.empty() || !skin.empty();
+    }
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
-/// Displacements, or velocities, of tied nodes and of those of the skin from those of the nodes that they follow.
+/// Displacements, or velocities, of tied nodes, ends of sectors and skins from those of the nodes that they follow.
 void move_tied(const Model& model, Field& u);
 /// The node of an element that a node of the skin stands for; any other node itself.
 [[nodiscard]] Index material_node(const Model& model, Index node);

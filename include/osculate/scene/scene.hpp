@@ -212,10 +212,19 @@ struct SetSpec {
 
 // ---- supports: constraints that hold for the whole run ---------------------------------------------------------------
 
+/// An axis of rotation.
+struct Axis {
+    Vec3 point = Vec3::Zero(); ///< m
+    Vec3 direction = Vec3::UnitZ();
+    bool operator==(const Axis&) const = default;
+};
+
 /// Displacement components of a set that are held at zero or driven by the stages.
 struct Support {
     std::array<bool, 3> fixed{false, false, false}; ///< held at zero along axes[0..2]
     Mat3 axes = Mat3::Identity();                   ///< columns: directions "x", "y", "z" for this set
+    std::optional<Axis>
+        cylinder;          ///< "x", "y", "z" are radial, tangential and axial at every node; axes do not count then
     bool symmetry = false; ///< mirror plane: fixed is {true, false, false} and column 0 of the axes is its normal
     bool operator==(const Support&) const = default;
 };
@@ -379,6 +388,8 @@ struct Stage {
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
     Named<std::array<Course, 3>> body_force;  ///< body -> N/m^3
     Named<std::array<Course, 3>> nodal_force; ///< set -> on each of its nodes, N
+    Named<double> friction;                   ///< pair -> coefficient from this stage on
+    Named<bool> pairs;                        ///< pair -> whether it is in force from this stage on
     Named<Course> temperature;                ///< body or set -> above that at which it has no thermal strain, K
     Named<std::array<std::optional<Course>, 6>>
         motion; ///< rigid body or coupling -> displacement and rotation components, m, rad
@@ -436,6 +447,15 @@ struct Tie {
     bool operator==(const Tie&) const = default;
 };
 
+/// A body that stands for a whole ring of bodies, each turned against the one before by the same angle.
+struct CyclicSymmetry {
+    std::string slave, master; ///< sets of nodes, where the sector ends and where it begins
+    Axis axis;
+    int sectors = 2;
+    std::optional<double> distance; ///< m; none: a part of the least distance of the set's nodes
+    bool operator==(const CyclicSymmetry&) const = default;
+};
+
 struct Scene {
     std::string name;            ///< valid as file name: letters, digits, _ and -
     std::string description;     ///< free text
@@ -446,6 +466,7 @@ struct Scene {
     Named<Support> supports; ///< keyed by set
     Named<Coupling> couplings;
     Named<Tie> ties;
+    Named<CyclicSymmetry> cyclic;
     std::optional<GeneralContact> general; ///< contact.general
     Named<Pair> contact;                   ///< the other keys of contact
     Named<Stage> stages;

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,8 @@ public:
     /// The deepest place of the last examination after its excess is reduced by the initial one; no value if there is
     /// no intrusion.
     [[nodiscard]] std::optional<contact::Intrusion> deepest() const;
+    /// Bodies, the lower first, that no pair keeps apart from now on.
+    void pass_over(std::set<std::pair<Index, Index>> bodies) { apart_ = std::move(bodies); }
 
 private:
     const model::Model& model_;
@@ -30,6 +33,7 @@ private:
     ExactAudit exact_;
     Field x_;
     contact::AuditResult result_;
+    std::set<std::pair<Index, Index>> apart_;         ///< see pass_over()
     std::map<std::pair<Index, Index>, double> drawn_; ///< excess in the reference configuration, m
 };
 

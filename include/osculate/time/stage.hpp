@@ -57,6 +57,8 @@ struct Stage {
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< added to these forces
     std::vector<FollowerPressure> follower_pressures;
+    /// Pairs of the model as they are in this stage, in their order: others in friction or in force. Empty: as in the model.
+    std::vector<std::shared_ptr<const model::ContactPair>> pairs;
     std::vector<NodeTemperature> temperatures; ///< the last that names a node counts
 };
 

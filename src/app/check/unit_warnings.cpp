@@ -136,7 +136,7 @@ private:
         const model::Set* moved = set(name);
         if (moved == nullptr || moved->nodes.empty()) return;
         const scene::Support* own = scene::find(scene_.supports, name);
-        if (own != nullptr && !own->axes.isIdentity(0)) return; // its x is not the other's
+        if (own != nullptr && (own->cylinder || !own->axes.isIdentity(0))) return; // its x is not the other's
         const double d = course.is_value() ? course.value() : largest(course, stage.duration);
         for (const model::Set& other : plan_.model.sets) {
             if (&other == moved || other.body != moved->body || other.nodes.empty()) continue;
@@ -146,7 +146,8 @@ private:
             if (motion != now.displacement.end() && motion->second[k]) {
                 if (!motion->second[k]->is_value() || !course.is_value()) continue; // two courses may go together
                 held = motion->second[k]->value();
-            } else if (support == nullptr || !support->fixed[k] || !support->axes.isIdentity(0)) {
+            } else if (support == nullptr || !support->fixed[k] || support->cylinder ||
+                       !support->axes.isIdentity(0)) {
                 continue;
             }
             const double distance = (centre(*moved) - centre(other)).norm();

@@ -62,6 +62,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft);
     add_ties(draft);
     throw_faults(draft);
+    add_cyclic_symmetry(draft);
+    throw_faults(draft);
     settle_dynamics(draft.scene);
     settle_pairs(draft);
     adjust_slaves(draft);
@@ -71,6 +73,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     add_stages(draft);
     add_pairs(draft);
     throw_faults(draft);
+    add_changes_of_pairs(draft);
     add_general_contact(draft);
     throw_faults(draft);
     check_supports(draft);

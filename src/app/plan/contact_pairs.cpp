@@ -247,6 +247,18 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
         slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
     }
 
+    if (options.stiffness == 0)
+        for (const model::CyclicSymmetry& ring : model.cyclic)
+            for (const model::LikeNode& one : ring.nodes) { // both ends of the sector hold the same place
+                const auto slave_of = [&](Index host) {
+                    return std::ranges::find(slaves.node, host, [&](Index node) { return material_node(model, node); });
+                };
+                const auto at = slave_of(one.node);
+                if (at == slaves.node.end() || slave_of(one.like) == slaves.node.end()) continue;
+                slaves.yields.resize(slaves.node.size(), 0);
+                slaves.yields[static_cast<std::size_t>(at - slaves.node.begin())] = 1;
+            }
+
     if (averages(options.discretisation)) slaves.in_plane = in_symmetry_planes(scene, model, slave, slaves.node);
 
     std::optional<contact::SmoothSlave> smooth;

@@ -49,10 +49,16 @@ void add_sets(Draft& draft);
 void add_couplings(Draft& draft);
 /// Ties, with their nodes moved onto the surfaces that they follow.
 void add_ties(Draft& draft);
+/// Sectors that stand for rings, with the nodes at one end moved onto the turned places of their likes at the other.
+void add_cyclic_symmetry(Draft& draft);
+/// Directions that x, y and z mean for a node, in columns. @param support  of the set that names them; null: none
+[[nodiscard]] Mat3 axes_at(const Draft& draft, const scene::Support* support, Index node);
 /// Projectors on the directions that supports leave free, of nodes that have any.
 [[nodiscard]] std::map<Index, Mat3> free_directions(const Draft& draft);
 /// Slave nodes of pairs that ask for it, moved onto the master.
 void adjust_slaves(Draft& draft);
+/// Pairs whose friction stages change, or which they put out of force.
+void add_changes_of_pairs(Draft& draft);
 /// Skins of all surfaces in contact whose faces have midside nodes, with their nodes behind all others.
 void add_skins(Draft& draft);
 /// Held directions of every stage, and external forces at its ends but for gravity.

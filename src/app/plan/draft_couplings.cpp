@@ -25,11 +25,11 @@ bool on_one_line(const std::vector<Vec3>& points) {
     return !(squares(1) > thin * thin * squares(2));
 }
 
-/// Directions along which a support holds its nodes.
-std::vector<Vec3> held_directions(const scene::Support& support) {
+/// Directions along which a support holds a node, where these are its axes.
+std::vector<Vec3> held_directions(const scene::Support& support, const Mat3& axes) {
     std::vector<Vec3> held;
     for (int k = 0; k < 3; ++k)
-        if (support.fixed[static_cast<std::size_t>(k)]) held.emplace_back(support.axes.col(k));
+        if (support.fixed[static_cast<std::size_t>(k)]) held.emplace_back(axes.col(k));
     return held;
 }
 
@@ -117,7 +117,7 @@ void add_couplings(Draft& draft) {
             const model::RigidBody& coupling = draft.rigid(name);
             const Vec3 arm = m.X[static_cast<std::size_t>(node)] - coupling.centre;
             std::array<bool, 6> missing{};
-            for (const Vec3& d : held_directions(support))
+            for (const Vec3& d : held_directions(support, axes_at(draft, &support, node)))
                 find_missing(scene::find(draft.scene.couplings, name)->fixed, arm, d, missing);
             std::vector<std::string> names;
             for (std::size_t k = 0; k < 6; ++k)

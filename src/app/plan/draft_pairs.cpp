@@ -35,6 +35,24 @@ void add_pairs(Draft& draft) {
     }
 }
 
+void add_changes_of_pairs(Draft& draft) {
+    model::ContactPairs now = draft.plan.model.pairs;
+    bool changed = false;
+    std::size_t s = 0;
+    for (const auto& [name, spec] : draft.scene.stages) {
+        for (auto& pair : now) {
+            model::ContactOptions options = pair->options();
+            if (const double* friction = scene::find(spec.friction, pair->name())) options.friction = *friction;
+            if (const bool* in_force = scene::find(spec.pairs, pair->name())) options.in_force = *in_force;
+            if (options.friction == pair->options().friction && options.in_force == pair->options().in_force) continue;
+            pair = std::make_shared<const model::ContactPair>(*pair, options);
+            changed = true;
+        }
+        if (changed) draft.plan.stages[s].pairs = now;
+        ++s;
+    }
+}
+
 namespace {
 /// A rigid body does not change its shape: it does not meet itself.
 void keep_rigid_bodies_from_themselves(scene::Scene& scene) {

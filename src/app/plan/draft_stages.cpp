@@ -141,7 +141,6 @@ void add_constraints(const Draft& draft, const Driving& driving, CourseList& cou
         const model::Set& group = draft.plan.model.sets[s];
         const scene::Support* support = scene::find(draft.scene.supports, group.name);
         const auto motion = driving.displacement.find(group.name);
-        const Mat3 axes = support != nullptr ? support->axes : Mat3::Identity();
         for (int k = 0; k < 3; ++k) {
             const bool moved = motion != driving.displacement.end() && motion->second[static_cast<std::size_t>(k)];
             const bool fixed =
@@ -156,8 +155,8 @@ void add_constraints(const Draft& draft, const Driving& driving, CourseList& cou
                 target = value.is_value() ? value.value() : 1;
             }
             for (const Index node : group.nodes)
-                constraints.push_back({node, axes.col(k), target, moved, support != nullptr && support->symmetry,
-                                       static_cast<Index>(s), course});
+                constraints.push_back({node, axes_at(draft, support, node).col(k), target, moved,
+                                       support != nullptr && support->symmetry, static_cast<Index>(s), course});
         }
     }
 }

@@ -128,6 +128,20 @@ void adjust(model::Model& m, model::Tie& tie) {
 
 } // namespace
 
+Mat3 axes_at(const Draft& draft, const scene::Support* support, Index node) {
+    if (support == nullptr) return Mat3::Identity();
+    if (!support->cylinder) return support->axes;
+    const model::Model& m = draft.plan.model;
+    const Vec3 axis = support->cylinder->direction.normalized(),
+               arm = m.X[static_cast<std::size_t>(node)] + m.origin - support->cylinder->point,
+               radius = arm - axis * axis.dot(arm);
+    Mat3 axes;
+    axes.col(0) = radius.normalized();
+    axes.col(1) = axis.cross(axes.col(0));
+    axes.col(2) = axis;
+    return axes;
+}
+
 std::map<Index, Mat3> free_directions(const Draft& draft) {
     std::map<Index, Mat3> free;
     for (const auto& [set, support] : draft.scene.supports)
@@ -135,7 +149,7 @@ std::map<Index, Mat3> free_directions(const Draft& draft) {
             for (int k = 0; k < 3; ++k)
                 if (support.fixed[static_cast<std::size_t>(k)]) {
                     Mat3& P = free.try_emplace(node, Mat3::Identity()).first->second;
-                    const Vec3 d = P * support.axes.col(k); // less what others hold
+                    const Vec3 d = P * axes_at(draft, &support, node).col(k); // less what others hold
                     if (d.norm() > vanishing) P -= d * d.transpose() / d.squaredNorm();
                 }
     return free;

@@ -88,6 +88,14 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
                  : fmt::format("{} of {:.0f} nodes, which have no unknowns of their own", model.ties.size(), tied),
              {carriers * sizeof(linear::Dependence::Carrier), carriers, "weights an iteration"});
 
+    double ends = 0;
+    for (const model::CyclicSymmetry& ring : model.cyclic) ends += static_cast<double>(ring.nodes.size());
+    list.say("cyclic symmetry", ends > 0,
+             ends == 0
+                 ? "no body is a sector of a ring"
+                 : fmt::format("{} of {:.0f} nodes, which have no unknowns of their own", model.cyclic.size(), ends),
+             {ends * sizeof(linear::Dependence::Carrier), ends, "turned nodes an iteration"});
+
     const std::size_t dynamic = dynamic_stages(plan);
     constexpr double states = 10; // u, v, a: of the state, of the start of the step and after it; force at the start
     list.say("inertia", dynamic > 0, dynamic > 0 ? fmt::format("{} dynamic stage(s)", dynamic) : every_static,

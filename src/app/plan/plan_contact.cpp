@@ -143,7 +143,10 @@ void add_contact_items(const scene::Scene& scene, const Plan& plan, PlanList& li
              : contact      ? "every pair names slave and master, or geometry chooses in general contact"
                             : no_pair,
              {0, 0, {}});
-    const double rubbing = slave_nodes(plan, [](const auto& pair) { return pair.options().friction > 0; });
+    double rubbing = slave_nodes(plan, [](const auto& pair) { return pair.options().friction > 0; });
+    for (const time::Stage& stage : plan.stages)
+        for (const auto& pair : stage.pairs)
+            if (pair->options().friction > 0) rubbing = std::max(rubbing, static_cast<double>(pair->size()));
     list.say("friction", rubbing > 0,
              rubbing > 0 ? "a pair has mu > 0"
              : contact   ? "no pair has mu > 0"

@@ -23,11 +23,35 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
     acting_ = std::max(acting_, forces.acting);
     add_penetration(step);
     add_audit(step);
+    if (!model_.cyclic.empty() && crossed_ < 0) add_crossing(step);
     rotations_.accepted(step.state, step.equilibrium.constraints());
     if (step.ledger == nullptr)
         contact_ = 0; // the next dynamic stage opens a ledger of its own
     else
         add_energies(*step.ledger);
+}
+
+void RunChecks::add_crossing(const time::AcceptedStep& step) {
+    constexpr double round_off = 1e-6; // of the facet size
+    std::vector<char> ends(model_.X.size(), 0);
+    for (const model::CyclicSymmetry& ring : model_.cyclic)
+        for (const model::LikeNode& one : ring.nodes)
+            ends[static_cast<std::size_t>(one.node)] = ends[static_cast<std::size_t>(one.like)] = 1;
+    for (const model::ContactEvaluation& evaluation : step.equilibrium.contact()) {
+        const model::ContactPair& pair = evaluation.pair();
+        for (Index j = 0; j < pair.size() && crossed_ < 0; ++j) {
+            const contact::FacetHit& hit = evaluation.hit(j);
+            if (hit.facet < 0) continue;
+            const double size = pair.surface().facet_size(hit.facet);
+            if (!(hit.beyond > round_off * size) || hit.distance > size) continue;
+            const auto on_end = std::ranges::count_if(pair.surface().facet_vertices(hit.facet), [&](Index v) {
+                return ends[static_cast<std::size_t>(model::material_node(model_, pair.node(v)))] != 0;
+            });
+            if (on_end < 2) continue;
+            crossed_ = pair.slaves().node[static_cast<std::size_t>(j)];
+            crossed_time_ = step.state.time;
+        }
+    }
 }
 
 void RunChecks::add_penetration(const time::AcceptedStep& step) {
@@ -129,19 +153,22 @@ std::vector<double> RunChecks::memory() const {
                                 d.place.z(),
                                 deepest_time_,
                                 contact_,
-                                closing_};
+                                closing_,
+                                static_cast<double>(crossed_),
+                                crossed_time_};
     const std::vector<double> rotations = rotations_.memory();
     numbers.insert(numbers.end(), rotations.begin(), rotations.end());
     return numbers;
 }
 
 void RunChecks::recall(const std::vector<double>& memory) {
-    double dynamic = 0, body = -1, other = -1, node = -1;
+    double dynamic = 0, body = -1, other = -1, node = -1, crossed = -1;
     contact::Intrusion& d = deepest_;
-    double* const members[] = {&left_over_,  &acting_,     &penetration_,  &penetration_m_, &excess_,  &excessive_,
-                               &bound_,      &dynamic,     &energy_,       &balance_,       &growth_,  &body,
-                               &other,       &node,        &d.depth,       &d.excess,       &d.length, &d.place.x(),
-                               &d.place.y(), &d.place.z(), &deepest_time_, &contact_,       &closing_};
+    double* const members[] = {&left_over_,    &acting_,  &penetration_, &penetration_m_, &excess_,
+                               &excessive_,    &bound_,   &dynamic,      &energy_,        &balance_,
+                               &growth_,       &body,     &other,        &node,           &d.depth,
+                               &d.excess,      &d.length, &d.place.x(),  &d.place.y(),    &d.place.z(),
+                               &deepest_time_, &contact_, &closing_,     &crossed,        &crossed_time_};
     constexpr std::size_t count = std::size(members);
     if (memory.size() < count) throw std::runtime_error("the checkpoint holds no checks of the run");
     for (std::size_t i = 0; i < count; ++i) *members[i] = memory[i];
@@ -150,6 +177,7 @@ void RunChecks::recall(const std::vector<double>& memory) {
     d.body = static_cast<Index>(body);
     d.other = static_cast<Index>(other);
     d.node = static_cast<Index>(node);
+    crossed_ = static_cast<Index>(crossed);
 }
 
 output::Summary::Checks RunChecks::checks() const {
@@ -176,6 +204,13 @@ std::vector<std::string> RunChecks::warnings() const {
                                            "not, which are beside the master or "
                                            "farther from it than `distance`",
                                            tie.name, tie.nodes.size(), tie.adjusted, tie.left_out));
+    if (crossed_ >= 0) {
+        const Vec3 X = model_.X[static_cast<std::size_t>(crossed_)] + model_.origin;
+        warnings.push_back(fmt::format(
+            "at {:.4g} s the slave node that began at ({:.4g}, {:.4g}, {:.4g}) m has left its master over the end of a "
+            "sector: the next one would bear it, but contact does not see that. Choose ends that nothing slides over",
+            crossed_time_, X.x(), X.y(), X.z()));
+    }
     if (dynamic_ && share(closing_, energy_) > much)
         warnings.push_back(
             fmt::format("gaps that closed took {:.2g} of the largest energy, and exact contact takes none: rebounds "

@@ -146,8 +146,7 @@ private:
             if (motion != now.displacement.end() && motion->second[k]) {
                 if (!motion->second[k]->is_value() || !course.is_value()) continue; // two courses may go together
                 held = motion->second[k]->value();
-            } else if (support == nullptr || !support->fixed[k] || support->cylinder ||
-                       !support->axes.isIdentity(0)) {
+            } else if (support == nullptr || !support->fixed[k] || support->cylinder || !support->axes.isIdentity(0)) {
                 continue;
             }
             const double distance = (centre(*moved) - centre(other)).norm();

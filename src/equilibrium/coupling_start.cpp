@@ -38,36 +38,36 @@ linear::Dependence coupled_nodes(const model::Model& model, const model::State& 
 }
 
 void add_ties(const model::Model& model, linear::Dependence& dependence) {
-    for (const model::Tie& tie : model.ties)
-        for (const model::TiedNode& tied : tie.nodes) {
-            std::vector<linear::Dependence::Carrier> carriers;
-            for (const auto& [node, weight] : tied.carriers)
-                carriers.push_back({node, weight * tied.free, weight * tied.free});
-            dependence.set(tied.node, std::move(carriers), Mat3::Identity() - tied.free);
-        }
     for (const model::CyclicSymmetry& ring : model.cyclic)
         for (const model::LikeNode& one : ring.nodes) {
             const Mat3 turn = one.free * ring.turn;
             dependence.set(one.node, {{one.like, turn, turn.transpose()}}, Mat3::Identity() - one.free);
         }
-    for (const model::SkinNode& one : model.skin) {
-        std::vector<linear::Dependence::Carrier> carriers;
-        const auto add = [&](Index node, const Mat3& share) {
-            const auto at = std::ranges::find(carriers, node, &linear::Dependence::Carrier::node);
-            linear::Dependence::Carrier& carrier =
-                at != carriers.end() ? *at : carriers.emplace_back(node, Mat3::Zero(), Mat3::Zero());
-            carrier.moves += share;
-            carrier.loads += share.transpose();
-        };
-        for (const auto& [node, weight] : one.carriers) {
-            const Mat3 share =
-                node == one.host ? Mat3(weight * one.free + Mat3::Identity() - one.free) : Mat3(weight * one.free);
-            if (!dependence.depends(node))
-                add(node, share);
-            else // at an end of a sector
-                for (const linear::Dependence::Carrier& like : dependence.carriers(node))
-                    add(like.node, share * like.moves);
+    using Carriers = std::vector<linear::Dependence::Carrier>;
+    const auto add_one = [](Carriers& carriers, Index node, const Mat3& share) {
+        const auto at = std::ranges::find(carriers, node, &linear::Dependence::Carrier::node);
+        linear::Dependence::Carrier& carrier =
+            at != carriers.end() ? *at : carriers.emplace_back(node, Mat3::Zero(), Mat3::Zero());
+        carrier.moves += share;
+        carrier.loads += share.transpose();
+    };
+    // what is at an end of a sector follows what is at the other
+    const auto add = [&](Carriers& carriers, Index node, const Mat3& share) {
+        if (!dependence.depends(node)) return add_one(carriers, node, share);
+        for (const linear::Dependence::Carrier& like : dependence.carriers(node))
+            add_one(carriers, like.node, share * like.moves);
+    };
+    for (const model::Tie& tie : model.ties)
+        for (const model::TiedNode& tied : tie.nodes) {
+            Carriers carriers;
+            for (const auto& [node, weight] : tied.carriers) add(carriers, node, weight * tied.free);
+            dependence.set(tied.node, std::move(carriers), Mat3::Identity() - tied.free);
         }
+    for (const model::SkinNode& one : model.skin) {
+        Carriers carriers;
+        for (const auto& [node, weight] : one.carriers)
+            add(carriers, node,
+                node == one.host ? Mat3(weight * one.free + Mat3::Identity() - one.free) : Mat3(weight * one.free));
         dependence.set(one.node, std::move(carriers));
     }
 }

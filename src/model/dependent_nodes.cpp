@@ -30,16 +30,16 @@ std::vector<Index> tied_groups(const Model& model) {
 }
 
 void move_tied(const Model& model, Field& u) {
+    for (const CyclicSymmetry& ring : model.cyclic)
+        for (const LikeNode& one : ring.nodes) {
+            Vec3& own = u[static_cast<std::size_t>(one.node)];
+            own += one.free * (ring.turn * u[static_cast<std::size_t>(one.like)] - own);
+        }
     for (const Tie& tie : model.ties)
         for (const TiedNode& tied : tie.nodes) {
             Vec3 sum = Vec3::Zero();
             for (const auto& [node, weight] : tied.carriers) sum += weight * u[static_cast<std::size_t>(node)];
             u[static_cast<std::size_t>(tied.node)] = tied.free * sum;
-        }
-    for (const CyclicSymmetry& ring : model.cyclic)
-        for (const LikeNode& one : ring.nodes) {
-            Vec3& own = u[static_cast<std::size_t>(one.node)];
-            own += one.free * (ring.turn * u[static_cast<std::size_t>(one.like)] - own);
         }
     for (const SkinNode& one : model.skin) {
         Vec3 sum = Vec3::Zero();

@@ -176,6 +176,18 @@ TEST(Cyclic, HalfABlockRubsAsTheWhole) {
     }
 }
 
+/// Where the joint reaches the ends, tied nodes follow what follows the other end.
+TEST(Cyclic, HalfATiedBlockTurnsAsTheWhole) {
+    const auto glued = [](bool halved) {
+        std::string text = stack(halved);
+        const auto begin = text.find("contact:"), end = text.find("stages:");
+        return text.replace(begin, end - begin, "ties: {glue: {slave: under, master: table_top}}\n");
+    };
+    const Overrides turn{{"stages.turn.displacement.top.y", "30 mm"}};
+    const auto all = run("glued.yaml", glued(false), turn), part = run("half_glued.yaml", glued(true), turn);
+    EXPECT_LT(difference(*part, *all), 1e-8);
+}
+
 /// Of what the neighbours would bear, a run says so.
 TEST(Cyclic, SaysWhenANodeSlidesToTheNextSector) {
     const auto warnings = [](const char* turn) {

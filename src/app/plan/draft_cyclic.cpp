@@ -165,10 +165,7 @@ void add_cyclic_symmetry(Draft& draft) {
         for (const Index node : body.nodes)
             follows.emplace(node, (body.coupling ? "couplings." : "bodies.") + body.name);
     for (const model::Tie& tie : m.ties)
-        for (const model::TiedNode& tied : tie.nodes) {
-            follows.emplace(tied.node, "ties." + tie.name);
-            for (const auto& [node, weight] : tied.carriers) follows.emplace(node, "ties." + tie.name);
-        }
+        for (const model::TiedNode& tied : tie.nodes) follows.emplace(tied.node, "ties." + tie.name);
     const std::map<Index, Mat3> free = free_directions(draft);
     std::map<Index, Mat3> driven; // the same less what stages drive
     for (const auto& [name, stage] : draft.scene.stages)
@@ -198,6 +195,11 @@ void add_cyclic_symmetry(Draft& draft) {
         std::erase_if(ring.nodes, [&](const model::LikeNode& one) { // what leads it in all directions is enough
             const auto at = driven.find(one.node);
             return at != driven.end() && at->second.norm() < near_like;
+        });
+        std::erase_if(ring.nodes, [&](const model::LikeNode& one) { // ties at both ends do what the ends would
+            const auto tie = follows.find(one.node), other = follows.find(one.like);
+            return tie != follows.end() && other != follows.end() && tie->second == other->second &&
+                   tie->second.starts_with("ties.");
         });
         for (model::LikeNode& one : ring.nodes) {
             if (const auto other = follows.find(one.node); other != follows.end()) {

@@ -24,6 +24,7 @@ struct Holding {
     int step = -1;
     double value = 0;
     std::string amplitude;
+    bool released = false; ///< by this step
     auto operator<=>(const Holding&) const = default;
 };
 using Holdings = std::array<std::vector<Holding>, 3>;
@@ -229,7 +230,7 @@ private:
 
     std::string write_supports() {
         std::map<Index, Holdings> by_point;
-        std::set<std::pair<Index, std::size_t>> given, let_go; // points and components, by the step under way; by any
+        std::set<std::pair<Index, std::size_t>> given; // points and components, by the step under way
         const auto add = [&](const DeckValues& values, int step) {
             std::size_t without = 0;
             for (const Index p : values.points) {
@@ -240,7 +241,7 @@ private:
                 for (int d = values.first; d <= values.last; ++d) {
                     std::vector<Holding>& list = by_point[p][static_cast<std::size_t>(d)];
                     if (!list.empty() && list.back().step == step) list.pop_back(); // the last of a step counts
-                    list.push_back({step, values.value, values.amplitude});
+                    list.push_back({step, values.value, values.amplitude, false});
                     given.insert({p, static_cast<std::size_t>(d)});
                 }
             }
@@ -253,15 +254,11 @@ private:
             const DeckStep& step = model_.steps[s];
             given.clear();
             for (const DeckValues& values : step.held) add(values, static_cast<int>(s));
-            for (const auto& one : given) let_go.erase(one);
             if (!step.forget_held) continue;
-            std::size_t released = 0; // what an earlier step let go of is listed there
-            for (const auto& [p, holdings] : by_point)
+            for (auto& [p, holdings] : by_point)
                 for (std::size_t d = 0; d < holdings.size(); ++d)
-                    if (!holdings[d].empty() && !given.contains({p, d}) && let_go.insert({p, d}).second) ++released;
-            if (released > 0)
-                model_.lose(step.place, fmt::format("*BOUNDARY, OP=NEW, which lets go of {} components", released),
-                            "what is held stays held");
+                    if (!holdings[d].empty() && !holdings[d].back().released && !given.contains({p, d}))
+                        holdings[d].push_back({static_cast<int>(s), 0, "", true});
         }
         struct Group {
             int body;
@@ -304,7 +301,7 @@ private:
     static bool holds_all(const Holdings& holdings) {
         return std::ranges::all_of(holdings, [](const std::vector<Holding>& list) {
             return !list.empty() && list.front().step <= 0 &&
-                   std::ranges::all_of(list, [](const Holding& h) { return h.value == 0; });
+                   std::ranges::all_of(list, [](const Holding& h) { return h.value == 0 && !h.released; });
         });
     }
 
@@ -333,9 +330,13 @@ private:
         for (std::size_t d = 0; d < 3; ++d) {
             const std::vector<Holding>& list = holdings[d];
             if (list.empty()) continue;
-            const bool zero = std::all_of(list.begin(), list.end(), [](const Holding& h) { return h.value == 0; });
+            // a support is for the whole run, or until it is released for ever
+            const bool zero =
+                std::all_of(list.begin(), list.end(), [](const Holding& h) { return h.value == 0; }) &&
+                std::none_of(list.begin(), std::prev(list.end()), [](const Holding& h) { return h.released; });
             if (zero && list.front().step <= 0) {
                 fixed += (fixed.empty() ? "" : ", ") + std::string(1, "xyz"[d]);
+                if (list.back().released) release(set, list.back(), d);
                 continue;
             }
             for (std::size_t k = 0; k < list.size(); ++k) {
@@ -343,6 +344,10 @@ private:
                 const auto s = static_cast<std::size_t>(std::max(h.step, 0));
                 if (k + 1 < list.size() && list[k + 1].step == static_cast<int>(s))
                     continue; // held, then driven at once
+                if (h.released) {
+                    release(set, h, d);
+                    continue;
+                }
                 stages_[s].displacement[set] += (stages_[s].displacement[set].empty() ? "" : ", ") +
                                                 std::string(1, "xyz"[d]) + ": " +
                                                 course(units_.length * h.value, h.amplitude);
@@ -351,6 +356,11 @@ private:
         if (fixed.empty() && axes.empty()) return "";
         return "  " + set + ": {" + (fixed.empty() ? "" : "fix: [" + fixed + "]") +
                (fixed.empty() || axes.empty() ? "" : ", ") + axes + "}\n";
+    }
+
+    void release(const std::string& set, const Holding& holding, std::size_t d) {
+        std::string& components = stages_[static_cast<std::size_t>(holding.step)].release[set];
+        components += (components.empty() ? "" : ", ") + std::string(1, "xyz"[d]);
     }
 
     std::string course(double value, const std::string& amplitude) const {
@@ -569,6 +579,8 @@ private:
         map("body_force", stages_[s].body_force, false);
         map("nodal_force", stages_[s].nodal_force, false);
         map("temperature", stages_[s].temperature, false);
+        for (auto& [set, components] : stages_[s].release) components = "[" + components + "]";
+        map("release", stages_[s].release, false);
         map("friction", stages_[s].friction, false);
         map("pairs", stages_[s].pairs, false);
         return text;

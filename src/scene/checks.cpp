@@ -402,6 +402,18 @@ public:
             fault({"stages", name, "control", "step_size"}, "a dynamic stage", "a static one");
         if (stage.control.error_tolerance && stage.control.step_size == StepSize::fixed)
             fault({"stages", name, "control", "error_tolerance"}, "step_size: controlled", "step_size: fixed");
+        for (const auto& [set, released] : stage.release) {
+            const Support* support = find(supports, set);
+            if (support != nullptr && support->symmetry)
+                fault({"stages", name, "release", set},
+                      "a set that no plane of symmetry holds: contact is mirrored there",
+                      "supports." + set + ".symmetry");
+            if (const auto* driven = find(stage.displacement, set))
+                for (std::size_t a = 0; a < 3; ++a)
+                    if (released[a] && (*driven)[a])
+                        fault({"stages", name, "release", set}, "components that this stage does not drive",
+                              axis_words[a]);
+        }
         for (const auto& [pair, friction] : stage.friction)
             if (pair == "general")
                 fault({"stages", name, "friction", pair}, "a pair that the scene names", "general contact");

@@ -388,6 +388,21 @@ void describe(Visitor& v, Stage& stage) {
                          .required = true},
                         value);
           });
+    named(v,
+          {.name = "release",
+           .meaning =
+               "Components of sets that are held no longer, neither by supports nor by the displacement of earlier "
+               "stages; their forces end with the stage before.",
+           .names = Names::set,
+           .item = "set"},
+          stage.release, [&](const std::string& set, std::array<bool, 3>& value) {
+              std::vector<std::string> released;
+              for (std::size_t a = 0; a < 3; ++a)
+                  if (value[a]) released.push_back(axis_words[a]);
+              v.words({.name = set, .meaning = "Components, along the support's axes.", .required = true}, axis_words,
+                      released);
+              for (std::size_t a = 0; a < 3; ++a) value[a] = std::ranges::count(released, axis_words[a]) > 0;
+          });
     named(
         v,
         {.name = "friction",

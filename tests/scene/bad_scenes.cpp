@@ -221,7 +221,8 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
             "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
             "for both",
             "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, control, ramp, "
-            "displacement, pressure, follower_pressure, body_force, friction, pairs, temperature, nodal_force, motion, "
+            "displacement, pressure, follower_pressure, body_force, release, friction, pairs, temperature, "
+            "nodal_force, motion, "
             "force, moment, "
             "found unknown "
             "key 'stpes' "

@@ -229,6 +229,17 @@ TEST(Cyclic, RefusesWhatItWouldGetWrong) {
     EXPECT_THAT(
         faults({{"sets.lower", "{body: beam, surface: x_min}"}, {"sets.upper", "{body: beam, surface: x_min}"}}),
         HasSubstr("cyclic.turn.master: nodes that follow nothing else"));
+    EXPECT_THAT(faults({{"sets.upper", "{body: beam, box: {min: [-1 mm, 0.5 m, -1 m], max: [1 mm, 3 m, 2 m]}}"},
+                        {"sets.lower", "{body: beam, box: {min: [-1 mm, -3 m, -1 m], max: [1 mm, -0.5 m, 2 m]}}"}}),
+                HasSubstr("cyclic.turn: slave and master with all nodes of the sector's ends"));
+    const std::string heavy = "{linear_elastic: {E: 10 MPa, nu: 0.3, density: 1000 kg/m^3}}";
+    EXPECT_THAT(faults({{"bodies.beam.material", heavy}, {"gravity", "[0 m/s^2, -9.81 m/s^2, 0 m/s^2]"}}),
+                HasSubstr("cyclic.turn.axis: gravity along the axis"));
+    EXPECT_EQ(faults({{"bodies.beam.material", heavy}, {"gravity", "[0 m/s^2, 0 m/s^2, -9.81 m/s^2]"}}), "");
+    EXPECT_THAT(faults({{"bodies.beam.material", heavy},
+                        {"bodies.beam.initial_velocity", "[1 m/s, 0 m/s, 0 m/s]"},
+                        {"stages.load.analysis", "dynamic"}}),
+                HasSubstr("initial velocities that are the same in every sector"));
     EXPECT_THAT(faults({{"bodies.beam.mesh.block.element", "hex20"}}),
                 HasSubstr("hold the body's nodes on the axis across it"));
     EXPECT_THAT(faults({{"stages.load.displacement", "{upper: {x: 1 mm}}"}}),

@@ -384,6 +384,8 @@ struct Stage {
     StepControl control;
     bool ramp = true; ///< linear from the last value; false: the full value from the first step on
     Named<std::array<std::optional<Course>, 3>> displacement; ///< set -> components along the support's axes, m
+    Named<std::array<bool, 3>>
+        release;                     ///< set -> components that neither its support nor an earlier stage holds any more
     Named<Course> follower_pressure; ///< set -> pressure on the current area, along the current normal, Pa
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
     Named<std::array<Course, 3>> body_force;  ///< body -> N/m^3

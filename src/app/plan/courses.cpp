@@ -13,6 +13,12 @@ void settle_one(scene::Course& course, double duration) {
 } // namespace
 
 void Driving::update(const scene::Stage& stage) {
+    for (const auto& [set, components] : stage.release)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (components[k]) {
+                released[set][k] = true;
+                displacement[set][k].reset();
+            }
     for (const auto& [set, components] : stage.displacement)
         for (std::size_t k = 0; k < 3; ++k)
             if (components[k]) displacement[set][k] = components[k];

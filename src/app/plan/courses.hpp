@@ -15,7 +15,8 @@ namespace osculate::app {
 /// What is driven during a stage, and what it keeps from those before.
 struct Driving {
     std::map<std::string, std::array<std::optional<scene::Course>, 3>> displacement; ///< by set
-    std::map<std::string, scene::Course> pressure, follower_pressure;                ///< by set
+    std::map<std::string, std::array<bool, 3>> released; ///< by set: components that its support holds no longer
+    std::map<std::string, scene::Course> pressure, follower_pressure; ///< by set
     std::vector<std::pair<std::string, scene::Course>>
         temperature; ///< by body or set, in the order in which they are named
     std::map<std::string, std::array<scene::Course, 3>> body_force;            ///< by body

@@ -21,6 +21,8 @@ namespace {
 constexpr double near_like = 0.01;
 /// Distance from an axis, of the distance from its point, below which no direction is radial.
 constexpr double on_axis = 1e-9;
+/// Cosine from which faces lie on each other.
+constexpr double facing = 0.9;
 
 double from_axis(const Vec3& arm, const Vec3& axis) {
     return (arm - axis * axis.dot(arm)).norm();
@@ -98,7 +100,7 @@ public:
                 ring_.nodes.push_back({slave.nodes[i], master.nodes[likes[i].first]});
                 move(slave.nodes[i], turned[likes[i].first]);
             }
-            return true;
+            return covers_ends(slave, master, within) && is_the_same_everywhere();
         }
         return refuse(".slave",
                       "nodes that the master's, turned by one sector about the axis, meet; or a larger `distance`",
@@ -109,6 +111,60 @@ public:
     [[nodiscard]] model::CyclicSymmetry take() { return std::move(ring_); }
 
 private:
+    /// Faces that meet those of the next sector are ends, with all their nodes.
+    bool covers_ends(const model::Set& slave, const model::Set& master, double within) {
+        const model::Body& body = draft_.plan.model.bodies[static_cast<std::size_t>(ring_.body)];
+        const std::vector<mesh::Facet>& facets = draft_.exterior[static_cast<std::size_t>(ring_.body)];
+        std::set<Index> known(slave.nodes.begin(), slave.nodes.end());
+        known.insert(master.nodes.begin(), master.nodes.end());
+        std::vector<Vec3> centres, turned, normals;
+        for (const mesh::Facet& facet : facets) {
+            Vec3 centre = Vec3::Zero();
+            for (const Index node : facet) centre += X(body.first_node + node) / facet.count;
+            centres.push_back(centre);
+            turned.push_back(ring_.point + ring_.turn * (centre - ring_.point));
+            normals.push_back(mesh::facet_area_vector(facet, body.mesh.nodes).normalized());
+        }
+        const auto likes = nearest(turned, centres);
+        for (std::size_t f = 0; f < facets.size(); ++f) {
+            const std::size_t g = likes[f].first;
+            if (likes[f].second > within || normals[g].dot(ring_.turn * normals[f]) > -facing) continue;
+            for (const mesh::Facet* facet : {&facets[f], &facets[g]})
+                for (const Index local : *facet) {
+                    const Index node = body.first_node + local;
+                    if (known.contains(node) ||
+                        from_axis(X(node) - ring_.point, axis_) <= on_axis * (X(node) - ring_.point).norm())
+                        continue;
+                    return refuse("", "slave and master with all nodes of the sector's ends",
+                                  words(node) + ", on a face that meets the next sector's, in neither");
+                }
+        }
+        return true;
+    }
+
+    /// Gravity and motions at the start, which are those of the whole scene.
+    bool is_the_same_everywhere() {
+        const model::Body& body = draft_.plan.model.bodies[static_cast<std::size_t>(ring_.body)];
+        const scene::Body& spec = *scene::find(draft_.scene.bodies, body.name);
+        const Vec3& g = draft_.scene.gravity;
+        if (body.density > 0 && from_axis(g, axis_) > on_axis * g.norm())
+            return refuse(".axis", "gravity along the axis: it is not the same in every sector otherwise",
+                          "gravity across it");
+        const Vec3 centre = model::centre_of_mass(body);
+        double fastest = 0, off = 0;
+        for (const model::LikeNode& one : ring_.nodes) {
+            const auto v = [&](Index node) -> Vec3 {
+                return spec.initial_velocity + spec.initial_spin.cross(X(node) - centre);
+            };
+            fastest = std::max(fastest, v(one.node).norm());
+            off = std::max(off, (v(one.node) - ring_.turn * v(one.like)).norm());
+        }
+        if (off > near_like * fastest)
+            return refuse(".slave", "initial velocities that are the same in every sector: along the axis, or about it",
+                          fmt::format("two of which one, turned, differs by {:.3g} m/s from the other", off));
+        return true;
+    }
+
     [[nodiscard]] const Vec3& X(Index node) const { return draft_.plan.model.X[static_cast<std::size_t>(node)]; }
     [[nodiscard]] std::vector<Vec3> places(const std::vector<Index>& nodes) const {
         std::vector<Vec3> list;

@@ -7,6 +7,8 @@
 #include "app/plan/settling.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
+#include <algorithm>
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace osculate::app {
@@ -143,8 +145,10 @@ void add_constraints(const Draft& draft, const Driving& driving, CourseList& cou
         const auto motion = driving.displacement.find(group.name);
         for (int k = 0; k < 3; ++k) {
             const bool moved = motion != driving.displacement.end() && motion->second[static_cast<std::size_t>(k)];
-            const bool fixed =
-                support != nullptr && (support->fixed[static_cast<std::size_t>(k)] || (support->symmetry && k == 0));
+            const auto let_go = driving.released.find(group.name);
+            const bool released = let_go != driving.released.end() && let_go->second[static_cast<std::size_t>(k)];
+            const bool fixed = support != nullptr && !released &&
+                               (support->fixed[static_cast<std::size_t>(k)] || (support->symmetry && k == 0));
             if (!moved && !fixed) continue;
             double target = 0;
             Index course = -1;
@@ -181,8 +185,30 @@ std::vector<Index> nodes_of_part(Draft& draft, const std::string& part, const st
 
 } // namespace
 
+namespace {
+/// What follows other nodes does so for the whole run, in the directions that supports leave free at its start.
+void check_releases(Draft& draft) {
+    const model::Model& m = draft.plan.model;
+    std::vector<Index> bound = model::dependent_nodes(m);
+    for (const model::SkinNode& one : m.skin) bound.push_back(one.host);
+    std::ranges::sort(bound);
+    for (const auto& [name, stage] : draft.scene.stages)
+        for (const auto& [set, components] : stage.release)
+            for (const Index node : draft.set(set).nodes)
+                if (std::ranges::binary_search(bound, node)) {
+                    const Vec3 X = m.X[static_cast<std::size_t>(node)] + m.origin;
+                    draft.faults.push_back(
+                        fault("stages." + name + ".release." + set,
+                              "nodes that follow no others, and no face with midside nodes in contact",
+                              fmt::format("a node at [{:.6g}, {:.6g}, {:.6g}] m that does", X[0], X[1], X[2])));
+                    break;
+                }
+}
+} // namespace
+
 /// Held directions of every stage and external forces at its ends.
 void add_stages(Draft& draft) {
+    check_releases(draft);
     Driving now;          // keeps its values in later stages
     bool settled = false; // courses of the stage before have become values
     for (const auto& [name, spec] : draft.scene.stages) {

@@ -410,7 +410,25 @@ private:
                 model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
                             "no two pieces of the mesh have them: a body in contact with itself has no counterpart");
         }
+        lose_changes_of_nothing();
         return text;
+    }
+
+    /// Changes of pairs and interactions that the scene does not have.
+    void lose_changes_of_nothing() {
+        const auto slides = [&](const auto& is) {
+            return std::ranges::any_of(model_.pairs, [&](const DeckPair& pair) { return !is_tied(pair) && is(pair); });
+        };
+        for (const DeckStep& step : model_.steps) {
+            for (const auto& [name, friction] : step.friction)
+                if (!slides([&, &name = name](const DeckPair& pair) { return pair.interaction == name; }))
+                    model_.lose(step.place, "*CHANGE FRICTION of " + name, "no pair that slides has it");
+            for (const auto& [slave, master, in_force] : step.pairs)
+                if (!slides([&, &slave = slave, &master = master](const DeckPair& pair) {
+                        return pair.slave == slave && pair.master == master;
+                    }))
+                    model_.lose(step.place, "*MODEL CHANGE of " + slave + " and " + master, "no such pair slides");
+        }
     }
 
     /// What the steps change of a pair that the scene calls so.
@@ -504,6 +522,13 @@ private:
         const bool gives_way = std::ranges::none_of(model_.steps, &DeckStep::dynamic);
         std::string text;
         if (law.friction > 0) text += "    friction: " + number(law.friction) + "\n";
+        const bool rubs_later = std::ranges::any_of(model_.steps, [&](const DeckStep& step) {
+            const auto later = step.friction.find(pair.interaction);
+            return later != step.friction.end() && later->second > 0;
+        });
+        if (!(law.friction > 0) && rubs_later && law.stick > 0 && gives_way)
+            model_.note(pair.place, "stick slope of " + pair.slave + " and " + pair.master,
+                        "stick is exact where friction begins in a later step");
         if (law.friction > 0 && law.stick > 0 && gives_way)
             text += "    stick_stiffness: " + number(per_length * law.stick) + "\n";
         if (law.stiffness > 0 && gives_way)

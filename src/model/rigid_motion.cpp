@@ -1,6 +1,7 @@
 #include "osculate/model/rigid_motion.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace osculate::model {
@@ -24,17 +25,13 @@ void RigidHold::hold(const Vec3& point, const Vec3& direction) {
     gram_ += row * row.transpose();
 }
 
-void RigidHold::hold(const CyclicSymmetry& ring, const std::vector<Vec3>& x) {
-    const auto arm = [&](Index node) -> Vec3 {
-        return (x[static_cast<std::size_t>(node)] - extent_.centre) / extent_.radius;
-    };
-    for (const LikeNode& one : ring.nodes)
-        for (int k = 0; k < 3; ++k) { // d . (t + w x r) - (turn^T d) . (t + w x r_like)
-            const Vec3 d = Vec3::Unit(k), back = ring.turn.transpose() * d;
-            Motion row;
-            row << d - back, arm(one.node).cross(d) - arm(one.like).cross(back);
-            gram_ += row * row.transpose();
-        }
+void RigidHold::hold(const CyclicSymmetry& ring) {
+    // R t = t and R w = w of what moves all sectors alike: along the axis, and about it
+    const Vec3 one = ring.axis.unitOrthogonal(), other = ring.axis.cross(one);
+    for (const Vec3& across : {one, other}) {
+        hold(ring.point, across);
+        hold_turning(across);
+    }
 }
 
 void RigidHold::hold_turning(const Vec3& axis) {

@@ -117,6 +117,14 @@ std::string pairs(const OutlineItem& all) {
                  rows, {4});
 }
 
+/// What has no columns of its own.
+std::string named(const OutlineItem& all) {
+    std::string list;
+    for (const OutlineItem& one : all.items)
+        list += element("li", element("b", escaped(one.key)) + ": " + escaped(phrases(&one)));
+    return list.empty() ? "" : element("ul", list);
+}
+
 std::string stages(const OutlineItem& all) {
     std::string list;
     for (const OutlineItem& stage : all.items) {
@@ -146,6 +154,9 @@ std::string scene_section(const RunFiles& files) {
         text += element("p", "Gravity " + escaped(gravity->text) + " acts on every body with a density.");
     text += subsection("Bodies", with("bodies", bodies));
     text += subsection("Contact pairs", with("contact", pairs));
+    for (const auto& [key, title] :
+         {std::pair{"couplings", "Couplings"}, std::pair{"ties", "Ties"}, std::pair{"cyclic", "Sectors of rings"}})
+        text += subsection(title, with(key, named));
     text += subsection("Stages", with("stages", stages));
     text += subsection("Sets and supports",
                        with("sets", [&](const OutlineItem& group) { return sets(group, root.find("supports")); }));

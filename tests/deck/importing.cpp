@@ -283,6 +283,8 @@ TEST_F(Importing, StepsChangeFrictionAndPairs) {
     EXPECT_EQ(*scene::find(scene.stages.at(2).second.pairs, pair), false);
     EXPECT_THAT(import("*STEP\n*STATIC\n1.,1.\n*FRICTION\n.1\n*END STEP\n").lost,
                 ElementsAre(HasSubstr("no *CHANGE FRICTION stands before it")));
+    EXPECT_THAT(import("*STEP\n*STATIC\n1.,1.\n*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nover,under\n*END STEP\n").lost,
+                ElementsAre(HasSubstr("*MODEL CHANGE of OVER and UNDER: no such pair slides")));
     EXPECT_THAT(import("*STEP\n*STATIC\n1.,1.\n*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nEall\n*END STEP\n").lost,
                 SizeIs(1));
 }

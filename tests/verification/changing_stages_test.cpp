@@ -56,12 +56,12 @@ sets:
   side: {body: bar, surface: y_min}
   floor: {body: bar, surface: z_min}
 supports:
-  left: {fix: [x, y]}
+  left: {fix: [x, y, z]}
   floor: {fix: [z]}
 stages:
   stretch: {steps: 2, displacement: {right: {x: 0.2 m, y: 0.1 m}}}
   slide: {steps: 1, release: {right: [y]}}
-  let_go: {steps: 2, release: {right: [x, z], left: [y]}, displacement: {floor: {y: 0 m}}}
+  let_go: {steps: 2, release: {right: [x], left: [y, z]}, displacement: {floor: {y: 0 m}}}
   pull: {steps: 2, displacement: {right: {x: 0.1 m}}}
 )";
 
@@ -102,6 +102,9 @@ TEST(Release, IsRefusedWhereOtherThingsHang) {
                 HasSubstr("no plane of symmetry"));
     EXPECT_THAT(faults({{"stages.slide.displacement", "{right: {y: 0 m}}"}}),
                 HasSubstr("components that this stage does not drive; y"));
+    EXPECT_THAT(faults({{"stages.slide.release", "{right: [z]}"}}), HasSubstr("z, which is free"));
+    EXPECT_THAT(faults({{"stages.let_go.release", "{right: [x, y]}"}}), HasSubstr("y, which is free"))
+        << "let go before";
     EXPECT_THAT(faults({{"couplings", "{hand: {set: right}}"},
                         {"supports", "{left: {fix: [x, y, z]}}"},
                         {"stages", "{slide: {steps: 1, release: {right: [y]}}}"}}),

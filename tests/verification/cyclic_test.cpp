@@ -242,6 +242,20 @@ TEST(Cyclic, RefusesWhatItWouldGetWrong) {
                 HasSubstr("initial velocities that are the same in every sector"));
     EXPECT_THAT(faults({{"bodies.beam.mesh.block.element", "hex20"}}),
                 HasSubstr("hold the body's nodes on the axis across it"));
+    // at one end alone, along the scene's axes at both, in one stage but not in the other
+    EXPECT_THAT(faults({{"supports.upper", "{fix: [z]}"}, {"supports.floor", "{fix: []}"}}),
+                HasSubstr("cyclic.turn: supports and motions that are the same at both ends"));
+    EXPECT_THAT(faults({{"sets.ends", "{body: beam, surface: x_min}"},
+                        {"stages.load.displacement", "{ends: {x: 0 m, y: 1 mm, z: 0 m}}"}}),
+                HasSubstr("cyclic.turn: supports and motions that are the same at both ends"));
+    EXPECT_EQ(faults({{"sets.ends", "{body: beam, surface: x_min}"},
+                      {"supports.ends", "{cylinder: {point: [0 m, 0 m, 0 m], axis: [0, 0, 1]}}"},
+                      {"stages.load.displacement", "{ends: {x: 1 mm, y: 1 mm, z: 0 m}}"}}),
+              "");
+    EXPECT_THAT(faults({{"sets.ends", "{body: beam, surface: x_min}"},
+                        {"supports.ends", "{cylinder: {point: [0 m, 0 m, 0 m], axis: [0, 0, 1]}}"},
+                        {"stages.next", "{steps: 1, displacement: {ends: {x: 1 mm, y: 1 mm, z: 0 m}}}"}}),
+                HasSubstr("in stage 'load'"));
     EXPECT_THAT(faults({{"stages.load.displacement", "{upper: {x: 1 mm}}"}}),
                 HasSubstr("nodes that no stage drives, or in all directions"));
     EXPECT_THAT(

@@ -27,8 +27,8 @@ public:
     void hold(const Vec3& point, const Vec3& direction);
     /// Holds the body against turning about an axis.
     void hold_turning(const Vec3& axis);
-    /// Holds what moves the ends of a sector otherwise than each other.
-    void hold(const CyclicSymmetry& ring, const std::vector<Vec3>& x);
+    /// Holds what moves the ends of a sector otherwise than each other: all but what is along the axis and about it.
+    void hold(const CyclicSymmetry& ring);
     /// What is held at the nodes of a rigid body, if the body is one.
     void hold(const RigidBody& body, const linear::NodeConstraint& constraint, const std::vector<Vec3>& x);
     /// Number of rigid motions that are not held, 0 to 6.

@@ -98,6 +98,13 @@ public:
             else
                 holds_[rigid != nullptr ? static_cast<std::size_t>(rigid->body) : body_of(c.node)]
                     .supports.emplace_back(plan_.model.X[static_cast<std::size_t>(c.node)], c.direction);
+        for (const model::CyclicSymmetry& ring : plan_.model.cyclic) { // as RigidHold::hold() of a ring
+            const Vec3 one = ring.axis.unitOrthogonal();
+            for (const Vec3& across : {one, Vec3(ring.axis.cross(one))}) {
+                holds_[static_cast<std::size_t>(ring.body)].supports.emplace_back(ring.point, across);
+                holds_[static_cast<std::size_t>(ring.body)].turning.push_back(across);
+            }
+        }
         for (const model::ContactEvaluation& evaluation : contact_) add(evaluation);
         share_among_tied();
         std::vector<FreeMotion> found;

@@ -71,6 +71,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     add_skins(draft);
     throw_faults(draft);
     add_stages(draft);
+    check_sectors(draft);
     add_pairs(draft);
     throw_faults(draft);
     add_changes_of_pairs(draft);

@@ -19,8 +19,9 @@ struct Draft {
     Plan plan{};
     std::vector<std::vector<mesh::Facet>> exterior{}; ///< by body
     std::vector<Fault> faults{};
-    std::map<std::string, model::Set> skins{}; ///< sets of pairs whose faces have midside nodes, with the skin's nodes
-    std::map<Index, model::Set> outer_skins{}; ///< by body: outer surfaces likewise, for general contact
+    std::map<std::string, model::Set> skins{};  ///< sets of pairs whose faces have midside nodes, with the skin's nodes
+    std::vector<model::CyclicSymmetry> rings{}; ///< with all nodes of their ends, whatever leads them
+    std::map<Index, model::Set> outer_skins{};  ///< by body: outer surfaces likewise, for general contact
 
     [[nodiscard]] Index body_index(const std::string& name) const;
     /// Of the name of a rigid body or a coupling.
@@ -51,6 +52,8 @@ void add_couplings(Draft& draft);
 void add_ties(Draft& draft);
 /// Sectors that stand for rings, with the nodes at one end moved onto the turned places of their likes at the other.
 void add_cyclic_symmetry(Draft& draft);
+/// Whether supports and motions are alike at both ends of every sector, in every stage.
+void check_sectors(Draft& draft);
 /// Directions that x, y and z mean for a node, in columns. @param support  of the set that names them; null: none
 [[nodiscard]] Mat3 axes_at(const Draft& draft, const scene::Support* support, Index node);
 /// Projectors on the directions that supports leave free, of nodes that have any.

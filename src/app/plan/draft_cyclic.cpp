@@ -246,6 +246,7 @@ void add_cyclic_symmetry(Draft& draft) {
                 fault("cyclic." + name + key, expected,
                       fmt::format("a node at [{:.6g}, {:.6g}, {:.6g}] m {}", X[0], X[1], X[2], what)));
         };
+        draft.rings.push_back(ring);
         std::set<Index> ends;
         for (const model::LikeNode& one : ring.nodes) ends.insert(one.node);
         std::erase_if(ring.nodes, [&](const model::LikeNode& one) { // what leads it in all directions is enough
@@ -299,6 +300,66 @@ void add_cyclic_symmetry(Draft& draft) {
         }
         for (const std::string& what : mesh::faults(body.mesh))
             draft.faults.push_back(fault("cyclic." + ring.name + ".distance", "a smaller one: elements fold", what));
+    }
+}
+
+namespace {
+
+using Held = std::vector<const linear::NodeConstraint*>;
+
+/// Whether constraints of a node leave it no direction.
+bool hold_all(const Held& held) {
+    Mat3 P = Mat3::Identity();
+    for (const linear::NodeConstraint* c : held) P -= P * c->direction * c->direction.transpose();
+    return P.norm() < near_like;
+}
+
+/// Whether a node's constraints prescribe a displacement along a direction, and the same as a constraint does.
+bool prescribe(const Held& held, const Vec3& along, const linear::NodeConstraint& as) {
+    constexpr double round_off = 1e-9;
+    Mat3 P = Mat3::Identity();
+    std::map<Index, double> by_course;
+    by_course[as.course] = -as.target;
+    double largest = std::abs(as.target);
+    for (const linear::NodeConstraint* c : held) { // parallel or orthogonal to one another
+        if ((P * c->direction).norm() < round_off) continue;
+        const double share = c->direction.dot(along);
+        P -= c->direction * c->direction.transpose();
+        by_course[c->course] += share * c->target;
+        largest = std::max(largest, std::abs(c->target));
+    }
+    return (P * along).norm() < near_like &&
+           std::ranges::all_of(by_course, [&](const auto& one) { return std::abs(one.second) <= round_off * largest; });
+}
+
+} // namespace
+
+void check_sectors(Draft& draft) {
+    const model::Model& m = draft.plan.model;
+    std::set<Index> follow; // what need not be held to be where it belongs
+    for (const model::CyclicSymmetry& ring : m.cyclic)
+        for (const model::LikeNode& one : ring.nodes) follow.insert(one.node);
+    for (const model::Tie& tie : m.ties)
+        for (const model::TiedNode& one : tie.nodes) follow.insert(one.node);
+    for (const time::Stage& stage : draft.plan.stages) {
+        std::map<Index, Held> at;
+        for (const linear::NodeConstraint& c : stage.constraints) at[c.node].push_back(&c);
+        for (const model::CyclicSymmetry& ring : draft.rings)
+            for (const model::LikeNode& one : ring.nodes) {
+                const Held &slave = at[one.node], &like = at[one.like];
+                const bool alike = std::ranges::all_of(slave, [&](const linear::NodeConstraint* c) {
+                    return prescribe(like, ring.turn.transpose() * c->direction, *c);
+                });
+                if (alike && (follow.contains(one.node) || hold_all(slave))) continue;
+                const Vec3 X = m.X[static_cast<std::size_t>(one.node)] + m.origin;
+                draft.faults.push_back(
+                    fault("cyclic." + ring.name,
+                          "supports and motions that are the same at both ends, turned, in every stage",
+                          fmt::format("others at [{:.6g}, {:.6g}, {:.6g}] m than at its like in stage '{}': name both "
+                                      "ends in one set, with cylinder where directions are not along the axis",
+                                      X[0], X[1], X[2], stage.name)));
+                return;
+            }
     }
 }
 

@@ -192,7 +192,20 @@ void check_releases(Draft& draft) {
     std::vector<Index> bound = model::dependent_nodes(m);
     for (const model::SkinNode& one : m.skin) bound.push_back(one.host);
     std::ranges::sort(bound);
-    for (const auto& [name, stage] : draft.scene.stages)
+    Driving held; // so far
+    for (const auto& [name, stage] : draft.scene.stages) {
+        for (const auto& [set, components] : stage.release)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const scene::Support* support = scene::find(draft.scene.supports, set);
+                const bool driven = held.displacement.contains(set) && held.displacement[set][k],
+                           fixed = support != nullptr && support->fixed[k] && !held.released[set][k];
+                if (components[k] && !driven && !fixed)
+                    draft.faults.push_back(fault("stages." + name + ".release." + set,
+                                                 "components that its support or the displacement of an earlier stage "
+                                                 "holds",
+                                                 std::string(1, "xyz"[k]) + ", which is free"));
+            }
+        held.update(stage);
         for (const auto& [set, components] : stage.release)
             for (const Index node : draft.set(set).nodes)
                 if (std::ranges::binary_search(bound, node)) {
@@ -203,6 +216,7 @@ void check_releases(Draft& draft) {
                               fmt::format("a node at [{:.6g}, {:.6g}, {:.6g}] m that does", X[0], X[1], X[2])));
                     break;
                 }
+    }
 }
 } // namespace
 

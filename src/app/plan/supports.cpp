@@ -19,7 +19,7 @@ std::vector<std::string> unsupported_bodies(const Plan& plan) {
                 for (const linear::NodeConstraint& c : plan.stages.front().constraints)
                     hold.hold(rigid, c, plan.model.X);
         for (const model::CyclicSymmetry& ring : plan.model.cyclic)
-            if (static_cast<std::size_t>(ring.body) == b) hold.hold(ring, plan.model.X);
+            if (static_cast<std::size_t>(ring.body) == b) hold.hold(ring);
         const bool held = hold.free() == 0;
         bool touched = plan.model.general != nullptr;
         for (const auto& pair : plan.model.pairs)

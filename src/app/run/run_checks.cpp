@@ -41,7 +41,7 @@ void RunChecks::add_crossing(const time::AcceptedStep& step) {
         const model::ContactPair& pair = evaluation.pair();
         for (Index j = 0; j < pair.size() && crossed_ < 0; ++j) {
             const contact::FacetHit& hit = evaluation.hit(j);
-            if (hit.facet < 0) continue;
+            if (hit.facet < 0 || evaluation.point(j).found) continue;
             const double size = pair.surface().facet_size(hit.facet);
             if (!(hit.beyond > round_off * size) || hit.distance > size) continue;
             const auto on_end = std::ranges::count_if(pair.surface().facet_vertices(hit.facet), [&](Index v) {

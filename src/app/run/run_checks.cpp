@@ -32,7 +32,7 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
 }
 
 void RunChecks::add_crossing(const time::AcceptedStep& step) {
-    constexpr double round_off = 1e-6; // of the facet size
+    constexpr double least = 0.01; // of the facet size: ends that deform leave chords by less
     std::vector<char> ends(model_.X.size(), 0);
     for (const model::CyclicSymmetry& ring : model_.cyclic)
         for (const model::LikeNode& one : ring.nodes)
@@ -41,9 +41,9 @@ void RunChecks::add_crossing(const time::AcceptedStep& step) {
         const model::ContactPair& pair = evaluation.pair();
         for (Index j = 0; j < pair.size() && crossed_ < 0; ++j) {
             const contact::FacetHit& hit = evaluation.hit(j);
-            if (hit.facet < 0 || evaluation.point(j).found) continue;
+            if (hit.facet < 0) continue;
             const double size = pair.surface().facet_size(hit.facet);
-            if (!(hit.beyond > round_off * size) || hit.distance > size) continue;
+            if (!(hit.beyond > least * size) || hit.distance > size) continue;
             const auto on_end = std::ranges::count_if(pair.surface().facet_vertices(hit.facet), [&](Index v) {
                 return ends[static_cast<std::size_t>(model::material_node(model_, pair.node(v)))] != 0;
             });

@@ -1,17 +1,13 @@
 #include "deck/model.hpp"
 
+#include "deck/contact_cards.hpp"
+#include "deck/material_cards.hpp"
+
 #include <algorithm>
 #include <set>
 
 namespace osculate::deck {
 namespace {
-
-using mesh::DeckCard;
-using mesh::DeckLine;
-using mesh::in_capitals;
-using mesh::split_fields;
-using mesh::to_integer;
-using mesh::to_number;
 
 constexpr int components = 3;
 
@@ -67,44 +63,17 @@ const std::map<std::string, Reason> reasons{
     {"RESTART", {"runs begin at the beginning", false}},
 };
 
-/// Without blanks, as decks are free to write `SURFACE TO SURFACE`.
-std::string without_blanks(std::string text) {
-    std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
-    return text;
-}
-
-class Reader {
+class Reader : CardReader {
 public:
-    explicit Reader(const mesh::Deck& deck) : deck_(deck) { model_.mesh = mesh::read_deck_mesh(deck); }
+    Reader(const mesh::Deck& deck, DeckModel& model)
+        : CardReader(deck, model), materials_(deck, model), contact_(deck, model) {}
 
-    DeckModel read() {
+    void read() {
         for (const DeckCard& card : deck_.cards) take(card);
         if (step_ != nullptr && !step_taken_) drop_step("it has no analysis");
-        return std::move(model_);
     }
 
 private:
-    void lose(const std::string& place, const std::string& what, const std::string& why) {
-        model_.lose(place, what, why);
-    }
-    void lose(const DeckCard& card, const std::string& why) { lose(deck_.place(card), "*" + card.keyword, why); }
-    void note(const DeckCard& card, const std::string& why) { model_.note(deck_.place(card), "*" + card.keyword, why); }
-
-    [[nodiscard]] static std::string capitals_of(const DeckCard& card, const char* name) {
-        const std::string* value = card.parameter(name);
-        return value == nullptr ? "" : in_capitals(*value);
-    }
-
-    /// Numbers of a data line; 0 for fields that are left empty or missing.
-    std::vector<double> numbers(const DeckLine& line, std::size_t least) {
-        split_fields(line.text, fields_);
-        std::vector<double> values(std::max(least, fields_.size()), 0.0);
-        for (std::size_t f = 0; f < fields_.size(); ++f)
-            if (!fields_[f].empty() && !to_number(fields_[f], values[f]))
-                lose(deck_.place(line), std::string(line.text.substr(0, 60)), "no number");
-        return values;
-    }
-
     void take(const DeckCard& card) {
         const std::string word = without_blanks(card.keyword);
         if (passing_over_) {
@@ -115,42 +84,19 @@ private:
         if (word == "ENDSTEP") {
             if (step_ != nullptr && !step_taken_) drop_step("it has no analysis");
             step_ = nullptr;
-            changed_.clear();
+            contact_.end_step();
             return;
         }
         if (read_elsewhere.contains(word)) {
             check_element_type(card);
             return;
         }
-        if (word == "MATERIAL") return begin_material(card);
-        if (word == "ELASTIC" || word == "DENSITY" || word == "HYPERELASTIC") return material_data(card);
-        if (word == "PLASTIC") return hardening(card);
-        if (word == "EXPANSION") return expansion(card);
-        if (word == "DAMPING" && step_ == nullptr) return damping(card);
-        if (word == "ORIENTATION") return orientation(card);
+        if (materials_.take(card, word, step_ != nullptr) || contact_.take(card, word, step_)) return;
         if (word == "TEMPERATURE" && step_ != nullptr) return temperatures(card, step_->temperatures);
         if (word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE")
             return temperatures(card, model_.initial_temperatures);
         if (word == "SOLIDSECTION") return section(card);
-        if (word == "SURFACEINTERACTION") {
-            interaction_ = capitals_of(card, "NAME");
-            model_.interactions.try_emplace(interaction_);
-            return;
-        }
-        if (word == "FRICTION") return friction(card);
-        if (word == "CONTACTPAIR") return pair(card);
-        if (word == "TIE" && given(card, "CYCLICSYMMETRY") == nullptr && given(card, "MULTISTAGE") == nullptr &&
-            given(card, "FLUIDPERIODIC") == nullptr && given(card, "FLUIDCYCLIC") == nullptr)
-            return tie(card);
-        if (word == "TIE" && given(card, "CYCLICSYMMETRY") != nullptr) return ring(card);
-        if (word == "CYCLICSYMMETRYMODEL") return ring_model(card);
         if (word == "TRANSFORM" && step_ == nullptr) return transform(card);
-        if (word == "CHANGEFRICTION" && step_ != nullptr) {
-            changed_ = capitals_of(card, "INTERACTION");
-            return;
-        }
-        if (word == "MODELCHANGE" && step_ != nullptr && without_blanks(capitals_of(card, "TYPE")) == "CONTACTPAIR")
-            return model_change(card);
         if (word == "AMPLITUDE") return amplitude(card);
         if (word == "BOUNDARY") return boundary(card);
         if (word == "CLOAD" && step_ != nullptr) return forces(card);
@@ -158,7 +104,6 @@ private:
         if ((word == "STATIC" || word == "DYNAMIC") && step_ != nullptr) return analysis(card);
         if (step_ != nullptr && !step_taken_ && is_analysis(word))
             return drop_step("*" + card.keyword + " has no counterpart: statics and implicit dynamics do");
-        if (word == "SURFACEBEHAVIOR") return surface_behavior(card);
         const auto known = reasons.find(word);
         const Reason reason = known != reasons.end() ? known->second : Reason{"it has no counterpart", true};
         model_.left_out.push_back({deck_.place(card), "*" + card.keyword, reason.why, reason.lost});
@@ -189,48 +134,6 @@ private:
                 "hexahedra are integrated in full; incompatible_modes is used instead, which does not lock either");
     }
 
-    void begin_material(const DeckCard& card) {
-        const std::string* name = card.parameter("NAME");
-        material_ = name == nullptr ? "" : in_capitals(*name);
-        DeckMaterial& m = model_.materials[material_];
-        m.name = name == nullptr ? "" : *name;
-        m.place = deck_.place(card);
-    }
-
-    void damping(const DeckCard& card) {
-        const auto found = model_.materials.find(material_);
-        if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
-        for (const char* name : {"STRUCTURAL", "COMPOSITE"})
-            if (given(card, name) != nullptr) return lose(card, std::string(name) + " has no counterpart");
-        const char* const names[] = {"ALPHA", "BETA"};
-        for (std::size_t k = 0; k < 2; ++k)
-            if (const std::string* value = given(card, names[k]);
-                value != nullptr && (!to_number(*value, found->second.damping[k]) || found->second.damping[k] < 0)) {
-                found->second.damping[k] = 0;
-                lose(card, std::string(names[k]) + " is no number, or negative");
-            }
-    }
-
-    void expansion(const DeckCard& card) {
-        const auto found = model_.materials.find(material_);
-        if (found == model_.materials.end() || card.first == card.last) return lose(card, "no material, or no data");
-        const std::string type = capitals_of(card, "TYPE");
-        if (!type.empty() && type != "ISO") return lose(card, "only isotropic expansion has a counterpart");
-        DeckMaterial& m = found->second;
-        if (const std::string* zero = card.parameter("ZERO"); zero != nullptr && !to_number(*zero, m.zero))
-            return lose(card, "ZERO is no number");
-        m.expansion = numbers(*deck_.begin(card), 1)[0];
-        if (card.last - card.first == 1) return;
-        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
-            const std::vector<double> v = numbers(*line, 2);
-            if (!m.expansions.empty() && v[1] <= m.expansions.back()[0]) return lose(card, "temperatures must ascend");
-            m.expansions.push_back({v[1], v[0]});
-        }
-        for (const auto& [t, a] : m.expansions) // what the scene has, other expansions are scaled to it
-            if (m.expansion == 0) m.expansion = a;
-        note(card, "temperatures are scaled so that thermal strains at the ends of steps are those of the table");
-    }
-
     void temperatures(const DeckCard& card, std::vector<DeckTemperature>& list) {
         for (const char* unknown : {"AMPLITUDE", "USER", "FILE", "BSTEP"})
             if (given(card, unknown) != nullptr) return lose(card, std::string(unknown) + " has no counterpart");
@@ -245,87 +148,6 @@ private:
                 lose(t.place, shown, "not understood");
             else
                 list.push_back(std::move(t));
-        }
-    }
-
-    void hardening(const DeckCard& card) {
-        const auto found = model_.materials.find(material_);
-        if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
-        const std::string kind = capitals_of(card, "HARDENING");
-        if (!kind.empty() && kind != "ISOTROPIC") return lose(card, "only isotropic hardening has a counterpart");
-        std::vector<std::array<double, 2>> rows;
-        std::optional<double> temperature;
-        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
-            const std::vector<double> v = numbers(*line, 2);
-            if (v.size() > 2 && v[2] != temperature.value_or(v[2])) {
-                return lose(card, "yield stresses that depend on temperature have no counterpart");
-            }
-            if (v.size() > 2) temperature = v[2];
-            if (!(v[0] > 0) || v[1] < 0 || (rows.empty() ? v[1] != 0 : v[1] <= rows.back()[0]))
-                return lose(card, "yield stresses over plastic strains that ascend from 0 have a counterpart");
-            rows.push_back({v[1], v[0]});
-        }
-        if (rows.empty()) return lose(card, "it has no data");
-        found->second.hardening = std::move(rows);
-    }
-
-    void orthotropic(const DeckCard& card, bool constants, DeckMaterial& m) {
-        std::vector<double> v;
-        for (auto line = deck_.begin(card); line != deck_.end(card) && v.size() < 9; ++line)
-            for (const double value : numbers(*line, 1))
-                if (v.size() < 9) v.push_back(value);
-        if (v.size() < 9 || card.last - card.first > 2) return lose(card, "nine constants have a counterpart");
-        if (constants) {
-            m.orthotropic = {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
-            return;
-        }
-        Mat3 D; // normal stresses over strains
-        D << v[0], v[1], v[3], v[1], v[2], v[4], v[3], v[4], v[5];
-        const Mat3 C = D.inverse();
-        if (!C.allFinite() || !(C.diagonal().minCoeff() > 0) || !(std::min({v[6], v[7], v[8]}) > 0))
-            return lose(card, "some strains store no energy");
-        m.orthotropic = {
-            1 / C(0, 0), 1 / C(1, 1), 1 / C(2, 2), -C(1, 0) / C(0, 0), -C(2, 0) / C(0, 0), -C(2, 1) / C(1, 1),
-            v[6],        v[7],        v[8]};
-    }
-
-    void orientation(const DeckCard& card) {
-        const std::string system = capitals_of(card, "SYSTEM");
-        if (!system.empty() && system != "RECTANGULAR") return lose(card, "only rectangular axes have a counterpart");
-        if (card.last - card.first != 1) return lose(card, "only two points have a counterpart");
-        const std::vector<double> v = numbers(*deck_.begin(card), 6);
-        const std::array<Vec3, 2> axes{Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
-        if (!(axes[0].cross(axes[1]).norm() > 0)) return lose(card, "its points are on one line");
-        model_.orientations[capitals_of(card, "NAME")] = axes;
-    }
-
-    void material_data(const DeckCard& card) {
-        const auto found = model_.materials.find(material_);
-        if (found == model_.materials.end()) return lose(card, "no *MATERIAL stands before it");
-        if (card.first == card.last) return lose(card, "it has no data");
-        if (card.last - card.first > 1 && card.keyword != "ELASTIC")
-            note(card, "only its first line counts: nothing depends on temperature");
-        const std::vector<double> v = numbers(*deck_.begin(card), 2);
-        if (card.keyword == "DENSITY") {
-            found->second.density = v[0];
-        } else if (card.keyword == "ELASTIC") {
-            const std::string type = capitals_of(card, "TYPE");
-            if (type == "ORTHO" || type == "ORTHOTROPIC" || type == "ENGINEERINGCONSTANTS" ||
-                type == "ENGINEERING CONSTANTS")
-                return orthotropic(card, type.starts_with("ENG"), found->second);
-            if (!type.empty() && type != "ISO" && type != "ISOTROPIC")
-                return lose(card, "materials are isotropic or orthotropic");
-            found->second.elastic = {v[0], v[1]};
-            for (auto line = deck_.begin(card); card.last - card.first > 1 && line != deck_.end(card); ++line) {
-                const std::vector<double> row = numbers(*line, 3);
-                auto& table = found->second.by_temperature;
-                if (!table.empty() && row[2] <= table.back()[0]) return lose(card, "temperatures must ascend");
-                table.push_back({row[2], row[0], row[1]});
-            }
-        } else {
-            if (card.parameter("NEOHOOKE") == nullptr) return lose(card, "only NEO HOOKE has a counterpart");
-            found->second.neo_hookean = {v[0], v[1]};
-            note(card, "neo_hookean has the same moduli at small strain; at large strain its volumetric part differs");
         }
     }
 
@@ -344,111 +166,6 @@ private:
         model_.sections.push_back(std::move(s));
     }
 
-    std::vector<Index> cells_of(std::string_view name) const {
-        long long id = 0;
-        if (to_integer(name, id)) {
-            const Index cell = model_.mesh.cell(id);
-            return cell < 0 ? std::vector<Index>{} : std::vector<Index>{cell};
-        }
-        const auto at = model_.mesh.element_set_names.find(in_capitals(name));
-        return at == model_.mesh.element_set_names.end() ? std::vector<Index>{} : model_.mesh.raw.parts.at(at->second);
-    }
-
-    std::vector<Index> points_of(std::string_view name) const {
-        long long id = 0;
-        if (to_integer(name, id)) {
-            const Index point = model_.mesh.point(id);
-            return point < 0 ? std::vector<Index>{} : std::vector<Index>{point};
-        }
-        const auto at = model_.mesh.node_set_names.find(in_capitals(name));
-        return at == model_.mesh.node_set_names.end() ? std::vector<Index>{} : model_.mesh.raw.node_sets.at(at->second);
-    }
-
-    void friction(const DeckCard& card) {
-        if (step_ != nullptr) {
-            if (changed_.empty()) return lose(card, "no *CHANGE FRICTION stands before it");
-            if (card.first == card.last) return lose(card, "no coefficient");
-            const std::vector<double> v = numbers(*deck_.begin(card), 1);
-            const auto law = model_.interactions.find(changed_);
-            if (law == model_.interactions.end()) return lose(card, "no *SURFACE INTERACTION is called " + changed_);
-            if (v[0] < 0) return lose(card, "a negative coefficient");
-            if (v.size() > 1 && v[1] > 0 && law->second.stick == 0) law->second.stick = v[1];
-            if (v.size() > 1 && v[1] > 0 && v[1] != law->second.stick)
-                lose(card, "the stick slope stays what it is before the steps");
-            step_->friction[changed_] = v[0];
-            return;
-        }
-        if (card.first == card.last || !model_.interactions.contains(interaction_))
-            return lose(card, "no coefficient, or no *SURFACE INTERACTION before it");
-        const std::vector<double> v = numbers(*deck_.begin(card), 1);
-        if (v[0] < 0) return lose(card, "a negative coefficient");
-        for (const char* name : {"ROUGH", "TAUMAX"})
-            if (card.parameter(name) != nullptr) lose(card, std::string(name) + " has no counterpart");
-        model_.interactions[interaction_].friction = v[0];
-        if (v.size() > 1 && v[1] > 0) model_.interactions[interaction_].stick = v[1];
-    }
-
-    void pair(const DeckCard& card) {
-        if (step_ != nullptr) return lose(card, "pairs belong to all stages");
-        DeckPair p;
-        p.interaction = capitals_of(card, "INTERACTION");
-        const std::string type = without_blanks(capitals_of(card, "TYPE"));
-        p.mortar = type == "SURFACETOSURFACE" || type == "MORTAR" || type == "LINMORTAR" || type == "PGLINMORTAR";
-        if (!p.mortar && !type.empty() && type != "NODETOSURFACE" && type != "MASSLESS")
-            lose(card, "TYPE=" + type + " is not known: node to surface is used instead");
-        p.place = deck_.place(card);
-        const std::string* adjust = given(card, "ADJUST");
-        const bool by_nodes = adjust != nullptr && !to_number(*adjust, p.adjust);
-        if (by_nodes || p.adjust < 0) p.adjust = 0;
-        if (adjust != nullptr && !by_nodes && p.adjust == 0 && *adjust != "0")
-            note(card, "ADJUST=" + *adjust + ": nothing is moved");
-        if (given(card, "SMALLSLIDING") != nullptr) note(card, "SMALLSLIDING: nodes slide as far as they do");
-        p.tied = card.parameter("TIED") != nullptr;
-        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
-            split_fields(line->text, fields_);
-            if (fields_.size() < 2) {
-                lose(deck_.place(*line), "a pair of one surface", "a body in contact with itself has no counterpart");
-                continue;
-            }
-            p.slave = in_capitals(fields_[0]);
-            p.master = in_capitals(fields_[1]);
-            if (by_nodes) p.adjust = adjust_all(card, p.slave, *adjust);
-            model_.pairs.push_back(p);
-        }
-    }
-
-    /// A distance that moves all slave nodes, where a set of nodes to move has them all.
-    double adjust_all(const DeckCard& card, const std::string& slave, const std::string& set) {
-        std::vector<Index> moved = points_of(set), own;
-        std::ranges::sort(moved);
-        const auto at = model_.mesh.surface_names.find(slave);
-        if (at != model_.mesh.surface_names.end() && model_.mesh.raw.surfaces.contains(at->second))
-            for (const mesh::RawFace& face : model_.mesh.raw.surfaces.at(at->second))
-                own.insert(own.end(), face.nodes.begin(), face.nodes.begin() + face.count);
-        else
-            own = points_of(slave);
-        if (own.empty() || !std::ranges::all_of(own, [&](Index p) { return std::ranges::binary_search(moved, p); })) {
-            lose(card, "ADJUST=" + set + ": only a distance, or a set with all slave nodes, has a counterpart");
-            return 0;
-        }
-        Eigen::AlignedBox3d box;
-        for (const Vec3& x : model_.mesh.raw.points) box.extend(x);
-        return box.diagonal().norm();
-    }
-
-    void model_change(const DeckCard& card) {
-        const bool adds = card.parameter("ADD") != nullptr;
-        if (adds == (card.parameter("REMOVE") != nullptr)) return lose(card, "ADD or REMOVE is expected");
-        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
-            split_fields(line->text, fields_);
-            if (fields_.size() < 2) {
-                lose(deck_.place(*line), "*MODEL CHANGE", "a slave and a master are expected");
-                continue;
-            }
-            step_->pairs.emplace_back(in_capitals(fields_[0]), in_capitals(fields_[1]), adds);
-        }
-    }
-
     void transform(const DeckCard& card) {
         const std::string* nodes = card.parameter("NSET");
         const std::vector<Index> points = nodes == nullptr ? std::vector<Index>{} : points_of(*nodes);
@@ -462,71 +179,6 @@ private:
             return lose(card, "its points are on one line, or the same");
         for (const Index p : points) model_.transform_of[p] = model_.transforms.size();
         model_.transforms.push_back(axes);
-    }
-
-    /// The ends of a sector; how many there are says *CYCLIC SYMMETRY MODEL.
-    void ring(const DeckCard& card) {
-        DeckRing one;
-        one.name = capitals_of(card, "NAME");
-        one.place = deck_.place(card);
-        if (const std::string* by = given(card, "POSITIONTOLERANCE"); by != nullptr && !to_number(*by, one.tolerance))
-            lose(card, "POSITION TOLERANCE is no number");
-        if (card.first == card.last) return lose(card, "no sets");
-        split_fields(deck_.begin(card)->text, fields_);
-        if (fields_.size() < 2) return lose(card, "two sets are expected");
-        one.slave = in_capitals(fields_[0]);
-        one.master = in_capitals(fields_[1]);
-        model_.rings.push_back(one);
-    }
-
-    void ring_model(const DeckCard& card) {
-        const std::string name = capitals_of(card, "TIE");
-        const auto at = std::ranges::find(model_.rings, name, &DeckRing::name);
-        if (at == model_.rings.end() || card.first == card.last) return lose(card, "no tie of that name, or no axis");
-        double sectors = 0;
-        if (const std::string* n = given(card, "N"); n == nullptr || !to_number(*n, sectors) || !(sectors >= 2))
-            return lose(card, "N, the number of sectors, is expected");
-        const std::vector<double> v = numbers(*deck_.begin(card), 6);
-        at->sectors = static_cast<int>(sectors);
-        at->axis = {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
-        if (!((at->axis[1] - at->axis[0]).norm() > 0)) lose(card, "two points on the axis are expected");
-    }
-
-    void tie(const DeckCard& card) {
-        DeckPair p;
-        p.tied = true;
-        p.place = deck_.place(card);
-        double tolerance = 0;
-        if (capitals_of(card, "ADJUST") == "NO") note(card, "ADJUST=NO: tied nodes are moved onto the other surface");
-        if (const std::string* by = given(card, "POSITIONTOLERANCE"); by != nullptr && to_number(*by, tolerance))
-            p.tolerance = tolerance;
-        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
-            split_fields(line->text, fields_);
-            if (fields_.size() < 2) {
-                lose(deck_.place(*line), "a tie of one surface", "two surfaces are tied");
-                continue;
-            }
-            p.slave = in_capitals(fields_[0]);
-            p.master = in_capitals(fields_[1]);
-            model_.ties.push_back(p);
-        }
-    }
-
-    /// Contact is linear or exact, or surfaces are tied; what keeps them together, but lets them slide, is another matter.
-    void surface_behavior(const DeckCard& card) {
-        const std::string law = without_blanks(capitals_of(card, "PRESSURE-OVERCLOSURE"));
-        if (law == "TIED" && model_.interactions.contains(interaction_)) {
-            model_.interactions[interaction_].tied = true;
-            return note(card, "the surfaces are tied exactly");
-        }
-        if (law == "TIED" || card.parameter("NOSEPARATION") != nullptr) return lose(card, "surfaces part and slide");
-        if (law == "LINEAR" && card.first != card.last && model_.interactions.contains(interaction_)) {
-            const std::vector<double> v = numbers(*deck_.begin(card), 1);
-            if (!(v[0] > 0)) return lose(card, "a slope that is not positive");
-            model_.interactions[interaction_].stiffness = v[0];
-            return;
-        }
-        if (law != "HARD") note(card, "contact is exact: no penetration, no law of overclosure");
     }
 
     void amplitude(const DeckCard& card) {
@@ -545,13 +197,6 @@ private:
             if (!(rows[k][0] > rows[k - 1][0])) return note(card, "its times do not ascend");
         if (rows.empty()) return note(card, "it has no rows");
         model_.amplitudes[name] = std::move(rows);
-    }
-
-    /// Value of a parameter whose name decks write with blanks or without. @param name  without
-    static const std::string* given(const DeckCard& card, std::string_view name) {
-        for (const auto& [key, value] : card.parameters)
-            if (without_blanks(key) == name) return &value;
-        return nullptr;
     }
 
     bool amplitude_of(const DeckCard& card, std::string& name) {
@@ -756,15 +401,12 @@ private:
         step_->duration = v[1] > 0 ? v[1] : step_->increment;
     }
 
-    const mesh::Deck& deck_;
-    DeckModel model_;
-    std::string material_, interaction_; ///< the last ones
-    std::string changed_;                ///< interaction whose friction the step changes
+    MaterialCards materials_;
+    ContactCards contact_;
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
     bool step_taken_ = false, passing_over_ = false;
     bool nlgeom_ = false; ///< of the last step that said so
-    std::vector<std::string_view> fields_;
 };
 
 } // namespace
@@ -798,7 +440,10 @@ Mat3 DeckModel::axes_of(Index point) const {
 }
 
 DeckModel read_deck_model(const mesh::Deck& deck) {
-    return Reader(deck).read();
+    DeckModel model;
+    model.mesh = mesh::read_deck_mesh(deck);
+    Reader(deck, model).read();
+    return model;
 }
 
 } // namespace osculate::deck

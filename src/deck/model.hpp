@@ -80,7 +80,7 @@ struct DeckPair {
 /// Axes of points that are not those of the deck.
 struct DeckTransform {
     bool cylinder =
-        false; ///< radial, tangential and axial about the line through two points; otherwise x and y, not made orthonormal
+        false; ///< radial, tangential, axial about the line through two points; else x, and one of its plane
     std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()};
 };
 

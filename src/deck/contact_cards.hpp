@@ -1,0 +1,33 @@
+#pragma once
+/// Contact, ties and sectors of a deck, and what steps change of them.
+
+#include "deck/card_reader.hpp"
+
+namespace osculate::deck {
+
+class ContactCards : public CardReader {
+public:
+    using CardReader::CardReader;
+    /// False: the card is none of these. @param word  its keyword without blanks  @param step  that it stands in, or null
+    bool take(const DeckCard& card, const std::string& word, DeckStep* step);
+    void end_step() { changed_.clear(); }
+
+private:
+    void friction(const DeckCard& card);
+    void pair(const DeckCard& card);
+    /// A distance that moves all slave nodes, where a set of nodes to move has them all.
+    double adjust_all(const DeckCard& card, const std::string& slave, const std::string& set);
+    void model_change(const DeckCard& card);
+    /// The ends of a sector; how many there are says *CYCLIC SYMMETRY MODEL.
+    void ring(const DeckCard& card);
+    void ring_model(const DeckCard& card);
+    void tie(const DeckCard& card);
+    /// Contact is linear or exact, or surfaces are tied; what keeps them together, but lets them slide, is another matter.
+    void surface_behavior(const DeckCard& card);
+
+    DeckStep* step_ = nullptr; ///< the one that the card stands in; null: before all
+    std::string interaction_;  ///< the last one
+    std::string changed_;      ///< whose friction the step changes
+};
+
+} // namespace osculate::deck

@@ -266,6 +266,23 @@ TEST(Cyclic, RefusesWhatItWouldGetWrong) {
                 HasSubstr("supports.right.cylinder: nodes apart from the axis"));
 }
 
+/// The ends hold all rigid motions but that along the axis and the turn about it, of which one node can hold the latter.
+TEST(Cyclic, EndsHoldWhatIsNotAlikeInAllSectors) {
+    const auto faults = [](const Overrides& overrides) {
+        try {
+            (void)run("half.yaml", half, overrides);
+        } catch (const SceneError& error) {
+            return error.faults().front().found;
+        }
+        return std::string();
+    };
+    Overrides held{{"supports", "{floor: {fix: [z]}}"}, {"stages.load.pressure", "{right: 1 kPa}"}};
+    EXPECT_THAT(faults(held), testing::HasSubstr("free rigid-body motions"));
+    held.push_back({"sets.pin", "{body: beam, box: {min: [1.9 m, 0.9 m, -0.1 m], max: [2.1 m, 1.1 m, 0.1 m]}}"});
+    held[0].value = "{floor: {fix: [z]}, pin: {fix: [y]}}";
+    EXPECT_EQ(faults(held), "");
+}
+
 /// A node at (r, phi, z) that is driven by u_r, u_phi, u_z of a cylinder's axes goes there, and what holds it pulls along them.
 TEST(Cylinder, AxesOfASupportAreRadialTangentialAndAxial) {
     const std::string tube = R"(

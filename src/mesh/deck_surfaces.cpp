@@ -22,7 +22,8 @@ void DeckSurfaces::read(const DeckCard& card) {
 
 void DeckSurfaces::read_faces(const DeckCard& card, const std::string& name) {
     const auto [at, fresh] = mesh_.surface_names.try_emplace(in_capitals(name), name);
-    std::vector<RawFace>& faces = mesh_.raw.surfaces[at->second]; // a second definition extends the first, as in CalculiX
+    std::vector<RawFace>& faces =
+        mesh_.raw.surfaces[at->second]; // a second definition extends the first, as in CalculiX
     for (auto line = reading_.deck.begin(card); line != reading_.deck.end(card); ++line) {
         split_fields(line->text, fields_);
         if (fields_.empty()) continue;

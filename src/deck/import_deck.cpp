@@ -1,6 +1,7 @@
 #include "osculate/deck/import_deck.hpp"
 
 #include "deck/bodies.hpp"
+#include "deck/equations.hpp"
 #include "deck/loads.hpp"
 #include "deck/supports.hpp"
 #include "deck/words.hpp"
@@ -36,7 +37,8 @@ public:
         stages_.resize(model_.steps.size());
         const std::string bodies = write_bodies(),
                           supports = DeckSupports(model_, sets_, units_.length, stages_).write(),
-                          contact = write_contact(), ties = write_ties(), rings = write_rings();
+                          contact = write_contact(), ties = write_ties(), rings = write_rings(),
+                          equations = write_equations(model_, sets_);
         if (std::ranges::any_of(model_.steps, &DeckStep::dynamic)) damping_ = damping();
         DeckLoads(model_, bodies_, sets_, units_, nlgeom_).write(stages_);
         check_strains();
@@ -61,6 +63,7 @@ public:
         if (!supports.empty()) text += "supports:\n" + supports;
         if (!ties.empty()) text += "ties:\n" + ties;
         if (!rings.empty()) text += "cyclic:\n" + rings;
+        if (!equations.empty()) text += "equations:\n" + equations;
         if (!contact.empty()) text += "contact:\n" + contact;
         text += "stages:\n";
         for (std::size_t s = 0; s < model_.steps.size(); ++s) text += write_stage(s);

@@ -1,6 +1,7 @@
 #include "deck/model.hpp"
 
 #include "deck/contact_cards.hpp"
+#include "deck/equations.hpp"
 #include "deck/material_cards.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ struct Reason {
 };
 
 constexpr Reason output{"what is written is chosen under output", false},
-    settings{"the solver has settings of its own", false}, equations{"there are no equations between nodes", true},
+    settings{"the solver has settings of its own", false}, nonlinear{"only linear equations have a counterpart", true},
     elastic_only{"all bodies are elastic", true}, heat{"there are no temperatures", false};
 
 /// By keywords without blanks.
@@ -47,8 +48,7 @@ const std::map<std::string, Reason> reasons{
     {"CONTROLS", settings},
     {"CONTACTCONTROLS", settings},
     {"SOLVERCONTROLS", settings},
-    {"EQUATION", equations},
-    {"MPC", equations},
+    {"MPC", nonlinear},
     {"TIE", {"only surfaces that move as one, or the ends of a sector, have a counterpart", true}},
     {"RIGIDBODY", elastic_only},
     {"PLASTIC", elastic_only},
@@ -66,7 +66,7 @@ const std::map<std::string, Reason> reasons{
 class Reader : CardReader {
 public:
     Reader(const mesh::Deck& deck, DeckModel& model)
-        : CardReader(deck, model), materials_(deck, model), contact_(deck, model) {}
+        : CardReader(deck, model), materials_(deck, model), contact_(deck, model), equations_(deck, model) {}
 
     void read() {
         for (const DeckCard& card : deck_.cards) take(card);
@@ -91,7 +91,9 @@ private:
             check_element_type(card);
             return;
         }
-        if (materials_.take(card, word, step_ != nullptr) || contact_.take(card, word, step_)) return;
+        if (materials_.take(card, word, step_ != nullptr) || contact_.take(card, word, step_) ||
+            equations_.take(card, word, step_ != nullptr))
+            return;
         if (word == "TEMPERATURE" && step_ != nullptr) return temperatures(card, step_->temperatures);
         if (word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE")
             return temperatures(card, model_.initial_temperatures);
@@ -403,6 +405,7 @@ private:
 
     MaterialCards materials_;
     ContactCards contact_;
+    EquationCards equations_;
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
     bool step_taken_ = false, passing_over_ = false;

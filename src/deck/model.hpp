@@ -93,6 +93,12 @@ struct DeckRing {
     std::string place;
 };
 
+/// sum of factor times a component of a point = 0
+struct DeckEquation {
+    std::vector<std::tuple<Index, int, double>> terms; ///< point, component 0 to 2, factor
+    std::string place;
+};
+
 /// Components of points that are held at a value, or forces on them.
 struct DeckValues {
     std::vector<Index> points;
@@ -145,6 +151,7 @@ struct DeckModel {
     std::map<std::string, DeckInteraction> interactions;     ///< by names in capitals
     std::vector<DeckPair> pairs, ties;
     std::vector<DeckRing> rings;
+    std::vector<DeckEquation> equations;
     std::vector<DeckTransform> transforms;
     std::map<Index, std::size_t> transform_of; ///< number of the last transform of a point
     std::vector<DeckValues> held;              ///< in all steps

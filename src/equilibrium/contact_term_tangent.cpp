@@ -96,16 +96,16 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
 
 namespace {
 /// The same spring between the nodes that dependent nodes follow. A slave that depends on others becomes one of the
-/// masters with the opposite sign, and the slave itself does not move.
+/// masters with the opposite sign, and the slave itself moves only along the directions that it keeps.
 void follow_carriers(const linear::Dependence& dependence, linear::Spring& spring) {
     if (!linear::any_depends(dependence, spring.slave, spring.masters)) return;
     linear::Spring folded;
-    const auto add = [&](Index node, const Mat3& follow) {
-        if (!dependence.depends(node)) {
+    const auto add = [&](Index node, const Mat3& follow, bool own) {
+        if (own && dependence.owns(node)) {
             folded.masters.push_back(node);
-            folded.follow.push_back(follow);
-            return;
+            folded.follow.push_back(follow * dependence.keeps(node));
         }
+        if (!dependence.depends(node)) return;
         for (const linear::Dependence::Carrier& carrier : dependence.carriers(node)) {
             // each once: their nodes are many, and each pair of entries costs a product
             const auto at = std::ranges::find(folded.masters, carrier.node);
@@ -117,8 +117,8 @@ void follow_carriers(const linear::Dependence& dependence, linear::Spring& sprin
             }
         }
     };
-    for (std::size_t i = 0; i < spring.masters.size(); ++i) add(spring.masters[i], spring.follow[i]);
-    if (dependence.depends(spring.slave)) add(spring.slave, -Mat3::Identity());
+    for (std::size_t i = 0; i < spring.masters.size(); ++i) add(spring.masters[i], spring.follow[i], true);
+    if (dependence.depends(spring.slave)) add(spring.slave, -Mat3::Identity(), false);
     spring.masters = std::move(folded.masters);
     spring.follow = std::move(folded.follow);
 }

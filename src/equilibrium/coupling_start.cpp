@@ -37,12 +37,34 @@ linear::Dependence coupled_nodes(const model::Model& model, const model::State& 
     return dependence;
 }
 
-void add_ties(const model::Model& model, linear::Dependence& dependence) {
-    for (const model::CyclicSymmetry& ring : model.cyclic)
-        for (const model::LikeNode& one : ring.nodes) {
-            const Mat3 turn = one.free * ring.turn;
-            dependence.set(one.node, {{one.like, turn, turn.transpose()}}, Mat3::Identity() - one.free);
+namespace {
+void add_equations(const model::Model& model, linear::Dependence& dependence) {
+    std::vector<model::LedNode> led = model.led;
+    std::ranges::stable_sort(led, {}, &model::LedNode::node);
+    for (std::size_t first = 0, end = 0; first < led.size(); first = end) {
+        const Index node = led[first].node;
+        std::vector<linear::Dependence::Carrier> carriers;
+        Mat3 keeps = Mat3::Identity();
+        for (end = first; end < led.size() && led[end].node == node; ++end) {
+            const Vec3& d = led[end].direction;
+            keeps -= d * d.transpose();
+            for (const auto& [other, by] : led[end].by) {
+                const auto at = std::ranges::find(carriers, other, &linear::Dependence::Carrier::node);
+                linear::Dependence::Carrier& carrier =
+                    at != carriers.end() ? *at : carriers.emplace_back(other, Mat3::Zero(), Mat3::Zero());
+                carrier.moves += d * by.transpose();
+                carrier.loads += by * d.transpose();
+            }
         }
+        constexpr double round_off = 1e-9;
+        if (end - first == 3 || keeps.norm() < round_off) keeps.setZero();
+        dependence.set(node, std::move(carriers), Mat3::Zero(), keeps);
+    }
+}
+} // namespace
+
+void add_ties(const model::Model& model, linear::Dependence& dependence) {
+    add_equations(model, dependence);
     using Carriers = std::vector<linear::Dependence::Carrier>;
     const auto add_one = [](Carriers& carriers, Index node, const Mat3& share) {
         const auto at = std::ranges::find(carriers, node, &linear::Dependence::Carrier::node);
@@ -51,12 +73,19 @@ void add_ties(const model::Model& model, linear::Dependence& dependence) {
         carrier.moves += share;
         carrier.loads += share.transpose();
     };
-    // what is at an end of a sector follows what is at the other
+    // what is at an end of a sector follows what is at the other, what an equation leads what leads it
     const auto add = [&](Carriers& carriers, Index node, const Mat3& share) {
-        if (!dependence.depends(node)) return add_one(carriers, node, share);
+        if (dependence.owns(node)) add_one(carriers, node, share * dependence.keeps(node));
+        if (!dependence.depends(node)) return;
         for (const linear::Dependence::Carrier& like : dependence.carriers(node))
             add_one(carriers, like.node, share * like.moves);
     };
+    for (const model::CyclicSymmetry& ring : model.cyclic)
+        for (const model::LikeNode& one : ring.nodes) {
+            Carriers carriers;
+            add(carriers, one.like, one.free * ring.turn);
+            dependence.set(one.node, std::move(carriers), Mat3::Identity() - one.free);
+        }
     for (const model::Tie& tie : model.ties)
         for (const model::TiedNode& tied : tie.nodes) {
             Carriers carriers;

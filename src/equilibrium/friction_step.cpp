@@ -39,28 +39,30 @@ bool FrictionStep::factorise(const Iterate& at) {
     return (bodies_.bodies().symmetric() && done(cholesky_, solve::make_cholesky)) || done(lu_, solve::make_lu);
 }
 
-void FrictionStep::add_force(Index node, const Vec3& force, VectorRef right) const {
-    if (dependence_ != nullptr && dependence_->depends(node)) {
-        for (const linear::Dependence::Carrier& carrier : dependence_->carriers(node))
-            add_force(carrier.node, carrier.loads * force, right);
-        return;
-    }
-    const Vec3 local = constraints_.to_local(node, force);
-    for (int k = 0; k < 3; ++k)
-        if (const Index e = constraints_.equation(node, k); e != Constraints::held) right(e) += local(k);
+void FrictionStep::add_force(Index any, const Vec3& all, VectorRef right) const {
+    const auto add = [&](Index node, const Vec3& force) {
+        const Vec3 local = constraints_.to_local(node, force);
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(node, k); e != Constraints::held) right(e) += local(k);
+    };
+    add(any, all); // as far as it has equations of its own
+    if (dependence_ == nullptr || !dependence_->depends(any)) return;
+    for (const linear::Dependence::Carrier& carrier : dependence_->carriers(any))
+        add(carrier.node, carrier.loads * all);
 }
 
-Vec3 FrictionStep::motion(Index node, const ConstVectorRef& du) const {
-    if (dependence_ != nullptr && dependence_->depends(node)) {
-        Vec3 moved = Vec3::Zero();
-        for (const linear::Dependence::Carrier& carrier : dependence_->carriers(node))
-            moved += carrier.moves * motion(carrier.node, du);
-        return moved;
-    }
-    Vec3 local = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-        if (const Index e = constraints_.equation(node, k); e != Constraints::held) local(k) = du(e);
-    return constraints_.to_global(node, local);
+Vec3 FrictionStep::motion(Index any, const ConstVectorRef& du) const {
+    const auto own = [&](Index node) {
+        Vec3 local = Vec3::Zero();
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(node, k); e != Constraints::held) local(k) = du(e);
+        return constraints_.to_global(node, local);
+    };
+    Vec3 moved = own(any);
+    if (dependence_ == nullptr || !dependence_->depends(any)) return moved;
+    for (const linear::Dependence::Carrier& carrier : dependence_->carriers(any))
+        moved += carrier.moves * own(carrier.node);
+    return moved;
 }
 
 void FrictionStep::add_forces(const LinearisedContact& contact, const Vec3& r, VectorRef right) const {

@@ -241,6 +241,17 @@ void RigidTerm::fold(Field& f) {
         bodies_[k].swept = swept;
         bodies_[k].turning = (1 - alpha_f_) * sum * bodies_[k].T;
     }
+    if (!model_.led.empty()) led_force_.assign(model_.bodies.size(), Vec3::Zero());
+    for (const model::LedNode& one : model_.led) {
+        const auto on = [&](Index node) -> Vec3& {
+            const RigidBody* rigid = model::rigid_body_of(model_, node);
+            return led_force_[static_cast<std::size_t>(rigid != nullptr ? rigid->body
+                                                                        : model::body_index(model_, node))];
+        };
+        const double force = one.direction.dot(f[place_of(one.node)]);
+        on(one.node) += force * one.direction;
+        for (const auto& [node, by] : one.by) on(node) -= force * by;
+    }
     dependence_.fold(f);
 }
 

@@ -84,7 +84,8 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned =
         choice.multigrid ||
-        ((contact || !symmetric || !model.ties.empty() || !model.cyclic.empty()) && asked != LinearSolver::direct);
+        ((contact || !symmetric || !model.ties.empty() || !model.cyclic.empty() || !model.led.empty()) &&
+         asked != LinearSolver::direct);
     // steps of dynamics change their length and with it the inverses; general contact reaches many more nodes than bear
     const bool grows = scope != nullptr && !dynamic, asks = asked == LinearSolver::condensed;
     choice.condensed = !model.nonlinear && !model.has_dependent_nodes() && !follows && !choice.multigrid &&

@@ -12,15 +12,18 @@ constexpr double same_value = 1e-12;    ///< relative
 } // namespace
 
 Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constraints,
-                         const std::vector<Index>& dependent)
+                         const std::vector<Index>& dependent, const std::vector<LedDirection>& led)
     : entry_(static_cast<std::size_t>(nodes), -1), equation_(3 * static_cast<std::size_t>(nodes), 0) {
     std::vector<std::vector<NodeConstraint>> at;
-    for (const NodeConstraint& c : constraints) {
-        if (entry_[c.node] < 0) {
-            entry_[c.node] = static_cast<Index>(at.size());
+    const auto list_of = [&](Index node) -> std::vector<NodeConstraint>& {
+        if (entry_[node] < 0) {
+            entry_[node] = static_cast<Index>(at.size());
             at.emplace_back();
         }
-        auto& list = at[entry_[c.node]];
+        return at[entry_[node]];
+    };
+    for (const NodeConstraint& c : constraints) {
+        auto& list = list_of(c.node);
         bool repeated = false;
         for (NodeConstraint& other : list) {
             const double cosine = other.direction.dot(c.direction);
@@ -38,6 +41,16 @@ Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constra
             }
         }
         if (!repeated) list.push_back(c);
+    }
+    for (const LedDirection& one : led) {
+        auto& list = list_of(one.node);
+        for (const NodeConstraint& other : list)
+            if (std::abs(other.direction.dot(one.direction)) > same_direction)
+                throw std::invalid_argument("node " + std::to_string(one.node) +
+                                            " is held along a direction along which an equation leads it, or near it");
+        NodeConstraint slot;
+        slot.direction = one.direction; // and no node
+        list.push_back(slot);
     }
 
     entries_.resize(at.size());
@@ -70,6 +83,10 @@ Constraints::Constraints(Index nodes, const std::vector<NodeConstraint>& constra
         if (count < 3) entry.frame.col(2) = entry.frame.col(0).cross(entry.frame.col(1));
     }
 
+    for (const LedDirection& one : led)
+        for (int k = 0; k < 3; ++k)
+            if (std::abs(frame(one.node).col(k).dot(one.direction)) > 0.5) // one of the axes
+                equation_[3 * static_cast<std::size_t>(one.node) + k] = held;
     for (const Index node : dependent)
         for (int k = 0; k < 3; ++k) equation_[3 * static_cast<std::size_t>(node) + k] = held;
     for (Index node = 0; node < nodes; ++node)

@@ -4,21 +4,23 @@
 
 namespace osculate::linear {
 
-void Dependence::set(Index node, std::vector<Carrier> carriers, const Mat3& rests) {
+void Dependence::set(Index node, std::vector<Carrier> carriers, const Mat3& rests, const Mat3& keeps) {
     Index& place = list_[static_cast<std::size_t>(node)];
     if (place < 0) {
         place = static_cast<Index>(nodes_.size());
         nodes_.push_back(node);
         carriers_.emplace_back();
         rests_.emplace_back();
+        keeps_.emplace_back();
     }
     carriers_[static_cast<std::size_t>(place)] = std::move(carriers);
     rests_[static_cast<std::size_t>(place)] = rests;
+    keeps_[static_cast<std::size_t>(place)] = keeps;
 }
 
 void Dependence::move(Field& du) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        Vec3 moved = Vec3::Zero();
+        Vec3 moved = keeps_[i] * du[nodes_[i]];
         for (const Carrier& carrier : carriers_[i]) moved += carrier.moves * du[carrier.node];
         du[nodes_[i]] = moved;
     }
@@ -27,14 +29,14 @@ void Dependence::move(Field& du) const {
 void Dependence::fold(Field& f) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         for (const Carrier& carrier : carriers_[i]) f[carrier.node] += carrier.loads * f[nodes_[i]];
-        f[nodes_[i]] = (rests_[i] * f[nodes_[i]]).eval();
+        f[nodes_[i]] = ((rests_[i] + keeps_[i]) * f[nodes_[i]]).eval();
     }
 }
 
 void Dependence::fold_magnitudes(Field& sums) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         for (const Carrier& carrier : carriers_[i]) sums[carrier.node] += carrier.loads.cwiseAbs() * sums[nodes_[i]];
-        sums[nodes_[i]].setZero();
+        sums[nodes_[i]] = (keeps_[i].cwiseAbs() * sums[nodes_[i]]).eval();
     }
 }
 
@@ -56,10 +58,9 @@ void replace_dependent(const Dependence& dependence, Index slave, std::vector<In
         for (const Dependence::Carrier& carrier : dependence.carriers(node)) add_once(carriers, carrier.node);
     };
     for (const Index node : masters)
-        if (dependence.depends(node))
-            carry(node);
-        else
-            list.push_back(node);
+        if (dependence.depends(node)) carry(node);
+    for (const Index node : masters)
+        if (dependence.owns(node)) list.push_back(node);
     if (dependence.depends(slave)) carry(slave);
     list.insert(list.end(), carriers.begin(), carriers.end());
     masters = std::move(list);
@@ -71,7 +72,7 @@ FoldedContact::FoldedContact(const Dependence& dependence, Index slave, std::spa
                              const Eigen::Ref<const Matrix>& by_G) {
     const Index n = static_cast<Index>(nodes.size()), m = by_E.rows() / 3;
     for (Index i = 0; i < m; ++i)
-        if (!dependence.depends(nodes[i])) masters.push_back(nodes[i]); // repeated where the patch repeats it
+        if (dependence.owns(nodes[i])) masters.push_back(nodes[i]); // repeated where the patch repeats it
     const Index own = static_cast<Index>(masters.size());
     std::vector<Index> carriers;
     const auto carry = [&](Index node) {
@@ -83,12 +84,12 @@ FoldedContact::FoldedContact(const Dependence& dependence, Index slave, std::spa
     masters.insert(masters.end(), carriers.begin(), carriers.end());
     const Index loaded = static_cast<Index>(masters.size());
     for (Index i = m; i < n; ++i)
-        if (!dependence.depends(nodes[i])) masters.push_back(nodes[i]);
+        if (dependence.owns(nodes[i])) masters.push_back(nodes[i]);
 
-    // place of each node of the patch, -1 for dependent ones
+    // place of each node of the patch, -1 for those without equations of their own
     std::vector<Index> place(static_cast<std::size_t>(n), -1);
     for (Index i = 0, first = 0, rest = loaded; i < n; ++i)
-        if (!dependence.depends(nodes[i])) place[i] = i < m ? first++ : rest++;
+        if (dependence.owns(nodes[i])) place[i] = i < m ? first++ : rest++;
     const auto place_of = [&](Index carrier) {
         return own + static_cast<Index>(std::ranges::find(carriers, carrier) - carriers.begin());
     };
@@ -98,17 +99,13 @@ FoldedContact::FoldedContact(const Dependence& dependence, Index slave, std::spa
     const auto fold_columns = [&](const Eigen::Ref<const Matrix>& from) {
         Matrix to = Matrix::Zero(from.rows(), 3 + 3 * columns);
         const auto add = [&](Index node, Index at, const auto& block) {
-            if (at >= 0) {
-                to.middleCols<3>(3 + 3 * at) += block;
-                return;
-            }
+            if (at >= 0) to.middleCols<3>(3 + 3 * at) += block * dependence.keeps(node);
+            if (!dependence.depends(node)) return;
             for (const Dependence::Carrier& carrier : dependence.carriers(node))
                 to.middleCols<3>(3 + 3 * place_of(carrier.node)) += block * carrier.moves;
         };
-        if (dependence.depends(slave))
-            add(slave, -1, from.leftCols<3>());
-        else
-            to.leftCols<3>() = from.leftCols<3>();
+        add(slave, -1, from.leftCols<3>());
+        to.leftCols<3>() = from.leftCols<3>() * dependence.keeps(slave);
         for (Index i = 0; i < n; ++i) add(nodes[i], place[i], from.middleCols<3>(3 + 3 * i));
         return to;
     };
@@ -118,17 +115,15 @@ FoldedContact::FoldedContact(const Dependence& dependence, Index slave, std::spa
     const auto fold_rows = [&](const Matrix& from) {
         Matrix to = Matrix::Zero(3 * loaded, from.cols());
         for (Index i = 0; i < m; ++i) {
-            if (place[i] >= 0) {
-                to.middleRows<3>(3 * place[i]) += from.middleRows<3>(3 * i);
-                continue;
-            }
+            if (place[i] >= 0) to.middleRows<3>(3 * place[i]) += dependence.keeps(nodes[i]) * from.middleRows<3>(3 * i);
+            if (!dependence.depends(nodes[i])) continue;
             for (const Dependence::Carrier& carrier : dependence.carriers(nodes[i]))
                 to.middleRows<3>(3 * place_of(carrier.node)) += carrier.loads * from.middleRows<3>(3 * i);
         }
         return to;
     };
     E = fold_rows(by_E);
-    if (dependence.depends(slave)) // its force, on the left of the equilibrium
+    if (dependence.depends(slave)) // its force, on the left of the equilibrium, as far as others carry it
         for (const Dependence::Carrier& carrier : dependence.carriers(slave))
             E.middleRows<3>(3 * place_of(carrier.node)) -= carrier.loads;
     if (by_G.size() > 0) G = fold_rows(fold_columns(by_G));

@@ -19,6 +19,7 @@ FoldedMatrix::FoldedMatrix(const Dependence& dependence, const BlockMatrix& patt
                 continue;
             }
             plain = 0;
+            if (dependence.owns(j)) row.push_back(j);
             for (const Dependence::Carrier& carrier : dependence.carriers(j)) row.push_back(carrier.node);
         }
         const auto add_to = [&](Index node) {
@@ -30,6 +31,7 @@ FoldedMatrix::FoldedMatrix(const Dependence& dependence, const BlockMatrix& patt
             continue;
         }
         columns[static_cast<std::size_t>(i)].push_back(i);
+        if (dependence.owns(i)) add_to(i);
         for (const Dependence::Carrier& carrier : dependence.carriers(i)) add_to(carrier.node);
     }
     for (std::vector<Index>& list : columns) {
@@ -59,6 +61,7 @@ void FoldedMatrix::fold(const BlockMatrix& A, BlockMatrix& into) const {
                 into.block(into.slot(node, j)) += loads(A.block(k));
                 continue;
             }
+            if (dependence_.owns(j)) into.block(into.slot(node, j)) += loads(Mat3(A.block(k) * dependence_.keeps(j)));
             for (const Dependence::Carrier& carrier : dependence_.carriers(j))
                 into.block(into.slot(node, carrier.node)) += loads(Mat3(A.block(k) * carrier.moves));
         }
@@ -70,6 +73,8 @@ void FoldedMatrix::fold(const BlockMatrix& A, BlockMatrix& into) const {
         } else if (!dependence_.depends(i)) {
             add_row(i, i, [](const Mat3& block) { return block; });
         } else {
+            if (dependence_.owns(i))
+                add_row(i, i, [keeps = dependence_.keeps(i)](const Mat3& block) { return Mat3(keeps * block); });
             for (const Dependence::Carrier& carrier : dependence_.carriers(i))
                 add_row(carrier.node, i, [&](const Mat3& block) { return Mat3(carrier.loads * block); });
         }

@@ -29,7 +29,19 @@ std::vector<Index> tied_groups(const Model& model) {
     return group;
 }
 
+std::vector<linear::LedDirection> led_directions(const Model& model) {
+    std::vector<linear::LedDirection> led;
+    for (const LedNode& one : model.led) led.push_back({one.node, one.direction});
+    return led;
+}
+
 void move_tied(const Model& model, Field& u) {
+    for (const LedNode& one : model.led) { // in any order: they lead none that lead
+        double value = 0;
+        for (const auto& [node, by] : one.by) value += by.dot(u[static_cast<std::size_t>(node)]);
+        Vec3& own = u[static_cast<std::size_t>(one.node)];
+        own += (value - one.direction.dot(own)) * one.direction;
+    }
     for (const CyclicSymmetry& ring : model.cyclic)
         for (const LikeNode& one : ring.nodes) {
             Vec3& own = u[static_cast<std::size_t>(one.node)];

@@ -154,8 +154,8 @@ std::string scene_section(const RunFiles& files) {
         text += element("p", "Gravity " + escaped(gravity->text) + " acts on every body with a density.");
     text += subsection("Bodies", with("bodies", bodies));
     text += subsection("Contact pairs", with("contact", pairs));
-    for (const auto& [key, title] :
-         {std::pair{"couplings", "Couplings"}, std::pair{"ties", "Ties"}, std::pair{"cyclic", "Sectors of rings"}})
+    for (const auto& [key, title] : {std::pair{"couplings", "Couplings"}, std::pair{"ties", "Ties"},
+                                     std::pair{"cyclic", "Sectors of rings"}, std::pair{"equations", "Equations"}})
         text += subsection(title, with(key, named));
     text += subsection("Stages", with("stages", stages));
     text += subsection("Sets and supports",

@@ -314,6 +314,24 @@ public:
             }
     }
 
+    void check_equations(const Scene& scene) {
+        for (const auto& [name, equation] : scene.equations) {
+            bool any = false;
+            for (const auto& [set_name, factors] : equation.terms) {
+                any = any || !factors.isZero(0);
+                const SetSpec* set = find(scene.sets, set_name);
+                const Body* body = set != nullptr ? find(scene.bodies, set->body) : nullptr;
+                if (body != nullptr && body->rigid)
+                    fault({"equations", name, "terms", set_name}, "a set of a body that deforms",
+                          "a set of rigid body '" + set->body + "'");
+            }
+            if (!any && !equation.terms.empty())
+                fault({"equations", name, "terms"}, "a factor other than zero", "zeros alone");
+            if (!equation.each.empty() && find(equation.terms, equation.each) == nullptr)
+                fault({"equations", name, "each"}, "one of the sets under terms", "'" + equation.each + "'");
+        }
+    }
+
     void check_motion(const std::string& name, const Stage& stage, const Scene& scene) {
         /// What holds components for the whole run, and where it is written.
         struct Held {
@@ -507,6 +525,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     rules.check_couplings(scene);
     rules.check_ties(scene);
     rules.check_cyclic(scene);
+    rules.check_equations(scene);
     rules.check_held(scene);
     rules.check_exact_masters(scene);
     for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene);

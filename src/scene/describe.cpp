@@ -76,6 +76,11 @@ void describe(Visitor& v, Scene& scene) {
            .meaning = "Sectors that stand for whole rings: each end of a sector moves as the other.",
            .item = "ring"},
           scene.cyclic, group);
+    named(v,
+          {.name = "equations",
+           .meaning = "Linear equations between displacements, for the whole run.",
+           .item = "equation"},
+          scene.equations, group);
     Entries pairs = entries_of(scene.contact, group);
     bool general = scene.general.has_value();
     GeneralContact all = scene.general.value_or(GeneralContact{});

@@ -65,6 +65,7 @@ void describe(Visitor& v, RigidSurface& surface);
 void describe(Visitor& v, Coupling& coupling);
 void describe(Visitor& v, Tie& tie);
 void describe(Visitor& v, CyclicSymmetry& symmetry);
+void describe(Visitor& v, Equation& equation);
 void describe(Visitor& v, Axis& axis);
 void describe(Visitor& v, SetSpec& set);
 void describe(Visitor& v, Support& support);

@@ -192,4 +192,24 @@ void describe(Visitor& v, CyclicSymmetry& symmetry) {
                       symmetry.distance);
 }
 
+void describe(Visitor& v, Equation& equation) {
+    named(v,
+          {.name = "terms",
+           .meaning = "Sets of nodes of bodies that deform: factors times displacements sum to zero.",
+           .required = true,
+           .names = Names::set,
+           .item = "set"},
+          equation.terms, [&](const std::string& set, Vec3& factors) {
+              v.vector({.name = set,
+                        .meaning = "Factors of the x, y and z displacement of its node, or of the mean of its nodes.",
+                        .required = true},
+                       factors);
+          });
+    v.text({.name = "each",
+            .meaning = "The set of the terms for each of whose nodes there is one such equation.",
+            .names = Names::set,
+            .default_text = "one equation, with the means of all sets"},
+           equation.each);
+}
+
 } // namespace osculate::scene

@@ -49,6 +49,10 @@ ForceBalance force_balance(const model::Model& model, const equilibrium::Equilib
         const model::Body& body = model.bodies[b];
         Vec3& sum = sum_of[static_cast<std::size_t>(group[b])];
         sum += reaction_of[b];
+        if (equilibrium.rigid() != nullptr && !equilibrium.rigid()->led_force().empty()) {
+            sum += equilibrium.rigid()->led_force()[b];
+            balance.acting += equilibrium.rigid()->led_force()[b].norm();
+        }
         for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node) {
             const auto i = static_cast<std::size_t>(node);
             const Vec3 reaction = equilibrium.constraints().reaction(node, unbalanced[i]);

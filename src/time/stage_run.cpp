@@ -62,7 +62,8 @@ Machinery::Machinery(RunContext& context, const Stage& stage, const equilibrium:
 StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, StepObserver& observer,
                    const Checkpoint* from)
     : context_(context), stage_(stage), progress_(progress), observer_(observer),
-      constraints_(context.model.nodes(), stage.constraints, model::dependent_nodes(context.model)),
+      constraints_(context.model.nodes(), stage.constraints, model::dependent_nodes(context.model),
+                   model::led_directions(context.model)),
       dynamics_(stage.dynamics), machinery_(std::make_unique<Machinery>(context, stage, dynamics(), constraints_,
                                                                         change_pairs(context, stage, progress.state))) {
     const model::Model& model = context.model;

@@ -39,6 +39,7 @@ rigid bodies                 . . . . . . . . . . . . . .
 couplings                    . . . . . . . . . . . . . .
 ties                         . . . . . . . . . . . . . .
 cyclic symmetry              . . . . . . . . . . . . . .
+equations                    . . . . . . . . . . . . . .
 inertia                      x x x x x . . . . x x . . .
 damping                      . . . . . . . . . . . . . .
 energy ledger                x x x x x . . . . x x . . .

@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"half_a_step", {"42:12: stages.pull.steps: expected a whole number in [1, 1e+06], found '2.5'"}},
         Refusal{"key_one_level_too_high",
                 {"46:1: pressure: expected one of the keys name, description, bodies, sets, supports, couplings, ties, "
-                 "cyclic, contact, "
+                 "cyclic, equations, contact, "
                  "gravity, stages, solver, output, expect, found unknown key 'pressure'"}},
         Refusal{"incompressible",
                 {"9:39: bodies.base.material.linear_elastic.nu: expected a number in (-1, 0.5), found '0.5'"}},

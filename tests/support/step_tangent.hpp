@@ -17,7 +17,8 @@ inline void expect_exact_tangent(const std::string& text, double turn = 0.1, dou
     app::Plan plan = app::compile(scene, app::build_meshes(scene), 1, timings);
     const model::Model& model = plan.model;
     const time::Stage& stage = plan.stages[0];
-    const linear::Constraints constraints(model.nodes(), stage.constraints, model::dependent_nodes(model));
+    const linear::Constraints constraints(model.nodes(), stage.constraints, model::dependent_nodes(model),
+                                          model::led_directions(model));
     equilibrium::Equilibrium equilibrium(model, model.pairs, constraints, stage.dynamics ? &*stage.dynamics : nullptr,
                                          stage.tangent, timings, 1, !stage.follower_pressures.empty());
     std::mt19937 random(7);

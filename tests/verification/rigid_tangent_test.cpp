@@ -74,7 +74,8 @@ TEST_P(RigidTangent, IsTheDerivativeOfTheResidual) {
     const model::Model& model = plan.model;
     ASSERT_EQ(model.rigid.size(), 1U);
     const model::RigidBody& ball = model.rigid[0];
-    const linear::Constraints constraints(model.nodes(), plan.stages[0].constraints, model::dependent_nodes(model));
+    const linear::Constraints constraints(model.nodes(), plan.stages[0].constraints, model::dependent_nodes(model),
+                                          model::led_directions(model));
     const auto& dynamics = plan.stages[0].dynamics;
     equilibrium::Equilibrium equilibrium(model, model.pairs, constraints, dynamics ? &*dynamics : nullptr,
                                          plan.stages[0].tangent, timings, 1,

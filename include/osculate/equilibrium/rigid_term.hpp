@@ -48,6 +48,9 @@ public:
     [[nodiscard]] double work_of_weights() const;
     /// Force of inertia on the left of the equilibrium of a body, in dynamics, N.
     [[nodiscard]] Vec3 inertia_force(std::size_t body) const { return bodies_[body].force; }
+    /// Sum of what equations exert on the nodes of each body, and on its reference point, at the last fold(), N; empty
+    /// without equations.
+    [[nodiscard]] const std::vector<Vec3>& led_force() const { return led_force_; }
     /// Replaces the increment of each body's rotation node by the one whose product with the moment is the work.
     void make_conjugate(Field& Du) const;
 
@@ -92,6 +95,7 @@ private:
     std::vector<Moving> bodies_;
     std::vector<char> by_reference_; ///< (bodies) whether inertia is taken in terms of the reference point
     linear::Dependence dependence_;
+    std::vector<Vec3> led_force_; ///< (bodies of the model)
 };
 
 /// Accelerations of rigid bodies where motion begins, and the velocities that supports leave them.

@@ -19,6 +19,12 @@ struct NodeConstraint {
     Index course = -1; ///< the displacement is `target` times this course of the stage; -1: `target` itself, at the end
 };
 
+/// A direction along which a node has no equation, as its motion along it follows from that of others, see Dependence.
+struct LedDirection {
+    Index node = -1;
+    Vec3 direction = Vec3::UnitX(); ///< unit
+};
+
 /// Local frames and equation numbers of every node for one stage. Directions held at one node must be parallel or
 /// orthogonal; they become axes of its frame, so that any set of them eliminates components exactly.
 class Constraints {
@@ -27,8 +33,10 @@ public:
 
     /// @param dependent  nodes without equations, whose motion follows from that of others, see Dependence; directions
     ///                   held at them are ones along which this motion keeps them
+    /// @param led        directions orthogonal to those held at their nodes, and to each other
     /// @throws std::invalid_argument naming the node (global number) whose directions or values contradict each other
-    Constraints(Index nodes, const std::vector<NodeConstraint>& constraints, const std::vector<Index>& dependent = {});
+    Constraints(Index nodes, const std::vector<NodeConstraint>& constraints, const std::vector<Index>& dependent = {},
+                const std::vector<LedDirection>& led = {});
 
     [[nodiscard]] Index nodes() const { return static_cast<Index>(entry_.size()); }
     [[nodiscard]] Index equations() const { return equations_; }
@@ -57,7 +65,7 @@ private:
     struct Entry {
         Mat3 frame = Mat3::Identity();
         bool turned = false;
-        std::vector<NodeConstraint> along; ///< three slots; node = -1 if the component is free
+        std::vector<NodeConstraint> along; ///< three slots; node = -1 if the component is free, or led
     };
     std::vector<Index> entry_; ///< (nodes) index into entries_, -1 unconstrained
     std::vector<Entry> entries_;

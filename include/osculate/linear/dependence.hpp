@@ -1,5 +1,5 @@
 #pragma once
-/// Nodes whose motion follows from that of other nodes, and which therefore have no equations of their own.
+/// Nodes whose motion follows from that of other nodes, and which therefore have no equations of their own, or fewer.
 
 #include "osculate/core/field.hpp"
 
@@ -9,9 +9,11 @@
 namespace osculate::linear {
 
 /// A node i moves with its carriers a, and the forces on it act on them:
-///     du_i = sum_a moves_ia du_a,    f_a += loads_ia f_i,    f_i <- rests_i f_i.
-/// What rests is zero, but for nodes that something else holds along some directions. loads is the transpose of moves where forces and motions belong to the same instant; it differs from it where forces
-/// are means over a step.
+///     du_i = keeps_i du_i + sum_a moves_ia du_a,    f_a += loads_ia f_i,    f_i <- (keeps_i + rests_i) f_i.
+/// What rests is zero, but for nodes that something else holds along some directions. keeps is zero, but for nodes that
+/// follow others along some directions only: the projector on those along which they have equations of their own. loads
+/// is the transpose of moves where forces and motions belong to the same instant; it differs from it where forces are
+/// means over a step.
 class Dependence {
 public:
     struct Carrier {
@@ -21,11 +23,23 @@ public:
 
     /// @param nodes  number of all nodes, none of which depends on others yet
     explicit Dependence(Index nodes) : list_(static_cast<std::size_t>(nodes), -1) {}
-    /// Sets the carriers of a node. They must not depend on others.
-    void set(Index node, std::vector<Carrier> carriers, const Mat3& rests = Mat3::Zero());
+    /// Sets the carriers of a node, others than itself. They must not depend on others, but for those that keep
+    /// directions of their own: what they carry must be along these.
+    void set(Index node, std::vector<Carrier> carriers, const Mat3& rests = Mat3::Zero(),
+             const Mat3& keeps = Mat3::Zero());
 
     [[nodiscard]] bool empty() const { return nodes_.empty(); }
     [[nodiscard]] bool depends(Index node) const { return list_[static_cast<std::size_t>(node)] >= 0; }
+    /// Whether it has equations of its own.
+    [[nodiscard]] bool owns(Index node) const {
+        const Index place = list_[static_cast<std::size_t>(node)];
+        return place < 0 || !keeps_[static_cast<std::size_t>(place)].isZero(0);
+    }
+    /// Projector on the directions of these.
+    [[nodiscard]] Mat3 keeps(Index node) const {
+        const Index place = list_[static_cast<std::size_t>(node)];
+        return place < 0 ? Mat3(Mat3::Identity()) : keeps_[static_cast<std::size_t>(place)];
+    }
     /// Dependent nodes, in the order in which they were first set.
     [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
     /// @pre depends(node)
@@ -44,7 +58,7 @@ private:
     std::vector<Index> list_; ///< (all nodes) number among the dependent nodes, -1: independent
     std::vector<Index> nodes_;
     std::vector<std::vector<Carrier>> carriers_; ///< (dependent nodes)
-    std::vector<Mat3> rests_;                    ///< (dependent nodes)
+    std::vector<Mat3> rests_, keeps_;            ///< (dependent nodes)
 };
 
 /// A point of contact between a slave node and master nodes, of which some depend on others: the nodes that take their

@@ -3,6 +3,7 @@
 
 #include "osculate/fe/element_block.hpp"
 #include "osculate/linear/block_matrix.hpp"
+#include "osculate/linear/constraints.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/model/contact_pair.hpp"
 #include "osculate/model/nonlinear_elements.hpp"
@@ -71,6 +72,14 @@ struct CyclicSymmetry {
     std::vector<LikeNode> nodes;
 };
 
+/// A node whose displacement along one direction an equation gives: u . direction = sum_a by_a . u_a. What leads it is
+/// independent: no other LedNode's direction has a part in it.
+struct LedNode {
+    Index node = -1;
+    Vec3 direction = Vec3::UnitX();           ///< unit; those of one node are orthogonal
+    std::vector<std::pair<Index, Vec3>> by{}; ///< nodes
+};
+
 /// A node of the skin that a face with midside nodes has in contact, see fe::skin_weights. It belongs to no element, and is
 /// where
 ///     x = x_host + free (sum_a weight_a x_a - x_host)
@@ -88,6 +97,7 @@ struct Model {
     std::vector<RigidBody> rigid; ///< what is special about the rigid ones of the bodies; then couplings
     std::vector<Tie> ties;
     std::vector<CyclicSymmetry> cyclic;
+    std::vector<LedNode> led;   ///< by equations
     std::vector<SkinNode> skin; ///< ascending, one number after the other
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
@@ -103,13 +113,15 @@ struct Model {
     [[nodiscard]] Index nodes() const { return static_cast<Index>(X.size()); }
     /// Whether some nodes follow others, see dependent_nodes().
     [[nodiscard]] bool has_dependent_nodes() const {
-        return !rigid.empty() || !ties.empty() || !cyclic.empty() || !skin.empty();
+        return !rigid.empty() || !ties.empty() || !cyclic.empty() || !led.empty() || !skin.empty();
     }
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
-/// Displacements, or velocities, of tied nodes, ends of sectors and skins from those of the nodes that they follow.
+/// Displacements, or velocities, of led and tied nodes, ends of sectors and skins from those of the nodes that they follow.
 void move_tied(const Model& model, Field& u);
+/// Directions along which equations lead nodes.
+[[nodiscard]] std::vector<linear::LedDirection> led_directions(const Model& model);
 /// The node of an element that a node of the skin stands for; any other node itself.
 [[nodiscard]] Index material_node(const Model& model, Index node);
 /// (bodies) A number that bodies share which are tied to each other.

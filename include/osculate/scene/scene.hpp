@@ -458,6 +458,14 @@ struct CyclicSymmetry {
     bool operator==(const CyclicSymmetry&) const = default;
 };
 
+/// sum over the terms of factor . displacement = 0, the displacement of a set being the mean of its nodes' or, for the set
+/// called `each`, that of one node after the other.
+struct Equation {
+    std::string each;  ///< set; empty: one equation
+    Named<Vec3> terms; ///< set -> factors of its displacement
+    bool operator==(const Equation&) const = default;
+};
+
 struct Scene {
     std::string name;            ///< valid as file name: letters, digits, _ and -
     std::string description;     ///< free text
@@ -469,6 +477,7 @@ struct Scene {
     Named<Coupling> couplings;
     Named<Tie> ties;
     Named<CyclicSymmetry> cyclic;
+    Named<Equation> equations;
     std::optional<GeneralContact> general; ///< contact.general
     Named<Pair> contact;                   ///< the other keys of contact
     Named<Stage> stages;

@@ -1,5 +1,6 @@
 #include "app/check/free_motions.hpp"
 
+#include "app/plan/supports.hpp"
 #include "osculate/core/dense_algebra.hpp"
 
 #include <algorithm>
@@ -107,14 +108,15 @@ public:
         }
         for (const model::ContactEvaluation& evaluation : contact_) add(evaluation);
         share_among_tied();
+        const std::vector<char> joined = held_by_equations(plan_.model, stage);
         std::vector<FreeMotion> found;
         std::vector<std::vector<std::string>> own;
         for (std::size_t b = 0; b < holds_.size(); ++b) {
-            own.push_back(motions({b}, true));
+            own.push_back(joined[b] != 0 ? std::vector<std::string>() : motions({b}, true));
             for (const std::string& motion : own.back())
                 found.push_back({plan_.model.bodies[b].name, motion, holds_[b].rubs, holds_[b].apart});
         }
-        for (std::size_t g = 0; g < holds_.size(); ++g) add_group(g, own, found);
+        for (std::size_t g = 0; g < holds_.size(); ++g) add_group(g, own, joined, found);
         return found;
     }
 
@@ -179,7 +181,8 @@ private:
         return freedom.in_words(plan_.model.origin);
     }
 
-    void add_group(std::size_t g, const std::vector<std::vector<std::string>>& own, std::vector<FreeMotion>& found) {
+    void add_group(std::size_t g, const std::vector<std::vector<std::string>>& own, const std::vector<char>& joined,
+                   std::vector<FreeMotion>& found) {
         std::vector<std::size_t> bodies;
         std::string names;
         for (std::size_t b = 0; b < group_.size(); ++b)
@@ -187,7 +190,7 @@ private:
                 bodies.push_back(b);
                 names += (names.empty() ? "" : ", ") + plan_.model.bodies[b].name;
             }
-        if (bodies.size() < 2) return;
+        if (bodies.size() < 2 || std::ranges::any_of(bodies, [&](std::size_t b) { return joined[b] != 0; })) return;
         for (const std::string& motion : motions(bodies, false)) {
             // what each of them can do by itself has been said
             if (std::ranges::all_of(bodies, [&](std::size_t b) { return std::ranges::count(own[b], motion) > 0; }))

@@ -71,6 +71,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     add_skins(draft);
     throw_faults(draft);
     add_stages(draft);
+    throw_faults(draft);
+    add_equations(draft);
     check_sectors(draft);
     add_pairs(draft);
     throw_faults(draft);

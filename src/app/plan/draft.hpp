@@ -52,6 +52,8 @@ void add_couplings(Draft& draft);
 void add_ties(Draft& draft);
 /// Sectors that stand for rings, with the nodes at one end moved onto the turned places of their likes at the other.
 void add_cyclic_symmetry(Draft& draft);
+/// Nodes that equations lead: each gives one direction of one node, along which no stage holds or drives it.
+void add_equations(Draft& draft);
 /// Whether supports and motions are alike at both ends of every sector, in every stage.
 void check_sectors(Draft& draft);
 /// Directions that x, y and z mean for a node, in columns. @param support  of the set that names them; null: none

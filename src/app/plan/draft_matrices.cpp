@@ -4,6 +4,7 @@
 #include "app/plan/draft.hpp"
 #include "osculate/model/general_contact.hpp"
 
+#include <fmt/format.h>
 #include <iterator>
 #include <limits>
 
@@ -30,6 +31,25 @@ std::vector<char> massless_nodes(const Draft& draft) {
     return massless;
 }
 
+/// Motions at the start that equations would have to change, by forces that nothing has said.
+void check_led_velocities(Draft& draft) {
+    constexpr double round_off = 1e-9; // of the fastest
+    const model::Model& m = draft.plan.model;
+    double fastest = 0;
+    for (const Vec3& v : m.initial_velocity) fastest = std::max(fastest, v.norm());
+    for (const model::LedNode& one : m.led) {
+        const auto v = [&](Index node) -> const Vec3& { return m.initial_velocity[static_cast<std::size_t>(node)]; };
+        double along = one.direction.dot(v(one.node));
+        for (const auto& [node, by] : one.by) along -= by.dot(v(node));
+        if (std::abs(along) <= round_off * fastest) continue;
+        const Vec3 X = m.X[static_cast<std::size_t>(one.node)] + m.origin;
+        draft.faults.push_back(fault("equations", "initial velocities that satisfy the equations",
+                                     fmt::format("a node at [{:.6g}, {:.6g}, {:.6g}] m that is off by {:.3g} m/s", X[0],
+                                                 X[1], X[2], std::abs(along))));
+        return;
+    }
+}
+
 /// Masses and velocities, where a stage is dynamic.
 void add_mass(Draft& draft) {
     model::Model& m = draft.plan.model;
@@ -54,6 +74,7 @@ void add_mass(Draft& draft) {
                 m.initial_velocity.values().push_back(spec.initial_velocity + spec.initial_spin.cross(X - centre));
         }
         m.initial_velocity.values().resize(m.X.size(), Vec3::Zero()); // rigid bodies know theirs
+        check_led_velocities(draft);
     }
 }
 

@@ -96,6 +96,13 @@ void add_body_items(const scene::Scene& scene, const Plan& plan, PlanList& list)
                  : fmt::format("{} of {:.0f} nodes, which have no unknowns of their own", model.cyclic.size(), ends),
              {ends * sizeof(linear::Dependence::Carrier), ends, "turned nodes an iteration"});
 
+    double terms = 0;
+    for (const model::LedNode& one : model.led) terms += static_cast<double>(one.by.size());
+    list.say("equations", !model.led.empty(),
+             model.led.empty() ? "displacements follow no equations of the scene"
+                               : fmt::format("{}, each with one unknown less", model.led.size()),
+             {terms * sizeof(linear::Dependence::Carrier), terms, "terms an iteration"});
+
     const std::size_t dynamic = dynamic_stages(plan);
     constexpr double states = 10; // u, v, a: of the state, of the start of the step and after it; force at the start
     list.say("inertia", dynamic > 0, dynamic > 0 ? fmt::format("{} dynamic stage(s)", dynamic) : every_static,

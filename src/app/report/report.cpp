@@ -9,8 +9,9 @@ namespace osculate::app {
 Index degrees_of_freedom(const Plan& plan) {
     Index most = 0;
     const std::vector<Index> dependent = model::dependent_nodes(plan.model);
+    const std::vector<linear::LedDirection> led = model::led_directions(plan.model);
     for (const time::Stage& stage : plan.stages)
-        most = std::max(most, linear::Constraints(plan.model.nodes(), stage.constraints, dependent).equations());
+        most = std::max(most, linear::Constraints(plan.model.nodes(), stage.constraints, dependent, led).equations());
     return most;
 }
 

@@ -30,12 +30,34 @@ std::string formulation_of(const DeckModel& model, const std::vector<Index>& cel
     std::map<std::string, std::size_t> count;
     for (const Index c : cells)
         ++count[model.mesh.types[static_cast<std::size_t>(model.mesh.type[static_cast<std::size_t>(c)])]];
-    const std::size_t plain = count["C3D8"] + count["C3D20"], modes = count["C3D8I"] + count["C3D8R"];
-    const std::size_t reduced = count["C3D20R"];
+    std::size_t plain = 0, modes = 0, reduced = 0;
+    for (const auto& [type, n] : count) {
+        const bool r = type.ends_with('R'), linear = type.starts_with("C3D8") || type.find('4', 3) == 3;
+        if (type == "C3D8I" || (linear && r))
+            modes += n;
+        else if (r)
+            reduced += n;
+        else if (type != "C3D4" && type != "C3D6" && type != "C3D10")
+            plain += n;
+    }
     if (reduced > plain + modes) return "reduced";
     return modes > plain ? "incompatible_modes" : "full";
 }
 
+} // namespace
+
+namespace {
+mesh::DeckSlice slice_of(DeckModel& model, const DeckBody& body) {
+    const auto& slices = model.mesh.slices;
+    std::set<mesh::DeckSlice> kinds;
+    for (const Index c : body.cells)
+        kinds.insert(static_cast<std::size_t>(c) < slices.size() ? slices[static_cast<std::size_t>(c)]
+                                                                 : mesh::DeckSlice::none);
+    if (kinds.size() > 1)
+        model.lose(model.mesh.raw.file, "elements of several kinds (plane, of revolution, solid) in body " + body.name,
+                   "a body is of one kind");
+    return *kinds.rbegin();
+}
 } // namespace
 
 std::vector<DeckBody> make_bodies(DeckModel& model) {
@@ -64,6 +86,7 @@ std::vector<DeckBody> make_bodies(DeckModel& model) {
             pieces_of_section[body.section] > 1 ? wanted + "_" + std::to_string(++seen[body.section]) : wanted, taken);
         body.piece = pieces > 1 ? static_cast<int>(b) + 1 : 0;
         body.formulation = formulation_of(model, body.cells);
+        body.slice = slice_of(model, body);
         options.piece = body.piece;
         body.mesh = mesh::make_mesh(raw, options);
         body.exterior = mesh::exterior_facets(body.mesh);

@@ -20,6 +20,7 @@ struct DeckBody {
     std::vector<mesh::Facet> exterior;
     const DeckSection* section = nullptr; ///< the one that most of its elements have
     std::string formulation;              ///< of its hexahedra
+    mesh::DeckSlice slice = mesh::DeckSlice::none;
 };
 
 /// Throws mesh::MeshError where a piece is no mesh fit for use. Adds to what the model leaves out.

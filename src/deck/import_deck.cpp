@@ -110,6 +110,10 @@ private:
                             "incompatible modes are for small strain: b_bar is used instead");
             }
             if (formulation != "full") text += "    hex_formulation: " + formulation + "\n";
+            if (body.slice == mesh::DeckSlice::plane_strain) text += "    slice: {kind: plane_strain}\n";
+            if (body.slice == mesh::DeckSlice::plane_stress) text += "    slice: {kind: plane_stress}\n";
+            if (body.slice == mesh::DeckSlice::axisymmetric)
+                text += "    slice: {kind: axisymmetric, axis: [0, 1, 0]}\n";
         }
         return text;
     }

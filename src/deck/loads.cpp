@@ -138,6 +138,10 @@ void DeckLoads::add_forces(const DeckStep& step) {
                 force.place = f.place;
                 force.courses.resize(model_.steps.size());
             }
+            // in a body of revolution that of the whole circle
+            const bool revolves =
+                bodies_[static_cast<std::size_t>(sets_.body_of(p))].slice == mesh::DeckSlice::axisymmetric;
+            const double part = revolves ? mesh::DeckMesh::sector_angle / 360 : 1;
             const Mat3 axes = model_.axes_of(p);
             if (f.first < 2 && model_.on_axis(p)) {
                 model_.lose(f.place, "*CLOAD on a node on the axis of its *TRANSFORM", "no direction there is radial");
@@ -146,7 +150,7 @@ void DeckLoads::add_forces(const DeckStep& step) {
             for (int k = 0; k < 3; ++k) // what a step gives along an axis takes the place of what was given along it
                 if (const double share = axes(k, f.first); share != 0)
                     force.components[static_cast<std::size_t>(k)].add(fmt::format("{} {}", on_nodes, f.first),
-                                                                      units_.force() * share * f.value,
+                                                                      units_.force() * part * share * f.value,
                                                                       model_.amplitude(f.amplitude));
         }
         if (without > 0 && f.value != 0)

@@ -130,9 +130,10 @@ private:
     }
 
     void check_element_type(const DeckCard& card) {
-        if (card.keyword == "ELEMENT" && capitals_of(card, "TYPE") == "C3D8R")
+        const std::string type = capitals_of(card, "TYPE");
+        if (card.keyword == "ELEMENT" && (type == "C3D8R" || type == "CPE4R" || type == "CPS4R" || type == "CAX4R"))
             model_.note(
-                deck_.place(card), "*ELEMENT, TYPE=C3D8R",
+                deck_.place(card), "*ELEMENT, TYPE=" + type,
                 "hexahedra are integrated in full; incompatible_modes is used instead, which does not lock either");
     }
 
@@ -146,6 +147,9 @@ private:
             t.place = deck_.place(*line);
             const std::string shown(line->text.substr(0, 60));
             t.points = points_of(fields_[0]);
+            for (std::size_t i = 0, n = t.points.size(); i < n; ++i) // through the layer of plane elements
+                if (const auto above = model_.mesh.above.find(t.points[i]); above != model_.mesh.above.end())
+                    t.points.insert(t.points.end(), above->second.begin(), above->second.end());
             if (t.points.empty() || fields_.size() < 2 || !to_number(fields_[1], t.value))
                 lose(t.place, shown, "not understood");
             else
@@ -322,8 +326,7 @@ private:
                 const std::vector<Index> cells = cells_of(fields_[0]);
                 why = cells.empty() ? "no element or element set of that name" : "its elements have no such face";
                 for (const Index c : cells)
-                    if (const mesh::RawFace face = mesh::deck_face(model_.mesh.raw.cells[c], label[1] - '1');
-                        face.count > 0)
+                    if (const mesh::RawFace face = model_.mesh.face_of(c, label[1] - '1'); face.count > 0)
                         p.faces.push_back(face);
                 if (long long id = 0; to_integer(fields_[0], id)) p.name = "elements"; // one by one
             }

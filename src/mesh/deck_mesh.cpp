@@ -2,6 +2,7 @@
 
 #include "mesh/deck_elements.hpp"
 #include "mesh/deck_numbers.hpp"
+#include "mesh/deck_planes.hpp"
 #include "mesh/deck_reading.hpp"
 #include "mesh/deck_sets.hpp"
 #include "mesh/deck_surfaces.hpp"
@@ -26,9 +27,9 @@ public:
         mesh_.raw.file = deck_.files.empty() ? "" : deck_.files.front();
         read_all_nodes();
         points_.index(mesh_.raw.file, reading_.faults);
-        mesh_.raw.elsewhere.assign(mesh_.raw.points.size(), 0);
         for (const DeckCard& card : deck_.cards)
             if (card.keyword == "ELEMENT") read_elements(card);
+        mesh_.raw.elsewhere.assign(mesh_.raw.points.size(), 0);
         cells_.index(mesh_.raw.file, reading_.faults);
         read_sets_and_surfaces();
         reading_.faults.throw_if_any();
@@ -78,7 +79,8 @@ private:
     void read_elements(const DeckCard& card) {
         const std::string name = type_name(card);
         const CellInfo* type = deck_element_type(name);
-        if (type == nullptr) {
+        const std::optional<PlaneType> plane = deck_plane_type(name);
+        if (type == nullptr && !plane) {
             reading_.fault(card, "*ELEMENT of type '" + name + "'; only " + deck_element_names() + " are read");
             reading_.refused = true;
             return;
@@ -86,7 +88,13 @@ private:
         auto kind = std::find(mesh_.types.begin(), mesh_.types.end(), name);
         if (kind == mesh_.types.end()) kind = mesh_.types.insert(kind, name);
         const auto kind_number = static_cast<char>(kind - mesh_.types.begin());
-        const auto count = static_cast<std::size_t>(type->nodes);
+        const auto count = static_cast<std::size_t>(plane ? plane->nodes : type->nodes);
+        double thickness = 0;
+        if (plane) {
+            if (!planes_) planes_.emplace(reading_, mesh_);
+            thickness = plane->slice == DeckSlice::axisymmetric ? 0 : planes_->thickness(card);
+            mesh_.slices.resize(mesh_.raw.cells.size(), DeckSlice::none);
+        }
         std::vector<long long> numbers;
         for (auto line = deck_.begin(card); line != deck_.end(card);) {
             // An element goes on over as many lines as it takes.
@@ -106,7 +114,7 @@ private:
             if (!good || numbers.size() != count + 1 || numbers[0] <= 0 || numbers[0] > DeckNumbers::largest)
                 reading_.fault(first, "an element of type " + name + " is its number and " + std::to_string(count) +
                                           " nodes, found '" + shown(first.text) + "'");
-            else if (add_cell(first, *type, numbers))
+            else if (plane ? add_layer(first, *plane, thickness, numbers) : add_cell(first, *type, numbers))
                 mesh_.type.push_back(kind_number);
         }
     }
@@ -129,12 +137,32 @@ private:
         return true;
     }
 
+    /// The same for an element in a plane.
+    bool add_layer(const DeckLine& line, const PlaneType& type, double thickness,
+                   const std::vector<long long>& numbers) {
+        std::vector<Index> points;
+        for (std::size_t i = 1; i < numbers.size(); ++i) {
+            points.push_back(points_.look_up(numbers[i]));
+            if (points.back() >= 0) continue;
+            reading_.fault(line, "element " + std::to_string(numbers[0]) + " has node " + std::to_string(numbers[i]) +
+                                     ", which does not exist");
+            return false;
+        }
+        RawCell cell = planes_->layer(type, points, thickness);
+        cell.id = numbers[0];
+        cells_.add(cell.id, static_cast<Index>(mesh_.raw.cells.size()));
+        mesh_.raw.cells.push_back(cell);
+        mesh_.slices.push_back(type.slice);
+        return true;
+    }
+
     void read_sets_and_surfaces() {
         for (const DeckCard& card : deck_.cards) {
             if (card.keyword == "NODE") node_sets_.read_defined(card, 1);
             if (card.keyword == "ELEMENT") {
                 const CellInfo* type = deck_element_type(type_name(card));
-                const int nodes = type == nullptr ? 0 : type->nodes;
+                const std::optional<PlaneType> plane = deck_plane_type(type_name(card));
+                const int nodes = plane ? plane->nodes : type == nullptr ? 0 : type->nodes;
                 element_sets_.read_defined(card, static_cast<std::size_t>(nodes) + 1);
             }
             if (card.keyword == "NSET") node_sets_.read(card);
@@ -150,6 +178,7 @@ private:
     DeckMesh mesh_;
     DeckNumbers points_{"node"}, cells_{"element"};
     DeckSets node_sets_{reading_, points_, "NSET"}, element_sets_{reading_, cells_, "ELSET"};
+    std::optional<DeckPlanes> planes_;
     std::vector<std::string_view> fields_; ///< of the line that is read
 };
 
@@ -161,6 +190,13 @@ Index DeckMesh::cell(long long id) const {
 
 Index DeckMesh::point(long long id) const {
     return find_id(point_order, id);
+}
+
+RawFace DeckMesh::face_of(Index cell, int face) const {
+    const auto c = static_cast<std::size_t>(cell);
+    const bool plane = c < slices.size() && slices[c] != DeckSlice::none;
+    constexpr int sides = 2; // faces of the layer before those of its sides
+    return plane && face < 0 ? RawFace{} : deck_face(raw.cells[c], plane ? face + sides : face);
 }
 
 DeckMesh read_deck_mesh(const Deck& deck) {

@@ -59,7 +59,7 @@ void DeckSurfaces::add_face(const DeckLine& line, const std::vector<Index>& cell
     const std::string label = in_capitals(fields_[1]);
     const int face = label.size() == 2 && label[0] == 'S' ? label[1] - '1' : -1;
     for (const Index c : cells) {
-        const RawFace one = face < 0 ? RawFace{} : deck_face(mesh_.raw.cells[c], face);
+        const RawFace one = face < 0 ? RawFace{} : mesh_.face_of(c, face);
         if (one.count > 0)
             faces.push_back(one);
         else
@@ -84,7 +84,7 @@ void DeckSurfaces::add_outside(const std::vector<Index>& cells, std::vector<RawF
             for (int i = 0; i < corners.count; ++i) wanted[i] = mesh_.raw.cells[c].nodes[corners.nodes[i]];
             sort_few(wanted.begin(), wanted.end());
             for (int f = 0; f < 6; ++f) {
-                const RawFace face = deck_face(mesh_.raw.cells[c], f);
+                const RawFace face = mesh_.face_of(c, f);
                 if (face.count == 0) continue;
                 std::array<Index, 4> has{-1, -1, -1, -1};
                 std::copy(face.nodes.begin(), face.nodes.begin() + corners.count, has.begin());

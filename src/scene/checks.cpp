@@ -221,6 +221,7 @@ public:
         }
         if (!body.has_material && !body.rigid) fault({"bodies", name}, "a material, or rigid: true", "neither");
         if (!body.rigid) return;
+        if (body.slice) fault({"bodies", name, "slice"}, "a body that deforms", "a rigid one");
         const Rigid& rigid = *body.rigid;
         const std::vector<std::string> path{"bodies", name, "rigid"};
         const auto key = [&](const char* last) { return std::vector<std::string>{"bodies", name, "rigid", last}; };

@@ -354,6 +354,26 @@ void describe(Visitor& v, MeshSpec& mesh) {
 
 } // namespace
 
+void describe(Visitor& v, Slice& slice) {
+    static const Words kinds{"plane_strain", "plane_stress", "axisymmetric"};
+    word(v,
+         {.name = "kind",
+          .meaning = "plane_strain: no displacement along the normal. plane_stress: free to thicken or thin. "
+                     "axisymmetric: a thin wedge of a body of revolution that does not twist.",
+          .required = true},
+         kinds, slice.kind);
+    v.vector({.name = "axis",
+              .meaning = "Normal of the plane, or the axis of revolution.",
+              .range = range::direction,
+              .direction = true},
+             slice.axis);
+    v.vector({.name = "point",
+              .meaning = "A point of the axis of revolution.",
+              .unit = dimension::length,
+              .range = range::position},
+             slice.point);
+}
+
 void describe(Visitor& v, Body& body) {
     v.optional_group({.name = "mesh",
                       .meaning = "A generator or a file, and its placement.",
@@ -375,6 +395,14 @@ void describe(Visitor& v, Body& body) {
                       .bare_flag = true},
                      is_rigid, [&] { describe(v, rigid); });
     body.rigid = is_rigid || is_exact ? std::optional(rigid) : std::nullopt;
+    bool is_slice = body.slice.has_value();
+    Slice slice = body.slice.value_or(Slice{});
+    v.optional_group({.name = "slice",
+                      .meaning =
+                          "The body is one layer of elements, whose nodes above one another move alike: it stands "
+                          "for a plane body, or for one of revolution."},
+                     is_slice, [&] { describe(v, slice); });
+    body.slice = is_slice ? std::optional(slice) : std::nullopt;
     const auto material = [&] {
         static const Words tags{"linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "elastic_plastic",
                                 "orthotropic"};

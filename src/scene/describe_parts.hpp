@@ -61,6 +61,7 @@ void one_of(Visitor& v, const Words& tags, const std::vector<const char*>& meani
 
 void describe(Visitor& v, Body& body);
 void describe(Visitor& v, Rigid& rigid);
+void describe(Visitor& v, Slice& slice);
 void describe(Visitor& v, RigidSurface& surface);
 void describe(Visitor& v, Coupling& coupling);
 void describe(Visitor& v, Tie& tie);

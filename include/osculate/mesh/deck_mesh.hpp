@@ -11,6 +11,9 @@
 
 namespace osculate::mesh {
 
+/// What a layer of elements stands for whose deck has plane elements.
+enum class DeckSlice : char { none, plane_strain, plane_stress, axisymmetric };
+
 /// A mesh with additional data of its deck. Names in capitals are keys, because decks do not distinguish upper and
 /// lower case.
 struct DeckMesh {
@@ -20,13 +23,22 @@ struct DeckMesh {
     std::map<std::string, std::string> node_set_names, element_set_names; ///< key -> as first written, as in `raw`
     std::map<std::string, std::string> surface_names;
 
+    /// Per cell; empty where no cell is plane. A plane element becomes one layer of solid elements above it along z, as thick
+    /// as its section says, or within `sector_angle` about y. Its sides are the faces S1 to S4.
+    std::vector<DeckSlice> slices;
+    std::map<Index, std::vector<Index>> above; ///< points of the layer over a point of a plane element
+    static constexpr double sector_angle = 2;  ///< degrees, as in CalculiX
+
+    /// Face of a cell, as deck_face() but for plane elements.
+    [[nodiscard]] RawFace face_of(Index cell, int face) const;
     /// Cell or point with a given number in the deck, -1 if there is none.
     [[nodiscard]] Index cell(long long id) const;
     [[nodiscard]] Index point(long long id) const;
     std::vector<std::pair<long long, Index>> cell_order, point_order; ///< ascending
 };
 
-/// Reads *NODE, *ELEMENT of types C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, *NSET, *ELSET (GENERATE; a set may name
+/// Reads *NODE, *ELEMENT of types C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D20, C3D20R, and of CPE, CPS and CAX with 3, 4 or
+/// 8 nodes, *NSET, *ELSET (GENERATE; a set may name
 /// others) and *SURFACE of faces S1 to S6, of whole element sets (their exterior faces) and of nodes. Ignores other
 /// keywords. Element sets become parts, surfaces of nodes become node sets. Throws MeshError with all faults, each with
 /// file and line.

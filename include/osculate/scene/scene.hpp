@@ -165,12 +165,23 @@ struct Rigid {
     bool operator==(const Rigid&) const = default;
 };
 
+enum class SliceKind { plane_strain, plane_stress, axisymmetric };
+
+/// A body of one layer of elements that stands for one without thickness, or for a body of revolution.
+struct Slice {
+    SliceKind kind = SliceKind::plane_strain;
+    Vec3 point = Vec3::Zero(); ///< of the axis of revolution, m
+    Vec3 axis = Vec3::UnitZ(); ///< normal of the plane, or the axis of revolution
+    bool operator==(const Slice&) const = default;
+};
+
 struct Body {
     MeshSpec mesh;
     std::optional<RigidSurface> rigid_surface; ///< in place of the mesh
     bool has_mesh = true;                      ///< as a scene is written
     Material material;
     std::optional<Rigid> rigid;
+    std::optional<Slice> slice;
     bool has_material = true; ///< a rigid body needs none
     HexFormulation hex_formulation = HexFormulation::full;
     std::string finish; ///< name of its surface, for pairs of general contact; empty: none

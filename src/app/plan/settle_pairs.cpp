@@ -1,5 +1,6 @@
 #include "app/plan/settle_pairs.hpp"
 
+#include "app/fault.hpp"
 #include "app/plan/smooth_parts.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
@@ -70,9 +71,17 @@ std::string why_discretisation(bool dynamic) {
     return dynamic ? "node, which conserves energy: a stage is dynamic" : "petrov_galerkin: every stage is static";
 }
 
+/// Whether the master's body is one facet wide, which tells a smooth surface nothing about its slope across.
+bool is_slice(const Draft& draft, const scene::Pair& pair) {
+    if (!pair.master.rigid_surface.empty()) return false;
+    const auto body = static_cast<std::size_t>(draft.set(pair.master.set).body);
+    return draft.scene.bodies[body].second.slice.has_value();
+}
+
 /// Patches over a plane face give the gaps and normals of its facets, as long as it does not bend; in steps of dynamics
 /// the little that it bends is not worth them. In statics the shares of the master's nodes are results, which would change.
 bool facets_suffice(const Draft& draft, const scene::Pair& pair, bool dynamic) {
+    if (is_slice(draft, pair)) return true;
     if (!dynamic || pair.discretisation != Discretisation::node) return false;
     const std::vector<Vec3>& X = draft.plan.model.X;
     const std::vector<mesh::Facet>& facets = draft.set(pair.master.set).facets;
@@ -101,7 +110,13 @@ void settle_pairs(Draft& draft) {
             choice.discretisation =
                 exact ? "node: the master is a rigid surface, exact at every node" : why_discretisation(dynamic);
         }
-        if (!std::holds_alternative<scene::AutomaticSurface>(pair.master.surface)) continue;
+        if (!std::holds_alternative<scene::AutomaticSurface>(pair.master.surface)) {
+            if (is_slice(draft, pair) && !std::holds_alternative<scene::FacetsSurface>(pair.master.surface))
+                draft.faults.push_back(fault("contact." + name + ".master.surface",
+                                             "facets: a slice is one facet wide, which gives no smooth surface",
+                                             "another surface"));
+            continue;
+        }
         if (!exact && facets_suffice(draft, pair, dynamic))
             pair.master.surface = scene::FacetsSurface{};
         else

@@ -1,0 +1,88 @@
+#include "mesh/deck_planes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace osculate::mesh {
+
+std::optional<PlaneType> deck_plane_type(std::string_view name) {
+    if (name.ends_with('R')) name.remove_suffix(1);
+    if (name.size() != 4) return std::nullopt;
+    PlaneType type;
+    const std::string_view kind = name.substr(0, 3);
+    type.slice = kind == "CPE"   ? DeckSlice::plane_strain
+                 : kind == "CPS" ? DeckSlice::plane_stress
+                 : kind == "CAX" ? DeckSlice::axisymmetric
+                                 : DeckSlice::none;
+    type.nodes = name[3] - '0';
+    type.solid = type.nodes == 3 ? CellType::wedge6 : type.nodes == 4 ? CellType::hex8 : CellType::hex20;
+    if (type.slice == DeckSlice::none || (type.nodes != 3 && type.nodes != 4 && type.nodes != 8)) return std::nullopt;
+    return type;
+}
+
+DeckPlanes::DeckPlanes(DeckReading& reading, DeckMesh& mesh) : reading_(reading), mesh_(mesh) {
+    std::vector<std::string_view> fields;
+    for (const DeckCard& card : reading.deck.cards) {
+        const std::string* set = card.parameter("ELSET");
+        if (card.keyword != "SOLID SECTION" || set == nullptr) continue;
+        double value = 1;
+        if (card.first != card.last) {
+            split_fields(reading.deck.begin(card)->text, fields);
+            if (!fields.empty() && !fields[0].empty() && (!to_number(fields[0], value) || !(value > 0))) value = 1;
+        }
+        of_set_[in_capitals(*set)] = value;
+    }
+}
+
+double DeckPlanes::thickness(const DeckCard& card) {
+    if (of_set_.empty()) return 1;
+    const std::string* set = card.parameter("ELSET");
+    if (set != nullptr)
+        if (const auto at = of_set_.find(in_capitals(*set)); at != of_set_.end()) return at->second;
+    const double first = of_set_.begin()->second;
+    if (std::ranges::all_of(of_set_, [&](const auto& one) { return one.second == first; })) return first;
+    reading_.fault(card,
+                   "*ELEMENT: sections of other sets have several thicknesses; its own ELSET must have a section");
+    return 0;
+}
+
+Index DeckPlanes::above(Index point, const PlaneType& type, double thickness, double share) {
+    const auto [at, fresh] = made_.try_emplace({point, type.slice, thickness, share}, -1);
+    if (!fresh) return at->second;
+    Vec3 x = mesh_.raw.points[static_cast<std::size_t>(point)];
+    if (type.slice == DeckSlice::axisymmetric) {
+        const double angle = share * DeckMesh::sector_angle * std::numbers::pi / 180;
+        x = Vec3(x[0] * std::cos(angle), x[1], x[2] + x[0] * std::sin(angle));
+    } else {
+        x[2] += share * thickness;
+    }
+    at->second = static_cast<Index>(mesh_.raw.points.size());
+    mesh_.raw.points.push_back(x);
+    mesh_.raw.point_ids.push_back(mesh_.raw.point_ids[static_cast<std::size_t>(point)]);
+    mesh_.above[point].push_back(at->second);
+    return at->second;
+}
+
+RawCell DeckPlanes::layer(const PlaneType& type, const std::vector<Index>& points, double thickness) {
+    const std::size_t corners = std::min<std::size_t>(points.size(), 4);
+    std::vector<Index> all;
+    const auto add = [&](std::size_t first, std::size_t last, double share) {
+        for (std::size_t i = first; i < last; ++i)
+            all.push_back(share == 0 ? points[i] : above(points[i], type, thickness, share));
+    };
+    add(0, corners, 0);
+    add(0, corners, 1);
+    if (points.size() > corners) {
+        add(corners, points.size(), 0);
+        add(corners, points.size(), 1);
+        add(0, corners, 0.5);
+    }
+    RawCell cell;
+    cell.type = type.solid;
+    const CellInfo& info = cell_info(type.solid);
+    for (std::size_t i = 0; i < all.size(); ++i) cell.nodes[i] = all[static_cast<std::size_t>(info.from_deck[i])];
+    return cell;
+}
+
+} // namespace osculate::mesh

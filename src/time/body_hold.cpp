@@ -72,6 +72,11 @@ void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equil
     const linear::Constraints& constraints = equilibrium.constraints();
     const Field x = sum(model.X, state.u);
     const double round_off = failed.ladder.tolerance * failed.ladder.reference_force;
+    std::vector<linear::NodeConstraint> all;
+    for (Index node = 0; node < model.nodes() && !model.led.empty(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (const auto* c = constraints.constraint(node, k)) all.push_back(*c);
+    const std::vector<char> joined = model::held_by_equations(model, all);
     for (std::size_t b = 0; b < holds.size(); ++b) {
         const Body& body = model.bodies[b];
         BodyHold& one = holds[b];
@@ -102,6 +107,10 @@ void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equil
         }
         one.free_with_contact = hold.free();
         one.free_motions = hold.free_motions();
+        if (joined[b] != 0) {
+            one.free_by_supports = one.free_with_contact = 0;
+            one.free_motions.clear();
+        }
     }
 }
 

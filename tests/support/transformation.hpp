@@ -138,7 +138,10 @@ inline void turn_scene(scene::Scene& scene, const Mat3& turn) {
     for (auto& [name, body] : scene.bodies) {
         body.initial_velocity = turn * body.initial_velocity;
         body.initial_spin = turn.determinant() * (turn * body.initial_spin); // an axial vector
+        if (body.slice) body.slice->axis = turn * body.slice->axis;
     }
+    for (auto& [name, equation] : scene.equations)
+        for (auto& [set, factors] : equation.terms) factors = turn * factors;
     for (auto& [set, support] : scene.supports) support.axes = turn * support.axes;
     for (auto& [stage_name, stage] : scene.stages) {
         for (const auto& [set, components] : stage.displacement)
@@ -148,6 +151,7 @@ inline void turn_scene(scene::Scene& scene, const Mat3& turn) {
                 scene.supports.emplace_back(set, axes);
             }
         for (auto& [body, force] : stage.body_force) force = turned(force, turn);
+        for (auto& [set, force] : stage.nodal_force) force = turned(force, turn);
     }
 }
 

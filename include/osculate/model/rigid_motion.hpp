@@ -17,6 +17,13 @@ struct Extent {
 /// @param x  (all nodes) positions, m
 [[nodiscard]] Extent extent(const Body& body, const std::vector<Vec3>& x);
 
+/// (bodies) A number that bodies share which ties or equations join.
+[[nodiscard]] std::vector<Index> joined_groups(const Model& model);
+/// (bodies) Whether equations join a body to others, or to itself, and these constraints hold all of them together: by
+/// the rank of small motions.
+[[nodiscard]] std::vector<char> held_by_equations(const Model& model,
+                                                  const std::vector<linear::NodeConstraint>& constraints);
+
 /// Gram matrix of the rows d . (t + w x r) of held directions d: its rank is the number of motions that they hold.
 class RigidHold {
 public:

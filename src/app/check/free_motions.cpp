@@ -1,6 +1,6 @@
 #include "app/check/free_motions.hpp"
 
-#include "app/plan/supports.hpp"
+#include "osculate/model/rigid_motion.hpp"
 #include "osculate/core/dense_algebra.hpp"
 
 #include <algorithm>
@@ -108,7 +108,7 @@ public:
         }
         for (const model::ContactEvaluation& evaluation : contact_) add(evaluation);
         share_among_tied();
-        const std::vector<char> joined = held_by_equations(plan_.model, stage);
+        const std::vector<char> joined = model::held_by_equations(plan_.model, stage.constraints);
         std::vector<FreeMotion> found;
         std::vector<std::vector<std::string>> own;
         for (std::size_t b = 0; b < holds_.size(); ++b) {

@@ -455,6 +455,7 @@ private:
         map("pressure", stages_[s].pressure, false);
         map("follower_pressure", stages_[s].follower_pressure, false);
         map("body_force", stages_[s].body_force, false);
+        map("centrifugal", stages_[s].centrifugal, false);
         map("nodal_force", stages_[s].nodal_force, false);
         map("temperature", stages_[s].temperature, false);
         for (auto& [set, components] : stages_[s].release) components = "[" + components + "]";

@@ -5,6 +5,7 @@
 #include "osculate/mesh/surface_faces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
@@ -51,6 +52,7 @@ void DeckLoads::write(std::vector<StageLoads>& stages) {
         add_pressures(step);
         add_forces(step);
         add_gravity(step);
+        add_centrifugal(step, stages[s]);
         end_step(s, stages[s]);
     }
     write_pressures(stages);
@@ -212,6 +214,42 @@ void DeckLoads::add_partial_gravity(std::size_t b, const std::vector<const DeckG
     }
     for (const auto& [amplitude, acceleration] : first)
         add_acceleration(b, fmt::format("{}", fmt::join(names, "+")), acceleration, amplitude);
+}
+
+void DeckLoads::add_centrifugal(const DeckStep& step, StageLoads& stage) {
+    const auto vector = [](const Vec3& v) {
+        return "[" + number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]) + "]";
+    };
+    const auto write = [&](std::size_t b, const Vec3& point, const Vec3& axis, double speed) {
+        stage.centrifugal[bodies_[b].name] =
+            "{point: " + vector(point) + ", axis: " + vector(axis) + ", speed: " + number(speed) + "}";
+    };
+    if (step.forget_on_elements) {
+        for (const std::size_t b : turning_) write(b, Vec3::Zero(), Vec3::UnitZ(), 0);
+        turning_.clear();
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const DeckBody& body = bodies_[b];
+        const DeckCentrifugal* last = nullptr;
+        for (const DeckCentrifugal& c : step.centrifugal) {
+            std::vector<Index> in, sorted = c.cells;
+            std::sort(sorted.begin(), sorted.end());
+            std::set_intersection(sorted.begin(), sorted.end(), body.cells.begin(), body.cells.end(),
+                                  std::back_inserter(in));
+            if (in.empty()) continue;
+            if (!(density(body) > 0))
+                model_.lose(c.place, "CENTRIF on body " + body.name, "it has no density");
+            else if (in.size() != body.cells.size())
+                model_.lose(c.place, "CENTRIF on part of body " + body.name, "centrifugal forces act on whole bodies");
+            else if (last != nullptr)
+                model_.lose(c.place, "CENTRIF twice on body " + body.name, "a body turns about one axis");
+            else
+                last = &c;
+        }
+        if (last == nullptr) continue;
+        turning_.insert(b);
+        write(b, units_.length * last->point, last->axis, std::sqrt(last->square));
+    }
 }
 
 void DeckLoads::add_acceleration(std::size_t b, const std::string& origin, const Vec3& acceleration,

@@ -25,7 +25,7 @@ struct Units {
 /// Entries of a stage: name of a set or a body -> value as a scene has it.
 struct StageLoads {
     std::map<std::string, std::string> displacement, pressure, follower_pressure, body_force, nodal_force, temperature,
-        release, friction, pairs;
+        release, friction, pairs, centrifugal;
 };
 
 /// Pressures are kept face by face and gravity body by body over all steps, so that what a step changes on some faces stays on
@@ -73,6 +73,8 @@ private:
     void add_gravity(const DeckStep& step);
     /// Gravity on some elements of a body each, that add up to the same in all of them.
     void add_partial_gravity(std::size_t body, const std::vector<const DeckGravity*>& parts);
+    /// Of whole bodies; what a step gives a body takes the place of what it had.
+    void add_centrifugal(const DeckStep& step, StageLoads& stage);
     void add_acceleration(std::size_t body, const std::string& origin, const Vec3& acceleration,
                           const std::string& amplitude);
     FacetLoad& facet_load(const FacetKey& key, const std::string& name, const std::string& place);
@@ -90,6 +92,7 @@ private:
     std::map<std::array<Index, 4>, std::pair<std::size_t, Index>> exterior_; ///< by corners: body and facet
     std::map<FacetKey, FacetLoad> facets_;
     std::vector<std::array<LoadHistory, 3>> gravity_; ///< by body, N/m^3
+    std::set<std::size_t> turning_;                   ///< bodies
     std::map<Index, NodeForce> forces_;               ///< by point of the deck
 };
 

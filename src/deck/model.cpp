@@ -306,6 +306,10 @@ private:
                 gravity(place, shown, amplitude);
                 continue;
             }
+            if (label == "CENTRIF" && fields_.size() >= 9 && amplitude.empty()) {
+                centrifugal(place, shown);
+                continue;
+            }
             DeckPressure p;
             p.amplitude = amplitude;
             p.place = place;
@@ -315,7 +319,7 @@ private:
             }
             p.name = std::string(fields_[0]);
             p.keyword = card.keyword;
-            std::string why = "only pressures on faces and gravity have a counterpart";
+            std::string why = "only pressures on faces, gravity and centrifugal forces have a counterpart";
             if (on_surface) {
                 const auto at = model_.mesh.surface_names.find(in_capitals(fields_[0]));
                 if (at == model_.mesh.surface_names.end())
@@ -350,6 +354,18 @@ private:
         g.amplitude = amplitude;
         g.place = place;
         step_->gravity.push_back(std::move(g));
+    }
+
+    void centrifugal(const std::string& place, const std::string& shown) {
+        DeckCentrifugal c;
+        bool good = to_number(fields_[2], c.square) && c.square >= 0;
+        for (std::size_t d = 0; d < 3; ++d)
+            good = good && to_number(fields_[3 + d], c.point[static_cast<Index>(d)]) &&
+                   to_number(fields_[6 + d], c.axis[static_cast<Index>(d)]);
+        c.cells = cells_of(fields_[0]);
+        if (!good || c.cells.empty() || !(c.axis.norm() > 0)) return lose(place, shown, "not understood");
+        c.place = place;
+        step_->centrifugal.push_back(std::move(c));
     }
 
     /// Whether the step that begins with a card asks for eigenfrequencies, which the steps before it do not depend on.

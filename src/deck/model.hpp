@@ -123,6 +123,14 @@ struct DeckGravity {
     std::string amplitude, place;
 };
 
+/// CENTRIF: the square of an angular speed, and an axis.
+struct DeckCentrifugal {
+    std::vector<Index> cells;
+    double square = 0;
+    Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
+    std::string place;
+};
+
 struct DeckStep {
     std::string place;
     bool dynamic = false, direct = false;
@@ -133,6 +141,7 @@ struct DeckStep {
     std::vector<DeckValues> held, forces;
     std::vector<DeckPressure> pressures;
     std::vector<DeckGravity> gravity;
+    std::vector<DeckCentrifugal> centrifugal;
     std::vector<DeckTemperature> temperatures;
     std::map<std::string, double> friction; ///< by interactions, in capitals: from this step on
     std::vector<std::tuple<std::string, std::string, bool>>

@@ -285,6 +285,20 @@ void add_body_force(const Body& body, const Vec3& b, Field& f) {
         });
 }
 
+void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis, double factor, Field& f) {
+    // positions are interpolated as displacements are: the integral of N_i x is a product with the mass matrix
+    Matrix mass;
+    for_each_element(
+        body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
+            mass.setZero(kernel.nodes(), kernel.nodes());
+            kernel.mass(X, factor, mass);
+            const Eigen::Matrix3Xd arm = X.colwise() - point;
+            const Eigen::Matrix3Xd across = arm - axis * (axis.transpose() * arm);
+            const Eigen::Matrix3Xd fe = across * mass;
+            for (int i = 0; i < kernel.nodes(); ++i) f[element[static_cast<std::size_t>(i)]] += fe.col(i);
+        });
+}
+
 Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index b, const State& state) {
     const Body& body = model.bodies[static_cast<std::size_t>(b)];
     std::size_t history = history_place(model.bodies, static_cast<std::size_t>(b)).first;

@@ -67,8 +67,8 @@ std::string text_of(const OutlineItem& group, const std::string& key) {
 /// Who a load or motion acts on keeps its name: "pressure: top 1 MPa".
 std::string loads(const OutlineItem& stage) {
     std::string list;
-    for (const char* kind : {"displacement", "pressure", "follower_pressure", "body_force", "nodal_force",
-                             "temperature", "motion", "force", "moment"}) {
+    for (const char* kind : {"displacement", "pressure", "follower_pressure", "body_force", "centrifugal",
+                             "nodal_force", "temperature", "motion", "force", "moment"}) {
         const OutlineItem* group = stage.find(kind);
         if (group == nullptr) continue;
         for (const OutlineItem& target : group->items) {
@@ -130,7 +130,7 @@ std::string stages(const OutlineItem& all) {
     for (const OutlineItem& stage : all.items) {
         std::string more =
             others(stage, {"analysis", "duration", "steps", "displacement", "pressure", "follower_pressure",
-                           "body_force", "nodal_force", "temperature", "motion", "force", "moment"});
+                           "body_force", "centrifugal", "nodal_force", "temperature", "motion", "force", "moment"});
         list +=
             element("li", element("b", escaped(stage.key)) + ": " + escaped(phrases(stage.find("analysis"))) + ", " +
                               escaped(text_of(stage, "duration")) + " in " + escaped(text_of(stage, "steps")) +

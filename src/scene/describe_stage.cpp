@@ -247,6 +247,25 @@ void describe(Visitor& v, Stage& stage) {
                      value);
         });
     named(v,
+          {.name = "centrifugal",
+           .meaning = "Centrifugal force on bodies that turn about an axis, reached at the end of the stage.",
+           .names = Names::body,
+           .item = "body"},
+          stage.centrifugal, [&](const std::string& body, Centrifugal& value) {
+              v.group(
+                  {.name = body, .meaning = "Of the undeformed body, with its density; seen from axes that turn."},
+                  [&] {
+                      describe(v, value.axis);
+                      v.number(
+                          {.name = "speed",
+                           .meaning = "Angular speed; the force grows with its square, and ramps as loads do. 0: none.",
+                           .unit = dimension::spin,
+                           .range = {.low = 0, .high = 1e9},
+                           .required = true},
+                          value.speed);
+                  });
+          });
+    named(v,
           {.name = "nodal_force",
            .meaning = "Force on the nodes of sets, reached at the end of the stage.",
            .names = Names::set,

@@ -222,6 +222,7 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
             "for both",
             "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, control, ramp, "
             "displacement, pressure, follower_pressure, body_force, release, friction, pairs, temperature, "
+            "centrifugal, "
             "nodal_force, motion, "
             "force, moment, "
             "found unknown "

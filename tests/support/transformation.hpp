@@ -152,6 +152,8 @@ inline void turn_scene(scene::Scene& scene, const Mat3& turn) {
             }
         for (auto& [body, force] : stage.body_force) force = turned(force, turn);
         for (auto& [set, force] : stage.nodal_force) force = turned(force, turn);
+        for (auto& [body, c] : stage.centrifugal)
+            c.axis.point = turn * c.axis.point, c.axis.direction = turn * c.axis.direction;
     }
 }
 

@@ -195,6 +195,42 @@ TEST(Slices, AHeatedRingPressesOnAnotherAsLameSays) {
     }
 }
 
+TEST(Slices, ADiscThatTurnsWidensAsTheoryAndItsSectorSay) {
+    // Timoshenko and Goodier 1970, section 32: an annular disc in plane stress
+    constexpr double rho = 1000, w = 30, E = 1e7, nu = 0.3, a = 1, b = 2;
+    const auto exact = [&](double r) {
+        return rho * w * w / E * (3 + nu) / 8 *
+               ((1 - nu) * (a * a + b * b) * r + (1 + nu) * a * a * b * b / r - (1 - nu * nu) / (3 + nu) * r * r * r);
+    };
+    const std::string text = with(rings, {{"ELEMENT", "hex20"},
+                                          {"LAW", "linear_elastic"},
+                                          {"size: [1 m, 0.3 m", "size: [1 m, 0.05 m"},
+                                          {"divisions: [6, 2, 1]", "divisions: [6, 1, 1]"},
+                                          {"expansion:", "density: 1000 kg/m^3, expansion:"},
+                                          {"SECOND", ""},
+                                          {"SETS", ""},
+                                          {"SUPPORTS", ""}});
+    const auto found = run_wedges(
+        with(text, {{"LOAD", "centrifugal: {ring: {point: [0 m, 7 m, 0 m], axis: [0, -3, 0], speed: 30 rad/s}}"}}));
+    EXPECT_NEAR(radial(*found, "inside"), exact(a), 2e-3 * exact(a));
+    EXPECT_NEAR(radial(*found, "outside"), exact(b), 2e-3 * exact(b));
+    // at twice the speed in a second stage, and none in a third
+    const auto stages = run_wedges(
+        with(text, {{"  load: {LOAD}",
+                     "  first: {centrifugal: {ring: {point: [0 m, 0 m, 0 m], axis: [0, 1, 0], speed: 15 rad/s}}}\n"
+                     "  second: {centrifugal: {ring: {point: [0 m, 0 m, 0 m], axis: [0, 1, 0], speed: 30 rad/s}}}\n"
+                     "  third: {centrifugal: {ring: {point: [0 m, 0 m, 0 m], axis: [0, 1, 0], speed: 0 rad/s}}}\n"}}));
+    const auto outside = [&](std::size_t step) {
+        return stages->steps[step].state.u[set_of(*stages, "outside").nodes.front()].norm();
+    };
+    EXPECT_NEAR(outside(0), outside(1) / 4, 1e-9);
+    EXPECT_NEAR(outside(2), 0, 1e-12);
+    EXPECT_THROW(
+        run_wedges(
+            with(text, {{"LOAD", "centrifugal: {ring: {point: [1 m, 0 m, 0 m], axis: [0, 1, 0], speed: 1 rad/s}}"}})),
+        SceneError);
+}
+
 TEST(Slices, RefuseWhatIsNoLayer) {
     const auto faults = [](const std::string& text, bool wedges = false) {
         try {

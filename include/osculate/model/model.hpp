@@ -165,6 +165,10 @@ struct MassProperties {
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).
 void add_body_force(const Body& body, const Vec3& b, Field& f);
 
+/// Consistent nodal forces factor * (distance from an axis) on one body (N/m^4), exact for the elements' own positions, added
+/// into f (all nodes). @param axis  unit vector
+void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis, double factor, Field& f);
+
 /// State after an accepted step, restored after a rejected one: plain values.
 struct State {
     double time = 0;

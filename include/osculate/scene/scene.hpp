@@ -386,6 +386,13 @@ struct StepControl {
     bool operator==(const StepControl&) const = default;
 };
 
+/// Force of a body that turns, on the undeformed body: density * speed^2 * distance from the axis.
+struct Centrifugal {
+    Axis axis;
+    double speed = 0; ///< rad/s
+    bool operator==(const Centrifugal&) const = default;
+};
+
 /// Every constant value is reached at the end of the stage. Values that the stage does not name stay; those with a
 /// course over time stay at its last value.
 struct Stage {
@@ -400,6 +407,7 @@ struct Stage {
     Named<Course> follower_pressure; ///< set -> pressure on the current area, along the current normal, Pa
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
     Named<std::array<Course, 3>> body_force;  ///< body -> N/m^3
+    Named<Centrifugal> centrifugal;           ///< body ->
     Named<std::array<Course, 3>> nodal_force; ///< set -> on each of its nodes, N
     Named<double> friction;                   ///< pair -> coefficient from this stage on
     Named<bool> pairs;                        ///< pair -> whether it is in force from this stage on

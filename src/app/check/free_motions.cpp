@@ -1,7 +1,7 @@
 #include "app/check/free_motions.hpp"
 
-#include "osculate/model/rigid_motion.hpp"
 #include "osculate/core/dense_algebra.hpp"
+#include "osculate/model/rigid_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -25,6 +25,7 @@ void Driving::update(const scene::Stage& stage) {
     for (const auto& [set, value] : stage.pressure) pressure[set] = value;
     for (const auto& [set, value] : stage.follower_pressure) follower_pressure[set] = value;
     for (const auto& [body, value] : stage.body_force) body_force[body] = value;
+    for (const auto& [body, value] : stage.centrifugal) centrifugal[body] = value;
     for (const auto& [part, value] : stage.temperature) {
         std::erase_if(temperature, [&, &name = part](const auto& before) { return before.first == name; });
         temperature.emplace_back(part, value);

@@ -20,6 +20,7 @@ struct Driving {
     std::vector<std::pair<std::string, scene::Course>>
         temperature; ///< by body or set, in the order in which they are named
     std::map<std::string, std::array<scene::Course, 3>> body_force;            ///< by body
+    std::map<std::string, scene::Centrifugal> centrifugal;                     ///< by body
     std::map<std::string, std::array<scene::Course, 3>> nodal_force;           ///< by set
     std::map<std::string, std::array<std::optional<scene::Course>, 6>> motion; ///< by rigid body
     std::map<std::string, std::array<scene::Course, 3>> force, moment;         ///< by rigid body

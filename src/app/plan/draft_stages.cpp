@@ -65,6 +65,11 @@ Field ramped_forces(const Draft& draft, const Driving& driving) {
     for (const auto& [body, b] : driving.body_force)
         model::add_body_force(draft.plan.model.bodies[draft.body_index(body)],
                               {ramped(b[0]), ramped(b[1]), ramped(b[2])}, force);
+    for (const auto& [name, c] : driving.centrifugal) {
+        const model::Body& body = draft.plan.model.bodies[draft.body_index(name)];
+        model::add_centrifugal_force(body, c.axis.point - draft.plan.model.origin, c.axis.direction.normalized(),
+                                     body.density * c.speed * c.speed, force);
+    }
     for (const auto& [set_name, f] : driving.nodal_force)
         for (const Index node : draft.set(set_name).nodes)
             force[static_cast<std::size_t>(node)] += Vec3(ramped(f[0]), ramped(f[1]), ramped(f[2]));
@@ -186,6 +191,30 @@ std::vector<Index> nodes_of_part(Draft& draft, const std::string& part, const st
 } // namespace
 
 namespace {
+/// Symmetries hold where the axis is theirs, and only what has mass is thrown outward.
+void check_centrifugal(Draft& draft, const std::string& key, const std::string& name, const scene::Centrifugal& c) {
+    constexpr double same = 1e-9; // of unit vectors, and of the distance
+    const model::Model& m = draft.plan.model;
+    const Index b = draft.body_index(name);
+    const auto is_other = [&](const Vec3& point, const Vec3& axis) {
+        const Vec3 n = axis.normalized(), d = c.axis.direction.normalized(), arm = c.axis.point - point;
+        return n.cross(d).norm() > same || (arm - n.dot(arm) * n).norm() > same * (arm.norm() + c.axis.point.norm());
+    };
+    if (m.bodies[static_cast<std::size_t>(b)].rigid)
+        draft.faults.push_back(fault(key, "a body that deforms", "a rigid one"));
+    else if (!(m.bodies[static_cast<std::size_t>(b)].density > 0))
+        draft.faults.push_back(fault("bodies." + name + ".material", "a density, for " + key, "none"));
+    for (const model::CyclicSymmetry& ring : draft.rings)
+        if (ring.body == b && is_other(ring.point + m.origin, ring.axis))
+            draft.faults.push_back(fault(key + ".axis", "the axis of cyclic." + ring.name, "another"));
+    const auto& slice = draft.scene.bodies[static_cast<std::size_t>(b)].second.slice;
+    if (slice && slice->kind == scene::SliceKind::axisymmetric && is_other(slice->point, slice->axis))
+        draft.faults.push_back(fault(key + ".axis", "the axis of bodies." + name + ".slice", "another"));
+    if (slice && slice->kind != scene::SliceKind::axisymmetric &&
+        slice->axis.normalized().cross(c.axis.direction.normalized()).norm() > same)
+        draft.faults.push_back(fault(key + ".axis", "the normal of bodies." + name + ".slice", "another direction"));
+}
+
 /// What follows other nodes does so for the whole run, in the directions that supports leave free at its start.
 void check_releases(Draft& draft) {
     const model::Model& m = draft.plan.model;
@@ -265,6 +294,8 @@ void add_stages(Draft& draft) {
                                           was != before.temperature.end() ? ramped(was->second) : 0, ramped(value),
                                           value.is_value() ? -1 : courses.index("temperature." + part, value)});
         }
+        for (const auto& [body, c] : spec.centrifugal)
+            check_centrifugal(draft, "stages." + name + ".centrifugal." + body, body, c);
         for (const auto& [key, loaded] :
              {std::pair{"pressure", &now.pressure}, std::pair{"follower_pressure", &now.follower_pressure}})
             for (const auto& [set_name, value] : *loaded)

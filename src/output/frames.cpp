@@ -63,11 +63,14 @@ void Frames::add_surface(const model::Model& model, std::string name, Index pair
         point_of.emplace(node, static_cast<Index>(surface.points.size()));
         surface.points.push_back(model.X[node] + model.origin);
     }
-    for (mesh::Facet& facet : surface.facets)
-        for (int c = 0; c < facet.count; ++c) {
-            Index& corner = facet.nodes[static_cast<std::size_t>(c)];
-            corner = point_of.at(corner);
-        }
+    for (mesh::Facet& facet : surface.facets) { // of a slice with the nodes of its plane alone, as lines
+        mesh::Facet own;
+        for (const Index node : facet)
+            if (const auto at = point_of.find(node); at != point_of.end())
+                own.nodes[static_cast<std::size_t>(own.count++)] = at->second;
+        facet = own;
+    }
+    std::erase_if(surface.facets, [](const mesh::Facet& facet) { return facet.count < 2; });
     surfaces_.push_back(std::move(surface));
 }
 

@@ -126,6 +126,8 @@ std::unique_ptr<Probe> make_contact_line_probe(const model::Model& model, Index 
         sample.X = model.origin;
         for (std::size_t k = 0; k < vertices.size(); ++k) {
             const Index node = surface.vertex_nodes()[static_cast<std::size_t>(vertices[k])];
+            if (slave_of[static_cast<std::size_t>(node)] < 0)
+                throw std::invalid_argument("a line on a slice, whose facets have slaves at one side alone");
             place.points.push_back(slave_of[static_cast<std::size_t>(node)]);
             sample.X += place.weights(static_cast<Index>(k)) * model.X[static_cast<std::size_t>(node)];
         }

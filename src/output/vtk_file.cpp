@@ -104,14 +104,16 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
 
 void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,
                const std::vector<mesh::Facet>& facets, const std::vector<Array>& point_data, double time) {
-    vtkNew<vtkCellArray> cells;
+    vtkNew<vtkCellArray> cells, lines; // two nodes of a facet are a line
     for (const mesh::Facet& facet : facets) {
-        cells->InsertNextCell(facet.count);
-        for (const Index node : facet) cells->InsertCellPoint(node);
+        vtkCellArray& kind = facet.count == 2 ? *lines : *cells;
+        kind.InsertNextCell(facet.count);
+        for (const Index node : facet) kind.InsertCellPoint(node);
     }
     vtkNew<vtkPolyData> surface;
     surface->SetPoints(vtk_points(points));
     surface->SetPolys(cells);
+    if (lines->GetNumberOfCells() > 0) surface->SetLines(lines);
     add_data(*surface, point_data, time);
     write<vtkXMLPolyDataWriter>(path, *surface);
 }

@@ -23,6 +23,9 @@ Pairing pairing(const model::ContactEvaluation& evaluation, const model::Model& 
     constexpr double apart = 1e-3; // of the facet size: nodes that do not coincide
     Pairing result;
     result.discretisation = pair.options().discretisation;
+    for (const mesh::Facet& facet : pair.slaves().facets)
+        for (const Index node : facet)
+            if (!std::ranges::binary_search(pair.slaves().node, node)) return result; // a slice
     const std::vector<Vec3> master = pair.vertices(X);
     std::map<Index, bool> is_near; // slave node
     for (Index j = 0; j < pair.size(); ++j) {

@@ -44,6 +44,11 @@ void adjust_slaves(Draft& draft) {
             draft.faults.push_back(fault(key, "a slave that deforms", "rigid body '" + body.name + "'"));
             continue;
         }
+        if (draft.scene.bodies[static_cast<std::size_t>(slave.body)].second.slice) {
+            draft.faults.push_back(fault(key, "a slave that is no slice: nodes above one another must stay so",
+                                         "a surface of slice '" + body.name + "'"));
+            continue;
+        }
         std::vector<std::pair<Index, Vec3>> found;
         try {
             found = places(draft, name, pair, slave, master);

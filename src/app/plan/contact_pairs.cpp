@@ -1,6 +1,7 @@
 #include "app/plan/contact_pairs.hpp"
 
 #include "app/overloaded.hpp"
+#include "app/plan/draft_slices.hpp"
 #include "app/plan/rigid_surface.hpp"
 #include "app/plan/smooth_parts.hpp"
 #include "osculate/contact/exact_surface.hpp"
@@ -199,6 +200,21 @@ const contact::ExactShape* shape_of(const model::Model& model, const model::Set&
     return nullptr;
 }
 
+/// Slave nodes of a slice that have another below them in the set, and this one; of a skin, as their hosts are.
+std::vector<std::pair<Index, Index>> of_slice(const scene::Scene& scene, const model::Model& model,
+                                              const model::Set& slave) {
+    const std::map<Index, Index> above = nodes_above(scene, model, slave.body);
+    if (above.empty()) return {};
+    std::map<Index, Index> by_host;
+    for (const Index node : mesh::nodes_of(slave.facets)) by_host.emplace(material_node(model, node), node);
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const auto& [host, node] : by_host)
+        if (const auto at = above.find(host); at != above.end())
+            if (const auto base = by_host.find(at->second); base != by_host.end())
+                pairs.emplace_back(node, base->second);
+    return pairs;
+}
+
 double mean_size(const std::vector<mesh::Facet>& facets, const std::vector<Vec3>& X) {
     double sum = 0;
     for (const mesh::Facet& facet : facets)
@@ -241,6 +257,12 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     // that gives way
     const double E = std::min(scene::elastic(scene.bodies[slave.body].second.material).E,
                               scene::elastic(scene.bodies[master.body].second.material).E);
+    if (!averages(options.discretisation)) // nodes that move as another are one slave
+        for (const auto& [above, base] : of_slice(scene, model, slave)) {
+            const auto at = area_and_size.find(above);
+            area_and_size.at(base).first += at->second.first;
+            area_and_size.erase(at);
+        }
     for (const auto& [node, values] : area_and_size) {
         slaves.node.push_back(node);
         slaves.area.push_back(values.first);

@@ -2,6 +2,7 @@
 
 #include "app/fault.hpp"
 #include "app/plan/draft.hpp"
+#include "app/plan/draft_slices.hpp"
 #include "osculate/model/general_contact.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +27,9 @@ std::vector<char> massless_nodes(const Draft& draft) {
             for (const Index node : pair->slaves().node) mark(node);
         if (draft.plan.model.general)
             for (const Index node : draft.plan.model.general->possible_slaves()) mark(node);
+        for (Index b = 0; b < static_cast<Index>(draft.plan.model.bodies.size()); ++b)
+            for (const auto& [above, base] : nodes_above(draft.scene, draft.plan.model, b))
+                massless[static_cast<std::size_t>(above)] |= massless[static_cast<std::size_t>(base)];
         break;
     }
     return massless;

@@ -26,9 +26,9 @@ struct Seen {
     Mat3 axes = Mat3::Identity();
 };
 
-std::vector<Seen> seen_along(const Draft& draft, const model::Body& body, const scene::Slice& slice) {
+std::vector<Seen> seen_along(const model::Model& model, const model::Body& body, const scene::Slice& slice) {
     const Vec3 n = slice.axis.normalized(), one = n.unitOrthogonal(), other = n.cross(one),
-               point = slice.point - draft.plan.model.origin;
+               point = slice.point - model.origin;
     std::vector<Seen> list;
     Vec3 first = Vec3::Zero(); // radial direction of the node from which angles count
     for (Index i = 0; i < body.nodes(); ++i) {
@@ -72,13 +72,38 @@ std::vector<std::vector<Seen>> stacks(std::vector<Seen> list, double within) {
     return groups;
 }
 
+double size_of(const model::Body& body) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& X : body.mesh.nodes) box.extend(X);
+    return box.diagonal().norm();
+}
+
 } // namespace
+
+std::map<Index, Index> nodes_above(const scene::Scene& scene, const model::Model& model, Index b) {
+    std::map<Index, Index> above;
+    const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
+    const auto& slice = scene.bodies[static_cast<std::size_t>(b)].second.slice;
+    if (!slice) return above;
+    for (const std::vector<Seen>& stack : stacks(seen_along(model, body, *slice), same_place * size_of(body)))
+        for (std::size_t k = 1; k < stack.size(); ++k) above.emplace(stack[k].node, stack.front().node);
+    return above;
+}
 
 std::vector<SliceRow> add_slices(Draft& draft) {
     const model::Model& m = draft.plan.model;
     const std::vector<Index> dependent = model::dependent_nodes(m);
     const std::set<Index> follow(dependent.begin(), dependent.end());
     std::vector<SliceRow> rows;
+    if (draft.scene.general)
+        for (const auto& [name, body] : draft.scene.bodies)
+            if (body.slice) {
+                draft.faults.push_back(fault("contact.general",
+                                             "contact pairs where a body is a slice: they say which of its "
+                                             "faces are sides of the plane body",
+                                             "general contact with bodies." + name + ".slice"));
+                return rows;
+            }
     for (std::size_t b = 0; b < m.bodies.size(); ++b) {
         const model::Body& body = m.bodies[b];
         const auto& slice = scene::find(draft.scene.bodies, body.name)->slice;
@@ -90,11 +115,9 @@ std::vector<SliceRow> add_slices(Draft& draft) {
             draft.faults.push_back(fault(
                 key + last, expected, fmt::format("a node at [{:.6g}, {:.6g}, {:.6g}] m {}", X[0], X[1], X[2], what)));
         };
-        Eigen::AlignedBox3d box;
-        for (const Vec3& X : body.mesh.nodes) box.extend(X);
-        const double size = box.diagonal().norm();
+        const double size = size_of(body);
         const bool revolves = slice->kind == scene::SliceKind::axisymmetric;
-        const std::vector<Seen> seen = seen_along(draft, body, *slice);
+        const std::vector<Seen> seen = seen_along(m, body, *slice);
         if (revolves)
             if (const auto on = std::ranges::find_if(seen, [&](const Seen& s) { return s.a <= same_place * size; });
                 on != seen.end()) {

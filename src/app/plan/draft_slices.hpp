@@ -12,6 +12,8 @@ struct SliceRow {
     Vec3 direction = Vec3::UnitX(), own = Vec3::UnitX();
 };
 
+/// Nodes of a slice that have another in the same place of the plane below them -> the lowest there; empty for other bodies.
+[[nodiscard]] std::map<Index, Index> nodes_above(const scene::Scene& scene, const model::Model& model, Index body);
 /// Holds the nodes of slices across their planes in every stage, and says which move alike.
 [[nodiscard]] std::vector<SliceRow> add_slices(Draft& draft);
 

@@ -71,17 +71,16 @@ std::string why_discretisation(bool dynamic) {
     return dynamic ? "node, which conserves energy: a stage is dynamic" : "petrov_galerkin: every stage is static";
 }
 
-/// Whether the master's body is one facet wide, which tells a smooth surface nothing about its slope across.
-bool is_slice(const Draft& draft, const scene::Pair& pair) {
-    if (!pair.master.rigid_surface.empty()) return false;
-    const auto body = static_cast<std::size_t>(draft.set(pair.master.set).body);
+/// Whether the body of a set is one facet wide: as a master it tells a smooth surface nothing about its slope across.
+bool is_slice(const Draft& draft, const std::string& set) {
+    const auto body = static_cast<std::size_t>(draft.set(set).body);
     return draft.scene.bodies[body].second.slice.has_value();
 }
 
 /// Patches over a plane face give the gaps and normals of its facets, as long as it does not bend; in steps of dynamics
 /// the little that it bends is not worth them. In statics the shares of the master's nodes are results, which would change.
 bool facets_suffice(const Draft& draft, const scene::Pair& pair, bool dynamic) {
-    if (is_slice(draft, pair)) return true;
+    if (is_slice(draft, pair.master.set)) return true;
     if (!dynamic || pair.discretisation != Discretisation::node) return false;
     const std::vector<Vec3>& X = draft.plan.model.X;
     const std::vector<mesh::Facet>& facets = draft.set(pair.master.set).facets;
@@ -104,6 +103,16 @@ void settle_pairs(Draft& draft) {
         if (!pair.between[0].empty()) choice.roles = choose_slave(draft, pair);
         // a rigid surface is exact at every node, whatever facets draw it
         const bool exact = !pair.master.rigid_surface.empty();
+        // nodes of a slice above one another would have the same average twice, which an exact law does not share out
+        const bool slice = is_slice(draft, pair.slave),
+                   gives = !std::holds_alternative<scene::ExactContact>(pair.pressure_overclosure);
+        if (slice && !gives && pair.discretisation && *pair.discretisation != Discretisation::node)
+            draft.faults.push_back(fault("contact." + name + ".discretisation",
+                                         "node, where the slave is a slice and contact is exact", "another"));
+        if (!pair.discretisation && slice && !gives) {
+            pair.discretisation = Discretisation::node;
+            choice.discretisation = "node: the slave is a slice, whose nodes above one another are one";
+        }
         if (!pair.discretisation) {
             // forces that are not the work conjugates of the gaps add energy, or take it, in every impact
             pair.discretisation = dynamic || exact ? Discretisation::node : Discretisation::petrov_galerkin;
@@ -111,7 +120,8 @@ void settle_pairs(Draft& draft) {
                 exact ? "node: the master is a rigid surface, exact at every node" : why_discretisation(dynamic);
         }
         if (!std::holds_alternative<scene::AutomaticSurface>(pair.master.surface)) {
-            if (is_slice(draft, pair) && !std::holds_alternative<scene::FacetsSurface>(pair.master.surface))
+            if (!exact && is_slice(draft, pair.master.set) &&
+                !std::holds_alternative<scene::FacetsSurface>(pair.master.surface))
                 draft.faults.push_back(fault("contact." + name + ".master.surface",
                                              "facets: a slice is one facet wide, which gives no smooth surface",
                                              "another surface"));

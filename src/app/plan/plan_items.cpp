@@ -40,7 +40,7 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
                                      [](const time::Stage& s) { return !s.follower_pressures.empty(); });
     const bool rigid = !plan.model.rigid.empty(),
                couplings = std::ranges::any_of(plan.model.rigid, &model::RigidBody::coupling);
-    const bool tied = !plan.model.ties.empty();
+    const bool tied = !plan.model.ties.empty() || !plan.model.cyclic.empty() || !plan.model.led.empty();
     const bool unsymmetric = couplings || contact || follows || tied || (nonlinear && dynamic_stages(plan) > 0);
     const LinearSolver asked = scene.solver.linear_solver;
     const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope());
@@ -59,7 +59,7 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         : !contact  ? "the scene has no pair"
         : multigrid ? "multigrid is used"
         : nonlinear || follows || rigid ? "the tangent of the bodies is not constant"
-        : tied                          ? "tied bodies have no compliance of their own"
+        : tied                          ? "bodies whose nodes follow others have no compliance of their own"
         : asked == LinearSolver::automatic
             ? fmt::format("on so many contact nodes it takes {:.2g} operations and {:.2g} GB, a factorisation of all "
                           "{:.2g} operations",
@@ -74,7 +74,7 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         : multigrid   ? "multigrid cycles replace it"
         : condensed   ? "of each body, its contact nodes last"
         : contact     ? "of the stiffness with softened contact, to precondition GMRES"
-        : tied        ? "of the stiffness with tied nodes folded into it, to precondition GMRES"
+        : tied        ? "of the stiffness with nodes that follow others folded into it, to precondition GMRES"
         : unsymmetric ? "of a triangle of the tangent, to precondition GMRES"
                       : "the tangent is symmetric positive definite");
     say("GMRES", multigrid || (unsymmetric && !direct),

@@ -1,6 +1,7 @@
 /// Plane elements and equations of decks as parts of scenes.
 
 #include "deck/imported.hpp"
+#include "osculate/mesh/mesh_error.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>

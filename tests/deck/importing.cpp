@@ -153,12 +153,12 @@ TEST_F(Importing, NeoHookeanHasTheModuliOfTheDeck) {
 }
 
 TEST_F(Importing, WhatHasNoCounterpartIsListedWithItsLine) {
-    const ImportedScene imported = import("*EQUATION\n2\n15,3,1.,16,3,-1.\n"
+    const ImportedScene imported = import("*MPC\nBEAM,15,16\n\n"
                                           "*STEP\n*BUCKLE\n10\n*END STEP\n" +
                                           pressed);
     EXPECT_EQ(checked(imported).stages.size(), 1u);
     EXPECT_THAT(imported.left_out,
-                AllOf(Contains(AllOf(HasSubstr(".inp:47: *EQUATION"), HasSubstr("no equations between nodes"))),
+                AllOf(Contains(AllOf(HasSubstr(".inp:47: *MPC"), HasSubstr("only linear equations"))),
                       Contains(AllOf(HasSubstr(".inp:50: *STEP"), HasSubstr("*BUCKLE")))));
     EXPECT_EQ(imported.lost.size(), 2u) << "but neither output nor the law of overclosure is";
     EXPECT_THAT(imported.text, Not(HasSubstr("step_2")));

@@ -106,8 +106,10 @@ private:
             if (formulation == "incompatible_modes" && !material.starts_with("{linear_elastic") &&
                 !material.starts_with("{orthotropic")) {
                 formulation = "b_bar";
-                model_.note(body.section == nullptr ? model_.mesh.raw.file : body.section->place, "C3D8I or C3D8R",
-                            "incompatible modes are for small strain: b_bar is used instead");
+                model_.lose(body.section == nullptr ? model_.mesh.raw.file : body.section->place,
+                            "C3D8I or C3D8R of body " + body.name,
+                            "incompatible modes are for small strain: b_bar is used instead, which locks where few "
+                            "elements bend");
             }
             if (formulation != "full") text += "    hex_formulation: " + formulation + "\n";
             if (body.slice == mesh::DeckSlice::plane_strain) text += "    slice: {kind: plane_strain}\n";
@@ -442,6 +444,7 @@ private:
             text +=
                 "    analysis: {dynamic: {integrator: {hht: {alpha: " + number(step.alpha) + "}}" + damping_ + "}}\n";
         if (!step.ramps()) text += "    ramp: step\n";
+        if (step.dynamic && step.direct) text += "    control: {step_size: fixed}\n";
         text += "    duration: " + number(step.duration) + "\n";
         text += fmt::format("    steps: {}{}\n", static_cast<int>(steps),
                             ratio > steps ? "  # the deck begins with smaller ones" : "");

@@ -138,6 +138,10 @@ TEST_F(Importing, LargeStrainsAndDynamicsKeepTheirMeaning) {
     ASSERT_NE(dynamic, nullptr);
     EXPECT_EQ(std::get<scene::Hht>(dynamic->integrator).alpha, -0.1);
     EXPECT_FALSE(scene.stages[1].second.ramp);
+    EXPECT_EQ(scene.stages[1].second.control.step_size, scene::StepSize::controlled);
+    const auto direct =
+        checked(import("*STEP\n*DYNAMIC, DIRECT\n.1,1.\n*DLOAD\nEall,GRAV,9810.,0.,0.,-1.\n*END STEP\n")).stages.at(0);
+    EXPECT_EQ(direct.second.control.step_size, scene::StepSize::fixed);
     EXPECT_NEAR((*scene::find(scene.stages[1].second.body_force, "Eall_1"))[2].value(), -7800 * 9.81, 1e-6);
 }
 
@@ -171,6 +175,9 @@ TEST_F(Importing, FormulationsFollowTheElements) {
     EXPECT_EQ(checked(import(pressed, DeckUnits::mm, model)).bodies[0].second.hex_formulation,
               HexFormulation::incompatible_modes);
     EXPECT_EQ(checked(import(pressed)).bodies[0].second.hex_formulation, HexFormulation::full);
+    // at finite strain nothing else bends as these elements do
+    EXPECT_THAT(import("*STEP, NLGEOM\n*STATIC\n*DSLOAD\nTop,P,5.\n*END STEP\n", DeckUnits::mm, model).lost,
+                Contains(HasSubstr("incompatible modes are for small strain")));
 }
 
 TEST_F(Importing, PlasticBodiesHaveTheirHardeningCurve) {

@@ -153,5 +153,103 @@ TEST(Tutorials, DominoesFallAsRigidOnesDo) {
         EXPECT_NEAR(knocked(run, static_cast<Index>(k)), rigid[k], allowed * rigid[k]) << k;
 }
 
+/// Mean over the nodes at a radius of what `value(node, radial, tangential)` is there; the axis is z.
+template <class Value> double around(const model::Model& model, Index body, double radius, Value&& value) {
+    const model::Body& b = model.bodies[static_cast<std::size_t>(body)];
+    double sum = 0;
+    int count = 0;
+    for (Index i = 0; i < b.nodes(); ++i) {
+        const Vec3& X = model.X[b.first_node + i];
+        const double r = std::hypot(X.x(), X.y());
+        if (std::abs(r - radius) > 1e-6 * radius) continue;
+        const Vec3 radial(X.x() / r, X.y() / r, 0);
+        sum += value(i, radial, Vec3(-radial.y(), radial.x(), 0));
+        ++count;
+    }
+    return sum / count;
+}
+
+TEST(Tutorials, PressFitHasLamesPressureAndSlipsAtItsFriction) {
+    constexpr double a = 15e-3, b = 30e-3, c = 50e-3, length = 30e-3, interference = 0.03e-3, mu = 0.15;
+    constexpr double steel = 210e9, nu_steel = 0.3, aluminium = 70e9, nu_aluminium = 0.33;
+    constexpr double mesh = 0.01;
+    constexpr double hoop_mesh =
+        0.02;                         // stresses at nodes are extrapolated from inside the wall, here 16 elements thick
+    constexpr double squeezed = 0.01; // the push shortens shaft and hub, which changes the pressure by some 0.3 %
+    constexpr Index hub = 1;
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/press_fit.yaml"));
+    const model::Model& model = run.plan.model;
+    const auto radial = [&](const support::RunStep& step, double radius) {
+        const Index first = model.bodies[hub].first_node;
+        return around(model, hub, radius,
+                      [&](Index i, const Vec3& n, const Vec3&) { return step.state.u[first + i].dot(n); });
+    };
+    ASSERT_EQ(run.steps.size(), 8u) << "heat, cool and six of push";
+    const support::RunStep &hot = run.steps[0], &cold = run.steps[1], &out = run.steps.back();
+
+    EXPECT_NEAR(radial(hot, b), 23e-6 * 150 * b, 1e-9 * b) << "free to expand, though it is drawn inside the shaft";
+    // Lame's rings, open at their ends
+    const double wider = (c * c + b * b) / (c * c - b * b), narrower = (b * b + a * a) / (b * b - a * a);
+    const double p = interference / b / ((wider + nu_aluminium) / aluminium + (narrower - nu_steel) / steel);
+    const double seat = std::numbers::pi / 2 * b * length;
+    EXPECT_NEAR(cold.pairs[0].normal, p * seat, mesh * p * seat);
+    EXPECT_LT(cold.pairs[0].friction, 1e-6 * p * seat);
+    const double rim = 2 * p * b * b * c / (aluminium * (c * c - b * b));
+    EXPECT_NEAR(radial(cold, c), rim, mesh * rim);
+    const auto stress = model::nodal_stress(model, hub, cold.state);
+    const double hoop = around(model, hub, b, [&](Index i, const Vec3&, const Vec3& t) {
+        return stress(i, 0) * t.x() * t.x() + stress(i, 1) * t.y() * t.y() + 2 * stress(i, 3) * t.x() * t.y();
+    });
+    EXPECT_NEAR(hoop, p * wider, hoop_mesh * p * wider);
+
+    EXPECT_NEAR(out.pairs[0].on_slave.z(), mu * p * seat, squeezed * mu * p * seat);
+    EXPECT_NEAR(out.pairs[0].friction, mu * out.pairs[0].normal, 1e-6 * mu * p * seat) << "all of it slips";
+    EXPECT_LT(run.steps[2].pairs[0].on_slave.z(), 0.5 * mu * p * seat) << "it holds before";
+}
+
+TEST(Tutorials, BoltedJointFollowsItsDiagramUntilItOpens) {
+    constexpr double preload = 5e3, height = 60e-3, outer = 12e-3, bore = 6.5e-3, aluminium = 70e9;
+    constexpr double round_off = 1e-6, digits = 1e-5; // of the place where the bolt is locked
+    constexpr double bars = 0.02; // plates are not quite bars: the head presses them more at the bore than at the rim
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/bolted_joint.yaml"));
+    const auto bolt = [&](const support::RunStep& step) { return -step.pairs[0].on_slave.z(); };
+    const auto joint = [&](const support::RunStep& step) { return step.pairs[1].on_slave.z(); };
+    ASSERT_EQ(run.steps.size(), 22u);
+    const support::RunStep &tight = run.steps[0], &locked = run.steps[1];
+    EXPECT_NEAR(bolt(tight), preload, round_off * preload);
+    EXPECT_NEAR(joint(tight), preload, round_off * preload);
+    EXPECT_NEAR(bolt(locked), preload, digits * preload) << "held where the force has pulled it";
+    EXPECT_NEAR(-locked.held_force.back().z(), bolt(locked), round_off * preload);
+
+    // the upper plate's volume, a quarter of a prism with 48 sides, times the body force
+    const double corner = std::numbers::pi / 24;
+    const double pull = 5e9 * 12 * std::sin(corner) / 2 * (outer * outer - bore * bore) * height / 2;
+    // bolt and plates as springs in series; the load goes in over the height of the upper of two equal plates
+    const double both = 0.107941e-3 / preload,
+                 plates = height / (aluminium * std::numbers::pi / 4 * (outer * outer - bore * bore));
+    const double share = 0.75 * plates / both;
+    int closed = 0, open = 0;
+    for (std::size_t k = 2; k < 18; ++k) {
+        const support::RunStep& step = run.steps[k];
+        const double load = (step.time - 2) * pull;
+        EXPECT_NEAR(bolt(step) - joint(step), load, round_off * preload) << step.time;
+        EXPECT_NEAR(-step.held_force.back().z(), bolt(step), round_off * preload) << step.time;
+        if (load < 0.95 * preload / (1 - share)) {
+            EXPECT_NEAR((bolt(step) - preload) / load, share, bars * share) << step.time;
+            ++closed;
+        }
+        if (load > 1.05 * preload / (1 - share)) {
+            EXPECT_EQ(joint(step), 0) << step.time;
+            ++open;
+        }
+    }
+    EXPECT_GE(closed, 8);
+    EXPECT_GE(open, 5);
+    EXPECT_NEAR(bolt(run.steps.back()), bolt(locked), round_off * preload);
+    EXPECT_NEAR(joint(run.steps.back()), bolt(locked), round_off * preload);
+}
+
 } // namespace
 } // namespace osculate

@@ -22,6 +22,17 @@ PAGE = Path("docs/data/deck_suite.md")
 SECONDS = 120  # of a processor, for each run
 LARGEST = 10   # decks whose times are compared
 ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+# Why decks differ by more than 1 %, where it is known.
+REASONS = {
+    "beamnh": "the volumetric part of the law differs",
+    "beamnldy": "the first trial turns an element inside out, so that its one step becomes two",
+    "beamnldynodirect": "as beamnldy",
+    "cubef2f1": "ties of midside nodes that do not match have no counterpart",
+    "cubef2f2": "as cubef2f1",
+    "cubef2f3": "as cubef2f1",
+    "ring1": "at finite strain a temperature is a stretch here, and taken off Green's strain there",
+    "segment2": "centrifugal forces are integrated in full here, with eight points there",
+}
 # What no mechanical deck of solid bodies has.
 OTHER = r"\*(HEAT TRANSFER|CFD|ELECTROMAGNETICS|COUPLED TEMPERATURE|UNCOUPLED TEMPERATURE|NETWORK|FLUID)|TYPE *= *(F3D|D[A-Z]|U\d)"
 
@@ -149,11 +160,13 @@ def counts(rows):
 
 
 def table(rows):
-    lines = ["| deck | nodes | end | difference |", "|---" * 4 + "|"]
+    lines = ["| deck | nodes | end | difference | reason |", "|---" * 5 + "|"]
     for r in rows:
         if r["import"] == "all":
             d = r.get("difference")
-            lines.append(f"| {r['name']} | {r['nodes'] or ''} | {r['end']} | {'' if d is None else f'{d:.1e}'} |")
+            far = r["end"] != "done" or (d is not None and d > 0.01)
+            reason = REASONS.get(r["name"], "not found") if far else "no node in the same place" if d is None else ""
+            lines.append(f"| {r['name']} | {r['nodes'] or ''} | {r['end']} | {'' if d is None else f'{d:.1e}'} | {reason} |")
     return lines
 
 

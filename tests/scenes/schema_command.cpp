@@ -97,7 +97,7 @@ std::string completed(const std::string& words, int last) {
 
 TEST(Completion, OffersCommandsOptionsTutorialsAndKeys) {
     EXPECT_EQ(completed("osculate exp", 1), "explain\n");
-    EXPECT_EQ(completed("osculate init pre", 2), "press_block\n");
+    EXPECT_EQ(completed("osculate init press_b", 2), "press_block\n");
     EXPECT_EQ(completed("osculate run a.yaml --thr", 3), "--threads\n");
     EXPECT_EQ(completed("osculate run a.yaml --set solver.tol", 4), "solver.tolerance\n");
 }

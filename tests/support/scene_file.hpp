@@ -6,8 +6,18 @@
 #include <gtest/gtest.h>
 #include <string>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace osculate::support {
+
+/// A text with words in the place of others, wherever these stand; one pair after the other.
+inline std::string with(std::string text, const std::vector<std::pair<std::string, std::string>>& words) {
+    for (const auto& [from, to] : words)
+        for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+            text.replace(at, from.size(), to);
+    return text;
+}
 
 /// Path of a temporary file of this process alone: tests run side by side.
 inline std::string temporary(const std::string& name) {

@@ -13,13 +13,7 @@ namespace osculate {
 namespace {
 
 using support::scene_file;
-
-std::string with(std::string text, const std::vector<std::pair<std::string, std::string>>& words) {
-    for (const auto& [from, to] : words)
-        for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-            text.replace(at, from.size(), to);
-    return text;
-}
+using support::with;
 
 std::unique_ptr<support::SceneRun> run(const std::string& text) {
     auto found = std::make_unique<support::SceneRun>();

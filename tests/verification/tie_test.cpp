@@ -12,6 +12,7 @@ namespace osculate {
 namespace {
 
 using support::scene_file;
+using support::with;
 
 /// Two blocks one on the other whose meshes do not match, the upper one turned about the vertical by nothing, and pressed.
 const std::string blocks = R"(
@@ -42,13 +43,6 @@ ties:
 stages:
   press: {pressure: {top: 1 MPa}}
 )";
-
-std::string with(std::string text, const std::vector<std::pair<std::string, std::string>>& words) {
-    for (const auto& [from, to] : words)
-        for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-            text.replace(at, from.size(), to);
-    return text;
-}
 
 std::unique_ptr<support::SceneRun> run(const std::string& text) {
     auto found = std::make_unique<support::SceneRun>();

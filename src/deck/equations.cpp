@@ -56,14 +56,15 @@ bool EquationCards::terms_of(const DeckCard& card, std::size_t& line, std::size_
 
 void EquationCards::add(const std::string& place, const std::vector<Term>& terms) {
     const std::size_t count = terms.front().points.size();
-    for (const Term& term : terms)
-        if (term.points.size() != 1 && term.points.size() != count)
-            return lose(place, "*EQUATION", "sets of one node, or of as many as the first, were expected");
+    // which node of one set belongs to which of another depends on the order in which a program keeps them
+    for (std::size_t k = 1; k < terms.size(); ++k)
+        if (terms[k].points.size() != 1)
+            return lose(place, "*EQUATION", "only its first term may be a set of several nodes");
     for (std::size_t k = 0; k < count; ++k) {
         DeckEquation equation;
         equation.place = place;
         for (const Term& term : terms)
-            equation.terms.push_back({term.points[term.points.size() == 1 ? 0 : k], term.component, term.factor});
+            equation.terms.push_back({term.points[&term == &terms.front() ? k : 0], term.component, term.factor});
         model_.equations.push_back(std::move(equation));
     }
 }

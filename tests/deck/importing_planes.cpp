@@ -107,7 +107,7 @@ TEST_F(ImportingPlanes, EquationsThatAStepRemovesAreLost) {
         import("*STEP\n*STATIC\n*EQUATION, REMOVE ALL\n*DSLOAD\nTop,P,1.\n*END STEP\n", DeckUnits::mm, model).lost,
         ElementsAre(HasSubstr("equations hold for the whole run")));
     for (const char* bad : {"*EQUATION\ntwo\n", "*EQUATION\n3\n15,3,1.,16,3,-1.\n", "*EQUATION\n1\n15,4,1.\n",
-                            "*EQUATION\n1\nNowhere,1,1.\n"})
+                            "*EQUATION\n1\nNowhere,1,1.\n", "*EQUATION\n2\nLid,3,1.,Floor,3,-1.\n"})
         EXPECT_EQ(
             import("*STEP\n*STATIC\n*DSLOAD\nTop,P,1.\n*END STEP\n", DeckUnits::mm, mesh_of_cubes + bad + properties)
                 .lost.size(),

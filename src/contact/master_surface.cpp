@@ -141,15 +141,16 @@ private:
             Domain domain;
             domain.size = surface.facet_size(facet);
             domain.vertices = surface.facet_ring(facet, ring);
-            MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2);
-            for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[domain.vertices[i]]).transpose();
+            MatrixX2 u(static_cast<Index>(domain.vertices.size()), 2), flat(u.rows(), 2);
+            for (Index i = 0; i < u.rows(); ++i) {
+                u.row(i) = natural(X[domain.vertices[i]]).transpose();
+                flat.row(i) = plane.tangential(X[domain.vertices[i]]).transpose();
+            }
             const Multiquadric basis = options.basis ? *options.basis
                                        : options.polynomial_terms < 6
                                            ? r3 // r^5 needs quadratics
                                            : basis_for(largest_turn(surface, surface.ring_facets(facet, ring), X));
-            domain.patch = RpimPatch::fit(u, basis, options.polynomial_terms);
-            if (!options.basis && (!domain.patch || domain.patch->polynomial_terms() < options.polynomial_terms))
-                domain.patch = RpimPatch::fit(u, r3, options.polynomial_terms);
+            domain.patch = RpimPatch::fit(u, flat, options.basis, basis, options.polynomial_terms);
             if (!domain.patch) continue;
             domain.corners.resize(static_cast<Index>(corners_own.size()), 2);
             for (Index b = 0; b < domain.corners.rows(); ++b)

@@ -1,4 +1,5 @@
 #include "contact/facet_rule.hpp"
+#include "contact/past_end.hpp"
 #include "osculate/contact/discretisation.hpp"
 #include "osculate/contact/dual_weights.hpp"
 #include "osculate/contact/master_filter.hpp"
@@ -19,9 +20,9 @@ constexpr double least_cover = 1e-3;
 ///     gap, normal  those of slave node j over the smooth surface through the filtered vertices, see MasterFilter
 ///     weights      W_ji of the unfiltered vertices: a force lambda on j loads vertex i with -W_ji lambda
 /// The forces are not the work conjugates of the gaps, hence the name. Where a slave node is beyond the master's boundary,
-/// but some of its facets are above the master, its gap is that over the closest facet, extended. Where it is above the
-/// master, but none of its facets is (a vertex on a vertex), its force is that of the smooth surface, W_ji = Q_vi Phi_v: the
-/// closest facet may be either of two.
+/// but some of its facets are above the master, its gap is that over the surface, extended, see PastEnd. Where it is above
+/// the master, but none of its facets is (a vertex on a vertex), its force is that of the smooth surface, W_ji = Q_vi Phi_v:
+/// the closest facet may be either of two.
 ///
 /// ContactPoint::nodes: the vertices that carry force, ascending; the other slave nodes of j's facets, on which the
 /// weights depend, numbered from surface.vertex_count() on; then the vertices on which only the gap depends.
@@ -30,9 +31,9 @@ public:
     PetrovGalerkin(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& vertices,
                    const std::vector<SlaveFacet>& facets, const std::vector<Vec3>& S, std::vector<Mat3> in_plane)
         : surface_(surface), weights_(surface, facets, S, least_cover), nodes_(make_node_discretisation(surface)),
-          extended_(make_facets_surface(surface)), in_plane_(std::move(in_plane)), raw_(S.size()),
-          carriers_(S.size(), 0), moving_(S.size(), 0), normal_length_(S.size(), 1.0), outside_(S.size(), 0),
-          alone_(S.size(), 0), below_(facets.size(), -1) {
+          past_end_(surface), in_plane_(std::move(in_plane)), raw_(S.size()), ends_(S.size()), carriers_(S.size(), 0),
+          moving_(S.size(), 0), normal_length_(S.size(), 1.0), outside_(S.size(), 0), alone_(S.size(), 0),
+          below_(facets.size(), -1) {
         std::vector<std::vector<Vec3>> corners;
         for (Index f = 0; f < weights_.facet_count(); ++f) corners.push_back(weights_.X(f));
         if (!corners.empty()) filter_ = MasterFilter(surface, vertices, with_images(mesh_metric(corners)));
@@ -82,8 +83,7 @@ public:
             for (Index j = begin; j < end; ++j) {
                 const double share = weights_.share(j);
                 outside_[j] = !raw_[j].found && !raw_[j].behind && share > 0 && tracking.hits[j].facet >= 0;
-                if (outside_[j])
-                    extended_->evaluate(at.slaves[j], onto_facet(tracking.hits[j]), smooth.vertices, raw_[j]);
+                if (outside_[j]) past_end_.evaluate(at.slaves[j], tracking.hits[j], smooth, ends_[j], raw_[j]);
                 alone_[j] = raw_[j].found && !(share > 0);
                 points[j].facet = raw_[j].facet;
                 points[j].side = raw_[j].side;
@@ -109,7 +109,7 @@ public:
         own.patches.clear();
         const PairPositions smooth = filtered(at);
         if (outside_[j])
-            extended_->vary(at.slaves[j], onto_facet(hit), smooth.vertices, raw_[j], own);
+            past_end_.vary(at.slaves[j], smooth, ends_[j], raw_[j], own);
         else
             nodes_->vary(j, smooth, hit, raw_[j], own);
         const auto columns = 3 + 3 * static_cast<Index>(point.nodes.size());
@@ -197,10 +197,12 @@ private:
 
     PetrovGalerkin(const PetrovGalerkin& other)
         : Discretisation(other), surface_(other.surface_), weights_(other.weights_), nodes_(other.nodes_->clone()),
-          extended_(other.extended_), filter_(other.filter_), in_plane_(other.in_plane_), filtered_(other.filtered_),
-          filtered_tails_(other.filtered_tails_), raw_(other.raw_), carriers_(other.carriers_), moving_(other.moving_),
-          normal_length_(other.normal_length_), outside_(other.outside_), alone_(other.alone_), below_(other.below_) {
+          past_end_(other.past_end_), filter_(other.filter_), in_plane_(other.in_plane_), filtered_(other.filtered_),
+          filtered_tails_(other.filtered_tails_), raw_(other.raw_), ends_(other.ends_), carriers_(other.carriers_),
+          moving_(other.moving_), normal_length_(other.normal_length_), outside_(other.outside_), alone_(other.alone_),
+          below_(other.below_) {
         for (ContactPoint& point : raw_) point.trace.reset(); // refers to the other's placement
+        for (PastEnd::Point& end : ends_) end.side.trace.reset();
     }
 
     /// The metric of a slave mesh with its images beyond the symmetry planes.
@@ -222,12 +224,6 @@ private:
     [[nodiscard]] bool is_far(Index f, const FacetTracking& tracking) const {
         return !tracking.far.empty() &&
                std::ranges::all_of(weights_.corners(f), [&](Index j) { return tracking.far[j] != 0; });
-    }
-
-    /// A hit as if the surface did not end at its boundary.
-    [[nodiscard]] static FacetHit onto_facet(FacetHit hit) {
-        hit.beyond = 0;
-        return hit;
     }
 
     [[nodiscard]] Vec3 centre(Index f, const PairPositions& at) const {
@@ -335,14 +331,15 @@ private:
     const mesh::HalfEdgeSurface& surface_;
     DualWeights weights_;
     std::unique_ptr<Discretisation> nodes_;
-    std::shared_ptr<const MasterSurface> extended_;
+    PastEnd past_end_;
     MasterFilter filter_;
     std::vector<Mat3> in_plane_;                  ///< (slaves) projectors; empty: no symmetry planes
     std::vector<Vec3> filtered_, filtered_tails_; ///< vertices at the last evaluation, m
     std::vector<ContactPoint> raw_;               ///< (slaves) over the filtered surface
+    std::vector<PastEnd::Point> ends_;            ///< (slaves) of those beyond the boundary
     std::vector<Index> carriers_, moving_;        ///< (slaves) nodes that carry force; on which the weights depend
     std::vector<double> normal_length_;           ///< (slaves) of the raw normal in the symmetry planes
-    std::vector<char> outside_;                   ///< (slaves) beyond the boundary: over an extended facet
+    std::vector<char> outside_;                   ///< (slaves) beyond the boundary: over the surface, extended
     std::vector<char> alone_;                     ///< (slaves) above the master, which none of its facets is
     std::vector<Index> below_;                    ///< (slave facets) master facet below the centre
 };

@@ -2,8 +2,10 @@
 
 #include "osculate/core/dense_algebra.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <limits>
+#include <numbers>
 
 namespace osculate::contact {
 
@@ -29,6 +31,10 @@ namespace {
 
 /// Smallest ratio of singular values of the column-scaled polynomial matrix that still counts as full rank.
 constexpr double rank_tolerance = 1e-6;
+/// Smallest standard deviation of a quadratic polynomial over the nodes, after the best linear one is taken off, that is no
+/// accident: nodes in two rows determine no quadratic across them, but rows that are bent a little seem to. The polynomial is
+/// one of unit length in coordinates in which the nodes have unit variance in all directions.
+constexpr double determined = 0.2;
 /// Nodes closer than this fraction of dc count as one: their two rows of G are the same but for round-off.
 constexpr double same_node = 0.01;
 
@@ -71,7 +77,51 @@ Vector nearest_distances(const MatrixX2& u) {
 
 } // namespace
 
+Matrix determined_polynomials(const MatrixX2& u) {
+    const double n = static_cast<double>(u.rows());
+    const MatrixX2 centred = u.rowwise() - u.colwise().mean();
+    const Mat2 covariance = centred.transpose() * centred / n;
+    const Eigen::SelfAdjointEigenSolver<Mat2> axes(covariance);
+    if (!(axes.eigenvalues()(0) > 0)) return Matrix::Identity(6, 3);
+    const Mat2 A = axes.operatorInverseSqrt();
+    const Matrix D = polynomial_matrix(centred * A, 6);
+    Matrix quadratic = D.rightCols<3>();
+    quadratic.col(1) *= std::numbers::sqrt2; // turns of the axes turn the three then
+    quadratic -= D.leftCols<3>() * D.leftCols<3>().householderQr().solve(quadratic).eval();
+    const Mat3 variances = quadratic.transpose() * quadratic / n;
+    const Eigen::SelfAdjointEigenSolver<Mat3> modes(variances); // ascending
+    int k = 0;
+    while (k < 3 && modes.eigenvalues()(2 - k) > determined * determined) ++k;
+    constexpr Index linear = 3;
+    if (k == 3) return Matrix::Identity(6, u.rows() > 6 ? 6 : linear);
+    if (u.rows() < linear + k + 1) k = 0; // as many terms as nodes only follow them
+    Mat3 in_u;                            // w1 w1, sqrt2 w1 w2 and w2 w2, w = A u, in xx, xy and yy
+    in_u.row(0) << A(0, 0) * A(0, 0), 2 * A(0, 0) * A(0, 1), A(0, 1) * A(0, 1);
+    in_u.row(1) << A(0, 0) * A(1, 0), A(0, 0) * A(1, 1) + A(0, 1) * A(1, 0), A(0, 1) * A(1, 1);
+    in_u.row(1) *= std::numbers::sqrt2;
+    in_u.row(2) << A(1, 0) * A(1, 0), 2 * A(1, 0) * A(1, 1), A(1, 1) * A(1, 1);
+    Matrix Z = Matrix::Zero(6, linear + k);
+    Z.topLeftCorner<3, 3>().setIdentity();
+    for (int j = 0; j < k; ++j)
+        Z.col(linear + j).tail<3>() = (in_u.transpose() * modes.eigenvectors().col(2 - j)).normalized();
+    return Z;
+}
+
 std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& basis, int m) {
+    const bool quadratic = m == 6 && determined_polynomials(u).cols() == 6;
+    return fit(u, basis, quadratic ? Matrix::Identity(6, 6) : Matrix::Identity(3, 3));
+}
+
+std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const MatrixX2& flat,
+                                        const std::optional<Multiquadric>& basis, const Multiquadric& suited, int m) {
+    if (m == 6)
+        if (const Matrix Z = determined_polynomials(flat); Z.cols() < 6) return fit(u, basis ? *basis : r3, Z);
+    auto patch = fit(u, basis ? *basis : suited, m);
+    if (!basis && (!patch || patch->polynomial_terms() < m)) patch = fit(u, r3, m); // r^5 needs quadratics
+    return patch;
+}
+
+std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& basis, const Matrix& polynomials) {
     const Index n = static_cast<Index>(u.rows());
     if (n < 3) return std::nullopt;
     RpimPatch patch;
@@ -82,21 +132,26 @@ std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& b
     if (!(nearest.minCoeff() > same_node * patch.dc_)) return std::nullopt;
     patch.t_ = (u.rowwise() - patch.c_.transpose()) / patch.dc_;
 
-    const Index fewest_for_quadratic = 7;
-    patch.m_ = m == 6 && n >= fewest_for_quadratic && full_rank(polynomial_matrix(patch.t_, 6)) ? 6 : 3;
-    const Matrix D = polynomial_matrix(patch.t_, patch.m_);
-    if (patch.m_ == 3 && !full_rank(D)) return std::nullopt;
+    const Matrix& Z = polynomials;
+    patch.m_ = static_cast<int>(Z.rows());
+    patch.terms_ = static_cast<int>(Z.cols());
+    patch.D_ = polynomial_matrix(patch.t_, patch.m_);
+    const Matrix D = patch.D_ * Z;
+    if (!full_rank(D)) return std::nullopt;
 
     // G = [[C, D], [D^T, 0]]                                                            [Qian 2014, eqs (13)-(14)]
-    Matrix G = Matrix::Zero(n + patch.m_, n + patch.m_);
+    const Index terms = Z.cols();
+    Matrix G = Matrix::Zero(n + terms, n + terms);
     for (Index i = 0; i < n; ++i)
         for (Index j = 0; j < n; ++j) G(i, j) = basis((patch.t_.row(i) - patch.t_.row(j)).squaredNorm()).f;
-    G.topRightCorner(n, patch.m_) = D;
-    G.bottomLeftCorner(patch.m_, n) = D.transpose();
-    patch.H_ = G.partialPivLu().solve(Matrix::Identity(n + patch.m_, n));
-    if (!patch.H_.allFinite()) return std::nullopt;
-    patch.D_ = D;
-    patch.fit_ = D.householderQr().solve(Matrix::Identity(n, n));
+    G.topRightCorner(n, terms) = D;
+    G.bottomLeftCorner(terms, n) = D.transpose();
+    const Matrix H = G.partialPivLu().solve(Matrix::Identity(n + terms, n));
+    if (!H.allFinite()) return std::nullopt;
+    patch.H_.resize(n + Z.rows(), n);
+    patch.H_.topRows(n) = H.topRows(n);
+    patch.H_.bottomRows(Z.rows()) = Z * H.bottomRows(terms);
+    patch.fit_ = Z * D.householderQr().solve(Matrix::Identity(n, n));
     return patch;
 }
 

@@ -136,6 +136,7 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
                                : options.polynomial_terms < 6 ? r3 // r^5 needs quadratics
                                                               : basis_for(largest_turn(surface, within, X));
     std::vector<Index> facets = sector;
+    bool covered_already = false; // by a patch of fewer rings
     for (int level = 1; level <= highest_level; ++level) {
         if (level > 1) {
             std::vector<Index> next = grown(surface, facets);
@@ -145,18 +146,22 @@ std::optional<VertexPatch> make_patch(const mesh::HalfEdgeSurface& surface, Inde
         if (folds(surface, facets, plane, X)) break; // Fig. 5d: what fits so far has to do
         const std::vector<Index> vertices = corners(surface, facets);
         if (level < options.level && !folds(surface, grown(surface, facets), plane, X)) continue;
-        MatrixX2 u(static_cast<Index>(vertices.size()), 2);
-        for (Index i = 0; i < u.rows(); ++i) u.row(i) = natural(X[vertices[i]]).transpose();
-        auto shape = RpimPatch::fit(u, basis, options.polynomial_terms);
-        if (!options.basis && (!shape || shape->polynomial_terms() < options.polynomial_terms))
-            shape = RpimPatch::fit(u, r3, options.polynomial_terms);
+        MatrixX2 u(static_cast<Index>(vertices.size()), 2), flat(u.rows(), 2);
+        for (Index i = 0; i < u.rows(); ++i) {
+            u.row(i) = natural(X[vertices[i]]).transpose();
+            flat.row(i) = (W * plane.tangential(X[vertices[i]])).transpose();
+        }
+        auto shape = RpimPatch::fit(u, flat, options.basis, basis, options.polynomial_terms);
         if (!shape) continue;
         // the bump ends before the nearest node that the patch does not pass through
         double far = std::numeric_limits<double>::max();
         for (const Index w : corners(surface, grown(surface, facets)))
             if (!std::binary_search(vertices.begin(), vertices.end(), w)) far = std::min(far, q(natural(X[w])));
         const double lowest = beyond_nodes / far, highest = covered / near;
-        const bool good = lowest <= highest && shape->polynomial_terms() == options.polynomial_terms;
+        const bool covers = lowest <= highest, good = covers && shape->polynomial_terms() == options.polynomial_terms;
+        // more rings are of use only if they bring the terms that are missing, as they do not along two rows of nodes
+        if (!good && covered_already) continue;
+        covered_already = covers;
         patch.level = level;
         patch.vertices = vertices;
         patch.facets = facets;

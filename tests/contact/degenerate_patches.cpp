@@ -106,6 +106,41 @@ Difference compare(const Blend& one, const Blend& other, const Round& round, int
 
 constexpr int points = 7; ///< on a seventh of the facets each
 
+TEST(OneRowOfFacets, AroundACylinderIsRound) {
+    for (const int around : {24, 80})
+        for (const double length : {0.03, 0.3, 1.0, 3.0}) {
+            const Surface surface = grid(around, 1, true, false, [&](double a, double b) {
+                                        const double angle = 2 * pi * a;
+                                        return Vec3(std::cos(angle), std::sin(angle), length * b);
+                                    }).surface("Ring");
+            const Blend blend(surface);
+            const auto rpim = make_rpim_surface(surface.topology, surface.x, {});
+            const double turn = 2 * pi / around, sagitta = turn * turn / 8;
+            Random random(4);
+            double gap = 0, normal = 0, rpim_gap = 0, rpim_normal = 0;
+            for (int i = 0; i < 200; ++i) {
+                const double angle = random.uniform(0, 2 * pi);
+                const Vec3 outward(std::cos(angle), std::sin(angle), 0);
+                const Vec3 s = outward + Vec3(0, 0, random.uniform(0, length));
+                const FacetHit hit = blend.search.global(s, blend.x);
+                const ContactPoint point = blend.at(s, hit);
+                ContactPoint other;
+                rpim->evaluate(s, hit, surface.x, other);
+                ASSERT_TRUE(point.found && other.found);
+                gap = std::max(gap, std::abs(point.gap));
+                normal = std::max(normal, (point.normal - outward).norm());
+                rpim_gap = std::max(rpim_gap, std::abs(other.gap));
+                rpim_normal = std::max(rpim_normal, (other.normal - outward).norm());
+            }
+            // facets are a sagitta off, and half a turn
+            EXPECT_LT(gap, 0.1 * sagitta) << around << " facets of length " << length;
+            EXPECT_LT(normal, 0.1 * turn / 2) << around << " facets of length " << length;
+            if (length > 5 * turn) continue; // rpim does not take the stretch of long facets out of its coordinates
+            EXPECT_LT(rpim_gap, 0.1 * sagitta) << around << " facets of length " << length;
+            EXPECT_LT(rpim_normal, 0.1 * turn / 2) << around << " facets of length " << length;
+        }
+}
+
 TEST(NearDuplicateNodes, AreMergedWithTheLowest) {
     for (const Round& round : rounds())
         for (const double apart : {1e-3, 1e-6, 0.0})

@@ -136,6 +136,33 @@ TEST(RpimPatch, FallsBackToAPlaneWithItsNodesOnACircle) {
     EXPECT_EQ(patch->polynomial_terms(), 3);
 }
 
+TEST(RpimPatch, TakesOfTheQuadraticsWhatNodesInTwoRowsDetermine) {
+    for (const double angle : {0.0, 0.3, 1.2}) {
+        const Eigen::Rotation2Dd turned(angle);
+        MatrixX2 u(10, 2);
+        for (Index i = 0; i < 10; ++i)
+            u.row(i) = (turned * Vec2(1.3 * static_cast<double>(i / 2) + 5, i % 2)).transpose();
+        EXPECT_EQ(RpimPatch::fit(u, {}, 6)->polynomial_terms(), 3);
+        // the rows look bent in coordinates of equal length
+        MatrixX2 bent = u;
+        for (Index i = 1; i < 10; i += 2) bent.row(i) *= 1 + 1e-3 * static_cast<double>(i);
+        const auto patch = RpimPatch::fit(bent, u, {}, basis_for(0.1), 6);
+        ASSERT_TRUE(patch);
+        EXPECT_EQ(patch->polynomial_terms(), 5);
+        const auto exact = RpimPatch::fit(u, u, {}, basis_for(0.1), 6);
+        const auto along = [&](const Vec2& at) { return (turned.inverse() * at).x(); };
+        MatrixX3 x(10, 3);
+        for (Index i = 0; i < 10; ++i) {
+            const Vec2 at = u.row(i).transpose();
+            x.row(i) << at.transpose(), along(at) * along(at);
+        }
+        const Vec2 middle = turned * Vec2(7.1, 0.4);
+        const Vec3 point = exact->point(middle, exact->coefficients(x)).X;
+        EXPECT_LT((point - Vec3(middle.x(), middle.y(), 7.1 * 7.1)).norm(), 1e-10)
+            << "quadratics along the rows are exact";
+    }
+}
+
 TEST(RpimPatch, RefusesNodesOnALine) {
     MatrixX2 line(7, 2);
     for (Index i = 0; i < 7; ++i) line.row(i) << i, 2 * i;

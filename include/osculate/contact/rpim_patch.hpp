@@ -23,6 +23,11 @@ struct ReferencePlane {
     [[nodiscard]] Vec2 equal_length(const Vec3& x) const;
 };
 
+/// What nodes determine of the polynomials [1 x y | xx xy yy], as columns of coefficients (6 x 3 to 6): the linear ones, then
+/// combinations of the others. Nodes in two rows determine none that is quadratic across them.
+/// @param u  (n x 2) not on one line
+[[nodiscard]] Matrix determined_polynomials(const MatrixX2& u);
+
 /// Interpolation through n nodes with natural coordinates frozen at construction:
 ///     t = (u - c)/dc,  Phi(u) = [r(t); p(t)]^T H,  X(u) = sum_i Phi_i(u) x_i               [Qian 2014, eqs (9)-(16)]
 /// so X is linear in the nodal positions and Phi is a constant of the run.
@@ -33,10 +38,20 @@ public:
     /// @param m      terms of the polynomial basis, 3 or 6; 6 falls back to 3 if the nodes do not determine a quadratic
     /// @returns no value if the nodes do not even determine a plane, or two of them coincide. Cost O(n^3).
     [[nodiscard]] static std::optional<RpimPatch> fit(const MatrixX2& u, const Multiquadric& basis, int m);
+    /// @param polynomials  (m x k) the basis has combinations of the m terms: a column each, the first three the linear ones
+    [[nodiscard]] static std::optional<RpimPatch> fit(const MatrixX2& u, const Multiquadric& basis,
+                                                      const Matrix& polynomials);
+    /// The patch of a surface: as fit() with 6 terms, but where the nodes do not determine all of them, with those that they
+    /// do.
+    /// @param flat    (n x 2) orthogonal projections of the nodes, m: two straight rows of them are two straight rows there
+    /// @param basis   none: `suited`, or r^3 where it needs terms that are missing
+    [[nodiscard]] static std::optional<RpimPatch> fit(const MatrixX2& u, const MatrixX2& flat,
+                                                      const std::optional<Multiquadric>& basis,
+                                                      const Multiquadric& suited, int m);
 
     [[nodiscard]] Index size() const { return static_cast<Index>(t_.rows()); }
-    [[nodiscard]] int polynomial_terms() const { return m_; }
-    [[nodiscard]] double node_distance() const { return dc_; } ///< dc, mean nearest-neighbour distance, m
+    [[nodiscard]] int polynomial_terms() const { return terms_; } ///< 3 to 6
+    [[nodiscard]] double node_distance() const { return dc_; }    ///< dc, mean nearest-neighbour distance, m
 
     /// Coefficients H x (n + m x 3) of the surface through nodal positions x (n x 3); they make point() O(n).
     [[nodiscard]] MatrixX3 coefficients(const MatrixX3& x) const;
@@ -63,7 +78,8 @@ private:
     Vec2 c_ = Vec2::Zero();
     double dc_ = 1;
     Multiquadric basis_;
-    int m_ = 6;
+    int m_ = 6;                                                                ///< polynomials that are evaluated
+    int terms_ = 6;                                                            ///< combinations of them in the basis
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> H_; // (n + m) x n, first n columns of G^-1
     Matrix D_, fit_; // (n x m) p(t_i), and (m x n) its least-squares inverse
 };

@@ -1,0 +1,79 @@
+/// Slave nodes past the end of a curved master.
+
+#include "contact/pairing.hpp"
+
+namespace osculate::contact {
+namespace {
+
+using testing::Pairing;
+using testing::Slave;
+using testing::Surface;
+
+constexpr double radius = 3, height = 0.01;
+
+/// (x, y, z) of a block's top to a cylinder about an axis along x: y becomes an arc.
+Vec3 rolled(const Vec3& at, double r = radius) {
+    const double angle = (at.y() - 2) / radius;
+    return {at.x(), r * std::sin(angle), r * std::cos(angle) - radius};
+}
+
+Surface cylinder(mesh::BlockPattern pattern) {
+    Surface surface = testing::block_top(pattern);
+    for (Vec3& x : surface.x) x = rolled(x);
+    return surface;
+}
+
+class PastEnd : public ::testing::TestWithParam<mesh::BlockPattern> {};
+
+TEST_P(PastEnd, ACylinderGoesOnAsACylinder) {
+    const Surface master = cylinder(GetParam());
+    Slave slave({4.33, 0.9, 0}, {1.2, 1.2, 1}, {4, 5}, mesh::BlockPattern::quad); // the master ends at 5
+    for (Vec3& at : slave.X) at = rolled(at, radius + height);
+    const Pairing pairing(master, make_blend_surface(master.topology, master.x, {}), slave, [&](const Slave& own) {
+        return make_petrov_galerkin(master.topology, master.x, own.facets, own.X, {});
+    });
+    int past = 0;
+    for (std::size_t j = 0; j < slave.X.size(); ++j) {
+        if (slave.X[j].x() < 5 || !(pairing.discretisation->loaded_area(static_cast<Index>(j), 0) > 0)) continue;
+        ++past;
+        const ContactPoint& point = pairing.points[j];
+        ASSERT_TRUE(point.found);
+        const Vec3 outward = Vec3(0, slave.X[j].y(), slave.X[j].z() + radius).normalized();
+        constexpr double sagitta = 0.5 * 0.5 / (8 * radius); // by which facets are lower
+        EXPECT_LT(std::abs(point.gap - height), 0.05 * sagitta);
+        EXPECT_LT((point.normal - outward).norm(), 0.01); // on facets up to half their turn, 0.08
+    }
+    EXPECT_GE(past, 5);
+}
+
+TEST_P(PastEnd, VariesAsItsDifferencesSay) {
+    Surface master = cylinder(GetParam());
+    osculate::testing::Random random(3);
+    const auto shaken = [&](double by) -> Vec3 {
+        return by * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    };
+    for (Vec3& x : master.x) x += shaken(0.02);
+    // past a side as well as past a corner of the master
+    Slave slave({4.33, 3.37, 0}, {1.2, 1.2, 1}, {4, 5}, mesh::BlockPattern::quad);
+    for (Vec3& at : slave.X) at = rolled(at, radius + height) + shaken(0.01);
+    Pairing pairing(master, make_blend_surface(master.topology, master.x, {}), slave, [&](const Slave& own) {
+        return make_petrov_galerkin(master.topology, master.x, own.facets, own.X, {});
+    });
+    const std::vector<Vec3> s = slave.X;
+    const FacetTracking tracking = pairing.tracking;
+    int tried = 0;
+    for (std::size_t j = 0; j < s.size(); ++j) {
+        if (tracking.hits[j].beyond < 0.05 || !(pairing.discretisation->loaded_area(static_cast<Index>(j), 0) > 0))
+            continue;
+        testing::expect_variations(pairing, s, master.x, static_cast<Index>(j));
+        ++tried;
+    }
+    EXPECT_GE(tried, 6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, PastEnd,
+                         ::testing::Values(mesh::BlockPattern::quad, mesh::BlockPattern::triangle,
+                                           mesh::BlockPattern::hybrid));
+
+} // namespace
+} // namespace osculate::contact

@@ -114,6 +114,28 @@ template <class Use> void integrate_piece(const mesh::LocalFace& piece, Use use)
     });
 }
 
+Point four_node_point(double xi, double eta, double weight) {
+    Point p;
+    p.weight = weight;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto [a, b] = eight_nodes[i];
+        p.N[i] = (1 + a * xi) * (1 + b * eta) / 4;
+        p.dxi[i] = a * (1 + b * eta) / 4;
+        p.deta[i] = b * (1 + a * xi) / 4;
+    }
+    return p;
+}
+
+/// Shape functions of a face and their derivatives, with weight 1.
+Point point_of(const mesh::FaceShape& face, const Vec2& at) {
+    switch (face.nodes) {
+    case 3: return {1, {1 - at.x() - at.y(), at.x(), at.y()}, {-1, 1}, {-1, 0, 1}};
+    case 4: return four_node_point(at.x(), at.y(), 1);
+    case 6: return six_node_point(at.x(), at.y(), 1);
+    default: return eight_node_point(at.x(), at.y(), 1);
+    }
+}
+
 /// Calls use(point) for every quadrature point.
 template <class Use> void integrate(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions, Use use) {
     const auto finish = [&](Point p) {
@@ -145,18 +167,8 @@ template <class Use> void integrate(const mesh::SurfaceFace& face, const std::ve
         finish({0.5, {1. / 3, 1. / 3, 1. / 3}, {-1, 1}, {-1, 0, 1}});
         return;
     }
-    const std::array<double, 4> xi_i{-1, 1, 1, -1}, eta_i{-1, -1, 1, 1};
     const double g = 1 / std::sqrt(3.0);
-    for (std::size_t q = 0; q < 4; ++q) {
-        const double xi = g * xi_i[q], eta = g * eta_i[q];
-        Point p;
-        for (std::size_t i = 0; i < 4; ++i) {
-            p.N[i] = (1 + xi_i[i] * xi) * (1 + eta_i[i] * eta) / 4;
-            p.dxi[i] = xi_i[i] * (1 + eta_i[i] * eta) / 4;
-            p.deta[i] = eta_i[i] * (1 + xi_i[i] * xi) / 4;
-        }
-        finish(p);
-    }
+    for (std::size_t q = 0; q < 4; ++q) finish(four_node_point(g * eight_nodes[q][0], g * eight_nodes[q][1], 1));
 }
 
 } // namespace
@@ -165,17 +177,25 @@ namespace {
 /// Natural coordinates of the nodes of a three- or six-node face.
 constexpr std::array<std::array<double, 2>, 6> six_nodes{{{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}}};
 
-/// Shape functions of a face.
-std::array<double, mesh::most_nodes_per_face> shape_functions(const mesh::FaceShape& face, double xi, double eta) {
-    switch (face.nodes) {
-    case 3: return {1 - xi - eta, xi, eta};
-    case 4:
-        return {(1 - xi) * (1 - eta) / 4, (1 + xi) * (1 - eta) / 4, (1 + xi) * (1 + eta) / 4, (1 - xi) * (1 + eta) / 4};
-    case 6: return six_node_point(xi, eta, 1).N;
-    default: return eight_node_point(xi, eta, 1).N;
-    }
-}
 } // namespace
+
+Vec2 natural_coordinates(const mesh::FaceShape& face, int node) {
+    const auto [xi, eta] = (face.corners == 3 ? six_nodes.data() : eight_nodes.data())[node];
+    return {xi, eta};
+}
+
+FacePoint face_point(const mesh::SurfaceFace& face, const Vec2& at, const std::vector<Vec3>& positions) {
+    const Point p = point_of(face.shape(), at);
+    FacePoint result;
+    result.N = p.N;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i) {
+        const Vec3& x = positions[static_cast<std::size_t>(face.nodes[i])];
+        result.x += p.N[i] * x;
+        result.x_xi += p.dxi[i] * x;
+        result.x_eta += p.deta[i] * x;
+    }
+    return result;
+}
 
 std::vector<PiecePoint> piece_points(const mesh::FaceShape& face, const mesh::LocalFace& piece) {
     const auto n = static_cast<std::size_t>(piece.count);
@@ -184,19 +204,16 @@ std::vector<PiecePoint> piece_points(const mesh::FaceShape& face, const mesh::Lo
     on_square<5>([&](double s, double t, double weight) {
         PiecePoint& q = points.emplace_back();
         q.weight = weight;
-        double xi = 0, eta = 0;
+        Vec2 at = Vec2::Zero();
         for (std::size_t corner = 0; corner < 4; ++corner) {
             const std::size_t c = std::min(corner, n - 1);
             const double along_s = 1 + s_c[corner] * s, along_t = 1 + t_c[corner] * t, phi = along_s * along_t / 4;
             q.phi[c] += phi;
             q.by_s[c] += s_c[corner] * along_t / 4;
             q.by_t[c] += t_c[corner] * along_s / 4;
-            const auto node = static_cast<std::size_t>(piece.nodes[c]);
-            const auto [x, y] = face.corners == 3 ? six_nodes[node] : eight_nodes[node];
-            xi += phi * x;
-            eta += phi * y;
+            at += phi * natural_coordinates(face, piece.nodes[c]);
         }
-        q.N = shape_functions(face, xi, eta);
+        q.N = point_of(face, at).N;
     });
     return points;
 }

@@ -95,6 +95,12 @@ public:
     /// Adds W_ji to `weights`. @param carriers  these vertices, ascending
     void add_weights(Index j, const std::vector<Index>& carriers, Vector& weights) const;
 
+    /// Calls use(master facet, reference area, N, N of the master) for the points of what of facet f is above the master.
+    template <class Use> void for_each_point(Index f, Use&& use) const {
+        for (const Overlap& overlap : facets_[static_cast<std::size_t>(f)].overlaps)
+            for (const Point& q : overlap.points) use(overlap.facet, q.area, q.N, q.of_master);
+    }
+
     /// Computes the variations of facet f at the positions of its last update().
     void vary(Index f, const PairPositions& at);
     /// Adds the variations of W_ji to dweights, (carriers x 3+3n).

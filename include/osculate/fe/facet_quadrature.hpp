@@ -10,6 +10,16 @@
 
 namespace osculate::fe {
 
+/// Natural coordinates of a node of a face: corners of a triangle at (0, 0), (1, 0), (0, 1), of a quadrilateral at (-1, -1),
+/// (1, -1), (1, 1), (-1, 1).
+[[nodiscard]] Vec2 natural_coordinates(const mesh::FaceShape& face, int node);
+/// A point of a face: its shape functions, in the order of its nodes and zero past their number, its place and tangents, m.
+struct FacePoint {
+    std::array<double, mesh::most_nodes_per_face> N{};
+    Vec3 x = Vec3::Zero(), x_xi = Vec3::Zero(), x_eta = Vec3::Zero();
+};
+[[nodiscard]] FacePoint face_point(const mesh::SurfaceFace& face, const Vec2& at, const std::vector<Vec3>& positions);
+
 /// Tributary areas, integral of N_i dA, m^2, in the order of face.nodes; zero past face.count. Exact for triangles and
 /// flat quadrilaterals, 2 x 2 Gauss for other quadrilaterals. Exact for straight six-node faces, where corners get zero
 /// and midside nodes a third each, and for flat parallelograms with eight nodes, where they get -1/12 and 1/3; a rule of

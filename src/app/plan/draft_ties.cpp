@@ -2,6 +2,7 @@
 
 #include "app/fault.hpp"
 #include "app/plan/draft.hpp"
+#include "app/plan/face_projection.hpp"
 #include "osculate/contact/discretisation.hpp"
 #include "osculate/contact/dual_weights.hpp"
 #include "osculate/mesh/quality.hpp"
@@ -26,8 +27,9 @@ constexpr double vanishing = 1e-9;
 class TieMaker {
 public:
     TieMaker(const Draft& draft, const model::Set& slave, const model::Set& master, std::optional<double> distance)
-        : X_(draft.plan.model.X.values()), surface_(master.facets, X_), facets_(contact::make_facets_surface(surface_)),
-          search_(surface_), distance_(distance), slaves_(mesh::nodes_of(slave.facets)) {
+        : draft_(draft), slave_(slave), master_(master), X_(draft.plan.model.X.values()), surface_(master.facets, X_),
+          facets_(contact::make_facets_surface(surface_)), search_(surface_), distance_(distance),
+          slaves_(mesh::nodes_of(slave.facets)) {
         for (const Index node : surface_.vertex_nodes()) vertices_.push_back(X_[static_cast<std::size_t>(node)]);
         search_.build(vertices_);
         for (const Index node : slaves_) {
@@ -65,25 +67,19 @@ public:
                 }
             weights_->update(f, at, std::move(seeds));
         }
+        const std::map<Index, std::map<Index, double>> follow = linear() ? of_facets() : of_faces();
         model::Tie tie;
         tie.near = near * surface_.mean_facet_size();
-        for (Index j = 0; j < static_cast<Index>(slaves_.size()); ++j) {
-            if (!(weights_->share(j) > 0)) {
+        for (const Index node : slaves_) {
+            const auto found = follow.find(node);
+            if (found == follow.end()) {
                 ++tie.left_out;
                 continue;
             }
-            std::vector<Index> carriers;
-            weights_->add_vertices(j, carriers);
-            std::ranges::sort(carriers);
-            carriers.erase(std::unique(carriers.begin(), carriers.end()), carriers.end());
-            Vector W = Vector::Zero(static_cast<Index>(carriers.size()));
-            weights_->add_weights(j, carriers, W);
             model::TiedNode& tied = tie.nodes.emplace_back();
-            tied.node = slaves_[static_cast<std::size_t>(j)];
-            for (std::size_t i = 0; i < carriers.size(); ++i)
-                if (std::abs(W(static_cast<Index>(i))) > vanishing)
-                    tied.carriers.emplace_back(surface_.vertex_nodes()[static_cast<std::size_t>(carriers[i])],
-                                               W(static_cast<Index>(i)));
+            tied.node = node;
+            for (const auto& [carrier, weight] : found->second)
+                if (std::abs(weight) > vanishing) tied.carriers.emplace_back(carrier, weight);
         }
         return tie;
     }
@@ -94,6 +90,53 @@ public:
     [[nodiscard]] double farthest_above() const { return farthest_above_; }
 
 private:
+    using Weights = std::map<Index, std::map<Index, double>>; ///< of nodes of the master, by nodes of the slave
+
+    [[nodiscard]] const model::Body& body(const model::Set& set) const {
+        return draft_.plan.model.bodies[static_cast<std::size_t>(set.body)];
+    }
+    [[nodiscard]] std::vector<mesh::SurfaceFace> faces(const model::Set& set) const {
+        return mesh::surface_faces(body(set).mesh, set.facets, body(set).first_node);
+    }
+    /// Whether no face has midside nodes.
+    [[nodiscard]] bool linear() const {
+        const auto flat = [&](const model::Set& set) {
+            return std::ranges::all_of(body(set).mesh.blocks, [](const mesh::ElementBlock& block) {
+                return mesh::cell_info(block.type).edges.empty();
+            });
+        };
+        return flat(slave_) && flat(master_);
+    }
+
+    [[nodiscard]] Weights of_facets() const {
+        Weights result;
+        for (Index j = 0; j < static_cast<Index>(slaves_.size()); ++j) {
+            if (!(weights_->share(j) > 0)) continue;
+            std::vector<Index> carriers;
+            weights_->add_vertices(j, carriers);
+            std::ranges::sort(carriers);
+            carriers.erase(std::unique(carriers.begin(), carriers.end()), carriers.end());
+            Vector W = Vector::Zero(static_cast<Index>(carriers.size()));
+            weights_->add_weights(j, carriers, W);
+            std::map<Index, double>& own = result[slaves_[static_cast<std::size_t>(j)]];
+            for (std::size_t i = 0; i < carriers.size(); ++i)
+                own[surface_.vertex_nodes()[static_cast<std::size_t>(carriers[i])]] = W(static_cast<Index>(i));
+        }
+        return result;
+    }
+
+    [[nodiscard]] Weights of_faces() const {
+        FaceProjection projection(slave_.facets, faces(slave_), master_.facets, faces(master_), X_);
+        for (Index f = 0; f < weights_->facet_count(); ++f) projection.add(*weights_, f);
+        Weights result = projection.weights();
+        for (auto& [node, own] : result)
+            for (auto& [carrier, weight] : own)
+                if (std::abs(weight - 1) < vanishing) weight = 1; // a node on a node
+        return result;
+    }
+
+    const Draft& draft_;
+    const model::Set &slave_, &master_;
     const std::vector<Vec3>& X_;
     mesh::HalfEdgeSurface surface_;
     std::shared_ptr<const contact::MasterSurface> facets_;
@@ -107,12 +150,6 @@ private:
     double nearest_ = std::numeric_limits<double>::infinity(), farthest_above_ = 0;
     Index above_ = 0;
 };
-
-/// Whether a body has elements with midside nodes.
-bool quadratic(const model::Body& body) {
-    return std::ranges::any_of(
-        body.mesh.blocks, [](const mesh::ElementBlock& block) { return !mesh::cell_info(block.type).edges.empty(); });
-}
 
 /// Moves tied nodes onto the surfaces that they follow: those that are there turn with them.
 void adjust(model::Model& m, model::Tie& tie) {
@@ -196,15 +233,7 @@ void add_ties(Draft& draft) {
                                                      maker.above(), maker.farthest_above())));
             continue;
         }
-        // the shape functions of facets are linear, those of these elements are not
-        const bool curved = quadratic(m.bodies[static_cast<std::size_t>(slave.body)]) ||
-                            quadratic(m.bodies[static_cast<std::size_t>(master.body)]);
         for (model::TiedNode& tied : tie.nodes) {
-            if (curved && tied.carriers.size() != 1) {
-                draft.faults.push_back(fault(key, "meshes that match, where elements have midside nodes",
-                                             "a node at " + place(tied.node) + " between nodes of the master"));
-                break;
-            }
             if (const auto other = follows.find(tied.node); other != follows.end()) {
                 draft.faults.push_back(
                     fault(key + ".slave", "nodes that follow nothing else",

@@ -1,6 +1,7 @@
 """Imports the mechanical decks of CalculiX's test package, runs those that lose nothing, and compares with CalculiX.
 
     deck_suite.py OSCULATE [DECK...]      called by scripts/measure/deck_suite, from the root of the repository
+    deck_suite.py OSCULATE --sample       the test decks.sample: some decks, each of which has to agree; exit 77 without CalculiX
 """
 import gzip
 import os
@@ -12,14 +13,23 @@ import sys
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-import numpy
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
+try:
+    import numpy
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+except ImportError:
+    if "--sample" not in sys.argv:
+        raise
+    print("Python's VTK is not installed")
+    sys.exit(77)
 
 DECKS = Path("/usr/share/doc/calculix-ccx-test/examples/test")
 OUT = Path("out/deck_suite")
 PAGE = Path("docs/data/deck_suite.md")
 SECONDS = 120  # of a processor, for each run
+# Of each kind of element, load, law and link one that agrees to 1 %; a second of CalculiX in all.
+SAMPLE = ["achtelp", "axial", "beamf2", "beamnld", "beamnlmpc", "beamp1rotate", "beampis", "beamptied5", "beamt", "changefric", "contact2",
+          "cubef2f2", "cubespring", "disk2", "fricloop", "friction1", "planestrain2", "planestress", "plate", "ring2", "segmentf"]
 LARGEST = 10   # decks whose times are compared
 ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 # Why decks differ by more than 1 %, where it is known.
@@ -28,10 +38,13 @@ REASONS = {
     "beamnldy": "the first trial turns an element inside out, so that its one step becomes two",
     "beamnldynodirect": "as beamnldy",
     "contact4": "of one element a side: the force on a face with midside nodes goes by linear pieces here, by its own functions there",
-    "cubef2f1": "ties of midside nodes that do not match have no counterpart",
-    "cubef2f2": "as cubef2f1",
-    "cubef2f3": "as cubef2f1",
+    "beamcontact": "the master ends in the middle of a slave face of one element: contact reaches to the next node here; "
+                   "a mesh four times as fine is within 5 % of CalculiX on this one",
+    "cubef2f3": "nodes of the slave follow points of the master there, which no patch test passes",
+    "metalforming": "CalculiX's two decks of this part differ by 17 %; here both with `surface: facets` are within 1 % of its mortar",
+    "metalformingmortar": "the tools are coarse polygons, smooth here; with `surface: facets` 1 %",
     "ring1": "at finite strain a temperature is a stretch here, and taken off Green's strain there",
+    "scheibe2n2f": "nothing but the facets holds the inner disc against turning; CalculiX's two kinds of contact differ by 1.5 % too",
     "segment2": "centrifugal forces are integrated in full here, with eight points there",
 }
 # What no mechanical deck of solid bodies has.
@@ -188,7 +201,23 @@ def page(contact, others):
     PAGE.write_text("\n".join(lines))
 
 
+def sample(program):
+    known = decks() if DECKS.is_dir() else {}
+    if shutil.which("ccx") is None or not known:
+        print("CalculiX or its decks are not installed")
+        return 77
+    failed = 0
+    for name in SAMPLE:
+        row = one(program, name, known[name][0])
+        agrees = row.get("difference") is not None and row["difference"] <= 0.01
+        print(name, row["import"], row.get("end", ""), row.get("difference", ""), "" if agrees else "FAILED", flush=True)
+        failed += not agrees
+    return 1 if failed else 0
+
+
 def main(program, wanted):
+    if wanted == ["--sample"]:
+        return sample(program)
     rows = {True: [], False: []}
     for name, (text, contact) in decks().items():
         if wanted and name not in wanted:

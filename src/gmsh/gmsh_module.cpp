@@ -19,6 +19,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <unordered_map>
@@ -26,7 +27,7 @@
 namespace osculate::mesh {
 namespace {
 
-constexpr double millimetre = 1e-3;
+constexpr double millimetre = 1e-3, pi = std::numbers::pi;
 
 /// Gmsh while it is in use: silent, on one thread, without files or options of the user, with a model of its own. A host, such
 /// as Python, may use Gmsh, too: its models and options are as before in the end. It is initialised once and never
@@ -336,6 +337,40 @@ private:
     int handle_ = memfd_create("mesh", MFD_CLOEXEC);
 };
 
+constexpr double most = 2e7; ///< elements of a geometry
+
+/// How many cubes fill a box, if their edges have the length size_at(distance from the point); counts to a little above
+/// `most`.
+double cubes(const Eigen::AlignedBox3d& box, const Vec3& point, const std::function<double(double)>& size_at) {
+    double count = 0, left = box.volume(), distance = box.exteriorDistance(point);
+    while (left > 0 && count <= most) { // shells around the point, one cube thick
+        const double size = size_at(distance), end = distance + size;
+        const double shell = std::min(left, 4 * pi / 3 * (std::pow(end, 3) - std::pow(distance, 3)));
+        count += shell / std::pow(size, 3);
+        left -= shell;
+        distance = end;
+    }
+    return count;
+}
+
+/// Sizes that Gmsh asks for, at points of the geometry, while this lives.
+class SizeCallback {
+public:
+    explicit SizeCallback(std::function<double(const Vec3&)> size_at) {
+        gmsh::model::mesh::setSizeCallback([at = std::move(size_at)](int, int, double x, double y, double z) {
+            return at({x, y, z});
+        });
+    }
+    ~SizeCallback() {
+        try {
+            gmsh::model::mesh::removeSizeCallback();
+        } catch (...) { // nothing is left to be done
+        }
+    }
+    SizeCallback(const SizeCallback&) = delete;
+    SizeCallback& operator=(const SizeCallback&) = delete;
+};
+
 void check_exists(const std::string& path) {
     if (!std::filesystem::is_regular_file(path)) throw MeshError(path, "no such file");
 }
@@ -344,6 +379,7 @@ void check_exists(const std::string& path) {
 } // namespace osculate::mesh
 
 using namespace osculate::mesh;
+using osculate::Vec3;
 
 extern "C" void osculate_gmsh_read(const std::string* path, RawMesh* mesh) {
     check_exists(*path);
@@ -380,12 +416,16 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
         for (int d = 0; d < 3; ++d) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
         diagonal = std::sqrt(diagonal);
         const double size = options->size > 0 ? options->size / unit : 0.1 * diagonal;
-        // A box of elements of that size: what would not end is refused before it begins.
-        constexpr double most = 2e7;
-        const double boxes = (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) / (size * size * size);
-        if (boxes > most)
+        const Eigen::AlignedBox3d box(Vec3(low[0], low[1], low[2]), Vec3(high[0], high[1], high[2]));
+        const Vec3 point = options->focus.point / unit;
+        const auto size_at = [&, focus = options->focus](double distance) {
+            return focus.size_at(distance * unit, size * unit) / unit;
+        };
+        // What would not end is refused before it begins.
+        if (cubes(box, point, size_at) > most)
             throw MeshError(options->file, "elements of that size would be more than 2e7: the geometry is " +
                                                std::to_string(diagonal * unit) + " m across");
+        const SizeCallback sizes([&](const Vec3& x) { return size_at((x - point).norm()); });
         gmsh::option::setNumber("Mesh.MeshSizeMax", size);
         gmsh::option::setNumber("Mesh.MeshSizeMin", options->smallest / unit);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", options->per_circle);

@@ -57,6 +57,9 @@ public:
         if (m.size > 0 && m.smallest > m.size)
             fault({"bodies", body, "mesh", "cad", "smallest"}, "at most size, " + number_text(m.size) + " m",
                   number_text(m.smallest) + " m");
+        if (m.focus.size > 0 && m.smallest > m.focus.size)
+            fault({"bodies", body, "mesh", "cad", "smallest"},
+                  "at most the size of focus, " + number_text(m.focus.size) + " m", number_text(m.smallest) + " m");
     }
     void check_hardening(const std::string& name, const Body& body) {
         const auto* plastic = std::get_if<ElasticPlastic>(&body.material);

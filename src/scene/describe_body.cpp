@@ -231,6 +231,29 @@ void describe(Visitor& v, FileMesh& m) {
             repairs, m.repair);
 }
 
+void describe(Visitor& v, mesh::CadFocus& f) {
+    v.vector({.name = "point",
+              .meaning = "Where elements are smallest, in the coordinates of the file.",
+              .unit = dimension::length,
+              .range = range::position},
+             f.point);
+    v.number({.name = "size",
+              .meaning = "Edge length of the elements there.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9},
+              .default_text = "0, which is that of all elements"},
+             f.size);
+    v.number({.name = "extent",
+              .meaning = "How far from the point elements keep that size.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9}},
+             f.extent);
+    v.number({.name = "growth",
+              .meaning = "Each further element is at most about this many times longer than the one before.",
+              .range = {.low = 1, .high = 10}},
+             f.growth);
+}
+
 void describe(Visitor& v, CadMesh& m) {
     v.text({.name = "path",
             .meaning = "Geometry: .step .stp .iges .igs, whose own units count, or .brep, in metres; a relative path "
@@ -254,6 +277,8 @@ void describe(Visitor& v, CadMesh& m) {
               m.per_circle);
     v.flag({.name = "quadratic", .meaning = "Tetrahedra of ten nodes, with their middle nodes on the geometry."},
            m.quadratic);
+    v.group({.name = "focus", .meaning = "Small elements around a point, growing away from it in all directions."},
+            [&] { describe(v, m.focus); });
     describe_share(v, m);
 }
 

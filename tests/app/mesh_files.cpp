@@ -102,7 +102,8 @@ TEST_F(MeshFilesOfScenes, GeometryIsMeshedAsTheSceneSays) {
     if (!OSCULATE_HAS_GMSH) GTEST_SKIP() << "built without Gmsh's library";
     std::filesystem::copy_file(support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep", "part.brep");
     const scene::Scene scene = scene_with(
-        "  b:\n    mesh: {cad: {path: part.brep, size: 0.3 m, smallest: 0.05 m, per_circle: 12, quadratic: true, part: "
+        "  b:\n    mesh: {cad: {path: part.brep, size: 0.3 m, smallest: 0.05 m, per_circle: 12, quadratic: true, "
+        "focus: {point: [0, 0, 1 m], size: 0.1 m, extent: 0.2 m, growth: 1.5}, part: "
         "volume_1, piece: 1}, scale: 0.1}\n"
         "    material: {linear_elastic: {E: 1 MPa, nu: 0.2}}\n");
     const mesh::Mesh fine = build_meshes(scene)[0];
@@ -113,6 +114,9 @@ TEST_F(MeshFilesOfScenes, GeometryIsMeshedAsTheSceneSays) {
     EXPECT_DOUBLE_EQ(top, 0.1);
     EXPECT_EQ(scene::parse_scene(scene::write_scene(scene), "again.yaml").bodies, scene.bodies);
     EXPECT_THROW((void)scene_with("  b: {mesh: {cad: {path: part.brep, size: 1 m, smallest: 2 m}}, "
+                                  "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"),
+                 SceneError);
+    EXPECT_THROW((void)scene_with("  b: {mesh: {cad: {path: part.brep, smallest: 0.2 m, focus: {size: 0.1 m}}}, "
                                   "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"),
                  SceneError);
 }

@@ -224,5 +224,46 @@ TEST_F(GmshFiles, GeometryIsMeshedTheSameEveryTime) {
     EXPECT_GT(curved, area) << "middle nodes stand on the round face";
 }
 
+TEST_F(GmshFiles, ElementsAreSmallAroundAFocusAndGrowAwayFromIt) {
+    const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep";
+    CadOptions options{brep, 0.25};
+    const std::size_t even = make_mesh(mesh_cad(options)).nodes.size();
+    options.focus = {.point = {0.5, 0, 1}, .size = 0.02, .extent = 0.1, .growth = 1.3};
+    const Mesh mesh = make_mesh(mesh_cad(options));
+    EXPECT_THAT(faults(mesh), IsEmpty());
+    EXPECT_GT(mesh.nodes.size(), 2 * even);
+    constexpr double longest = 2.5, mean = 1.35; // of free meshes, times what is asked for
+    double ratio = 0;
+    int near = 0;
+    for (std::size_t e = 0; e < mesh.blocks[0].connectivity.size(); e += 4)
+        for (std::size_t a = 0; a < 4; ++a)
+            for (std::size_t b = 0; b < a; ++b) {
+                const Vec3& p = mesh.nodes[static_cast<std::size_t>(mesh.blocks[0].connectivity[e + a])];
+                const Vec3& q = mesh.nodes[static_cast<std::size_t>(mesh.blocks[0].connectivity[e + b])];
+                const double distance = ((p + q) / 2 - options.focus.point).norm();
+                EXPECT_LT((p - q).norm(), longest * options.focus.size_at(distance, options.size));
+                if (distance < options.focus.extent) {
+                    ratio += (p - q).norm() / options.focus.size;
+                    ++near;
+                }
+            }
+    ASSERT_GT(near, 0);
+    EXPECT_LT(ratio / near, mean);
+    EXPECT_GT(ratio / near, 1 / mean);
+}
+
+TEST_F(GmshFiles, AFocusWhoseElementsWouldBeTooManyIsRefused) {
+    const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep";
+    CadOptions options{brep, 0.25};
+    for (const CadFocus& focus : {CadFocus{.point = {0.5, 0, 1}, .size = 1e-4, .extent = 0.1},
+                                  CadFocus{.point = {0.5, 0, 1}, .size = 1e-9, .growth = 1},
+                                  CadFocus{.point = {50, 0, 0}, .size = 1e-3, .extent = 100}}) {
+        options.focus = focus;
+        EXPECT_THROW((void)mesh_cad(options), MeshError);
+    }
+    options.focus = {.point = {50, 0, 0}, .size = 1e-3, .extent = 1};
+    EXPECT_NO_THROW((void)mesh_cad(options)) << "far from the geometry";
+}
+
 } // namespace
 } // namespace osculate::mesh

@@ -1,11 +1,29 @@
 #pragma once
 /// Meshes and geometry read with Gmsh's library, which is loaded only when needed.
 
+#include "osculate/core/types.hpp"
 #include "osculate/mesh/raw_mesh.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace osculate::mesh {
+
+/// Small elements around a point of a geometry. size 0: none.
+struct CadFocus {
+    Vec3 point = Vec3::Zero(); ///< m
+    double size = 0;           ///< edge length at the point, m
+    double extent = 0;         ///< distance from the point within which edges have this length, m
+    double growth = 1.3;       ///< largest ratio of the lengths of an edge farther away and its inner neighbour
+    bool operator==(const CadFocus&) const = default;
+
+    /// Edge length at a distance from the point, not more than `largest`. [m]
+    [[nodiscard]] double size_at(double distance, double largest) const {
+        if (size <= 0) return largest;
+        // edges of lengths size growth^k end at distances that are linear in their lengths
+        return std::min(largest, size + (growth - 1) * std::max(0.0, distance - extent));
+    }
+};
 
 /// Geometry to be meshed with tetrahedra.
 struct CadOptions {
@@ -14,6 +32,7 @@ struct CadOptions {
     double smallest = 0;    ///< smallest edge length, metres
     int per_circle = 0;     ///< elements per full circle of curved faces; 0: curvature does not count
     bool quadratic = false; ///< tet10, with midside nodes on the geometry; false: tet4
+    CadFocus focus{};
     bool operator==(const CadOptions&) const = default;
 };
 

@@ -5,6 +5,7 @@
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/block_pattern.hpp"
 #include "osculate/mesh/focus.hpp"
+#include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/mesh.hpp"
 #include "osculate/mesh/portion.hpp"
 #include "osculate/scene/course.hpp"
@@ -98,6 +99,7 @@ struct CadMesh {
     double smallest = 0;    ///< smallest edge length, m
     int per_circle = 0;     ///< elements around a full circle; 0: ignores curvature
     bool quadratic = false; ///< tet10; false: tet4
+    mesh::CadFocus focus;
     std::string part;
     int piece = 0;
     bool operator==(const CadMesh&) const = default;

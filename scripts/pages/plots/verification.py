@@ -30,6 +30,7 @@ PLOTS = {
     "foundation": ["inner_roughness"],
     "half_tube_ripple": ["ripple"],
     "hertz_cylinder": ["profile"],
+    "hertz_elements": ["peak_pressure", "profile", "contact_radius"],
     "hertz_impact": [],
     "hertz_sphere": ["profile"],
     "incline": [],

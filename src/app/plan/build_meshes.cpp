@@ -57,8 +57,12 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, S
                 return mesh::make_mesh(sources.file(path), {f.part, f.piece, repairs_of(f.repair)}, &notes);
             },
             [&](const scene::CadMesh& c) {
-                const mesh::CadOptions options{(std::filesystem::path(directory) / c.path).string(), c.size, c.smallest,
-                                               c.per_circle, c.quadratic};
+                const mesh::CadOptions options{(std::filesystem::path(directory) / c.path).string(),
+                                               c.size,
+                                               c.smallest,
+                                               c.per_circle,
+                                               c.quadratic,
+                                               c.focus};
                 return mesh::make_mesh(sources.geometry(options), {c.part, c.piece, {}}, &notes);
             },
         },

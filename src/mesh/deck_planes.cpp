@@ -16,8 +16,14 @@ std::optional<PlaneType> deck_plane_type(std::string_view name) {
                  : kind == "CAX" ? DeckSlice::axisymmetric
                                  : DeckSlice::none;
     type.nodes = name[3] - '0';
-    type.solid = type.nodes == 3 ? CellType::wedge6 : type.nodes == 4 ? CellType::hex8 : CellType::hex20;
-    if (type.slice == DeckSlice::none || (type.nodes != 3 && type.nodes != 4 && type.nodes != 8)) return std::nullopt;
+    switch (type.nodes) {
+    case 3: type.solid = CellType::wedge6; break;
+    case 4: type.solid = CellType::hex8; break;
+    case 6: type.solid = CellType::wedge15; break;
+    case 8: type.solid = CellType::hex20; break;
+    default: return std::nullopt;
+    }
+    if (type.slice == DeckSlice::none) return std::nullopt;
     return type;
 }
 
@@ -65,7 +71,7 @@ Index DeckPlanes::above(Index point, const PlaneType& type, double thickness, do
 }
 
 RawCell DeckPlanes::layer(const PlaneType& type, const std::vector<Index>& points, double thickness) {
-    const std::size_t corners = std::min<std::size_t>(points.size(), 4);
+    const std::size_t corners = points.size() > 4 ? points.size() / 2 : points.size();
     std::vector<Index> all;
     const auto add = [&](std::size_t first, std::size_t last, double share) {
         for (std::size_t i = first; i < last; ++i)

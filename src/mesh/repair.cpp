@@ -183,7 +183,7 @@ void check_shapes(RawMesh& raw, const Repairs& repairs, MeshFaults& all) {
             continue;
         }
         // Many programs write the triangle (0, 1, 2) of a wedge facing inward, against VTK's definition: the same solid.
-        if (volume < 0 && cell.type == CellType::wedge6) {
+        if (volume < 0 && is_wedge(cell.type)) {
             turn_over(cell);
             volume = -volume;
         }

@@ -44,7 +44,7 @@ std::vector<char> columns_to_cut(std::size_t columns, CellType element, BlockPat
     if (pattern != BlockPattern::quad && !has_patterns(element))
         throw std::invalid_argument("elements of type " + std::string(cell_info(element).name) +
                                     " go with pattern quad only");
-    return std::vector<char>(columns, pattern == BlockPattern::triangle || element == CellType::wedge6);
+    return std::vector<char>(columns, pattern == BlockPattern::triangle || is_wedge(element));
 }
 
 /// Appends an element by its corners in the hexahedron. Node numbers are linear in i, j, k, so that the number half way
@@ -107,11 +107,9 @@ struct Filling {
     void (*append)(const GridCell& cell, const CellInfo& info, std::vector<Index>& connectivity);
 };
 
-constexpr Filling fillings[] = {{CellType::tet4, append_tets},
-                                {CellType::wedge6, append_wedges},
-                                {CellType::hex8, append_hex},
-                                {CellType::tet10, append_tets},
-                                {CellType::hex20, append_hex}};
+constexpr Filling fillings[] = {{CellType::tet4, append_tets},      {CellType::wedge6, append_wedges},
+                                {CellType::hex8, append_hex},       {CellType::tet10, append_tets},
+                                {CellType::wedge15, append_wedges}, {CellType::hex20, append_hex}};
 
 const Filling& filling_of(CellType type) {
     const auto* const found = std::ranges::find(fillings, type, &Filling::type);
@@ -189,7 +187,7 @@ std::array<int, 3> grid_divisions(std::array<int, 3> elements, CellType element)
 }
 
 Mesh mesh_grid(const StructuredGrid& grid, CellType element, BlockPattern pattern) {
-    const Filling &whole = filling_of(element), &wedges = filling_of(CellType::wedge6);
+    const Filling &whole = filling_of(element), &wedges = is_wedge(element) ? whole : filling_of(CellType::wedge6);
     const auto& n = grid.divisions;
     if (std::min({n[0], n[1], n[2]}) < 1) throw std::invalid_argument("divisions must be 1 or more");
     // In floating point the product cannot overflow; six tetrahedra of four nodes each are the largest array.

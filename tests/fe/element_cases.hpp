@@ -32,6 +32,7 @@ inline const std::vector<ElementCase> all_cases{
     {"wedge6", mesh::CellType::wedge6, HexFormulation::full},
     {"tet10", mesh::CellType::tet10, HexFormulation::full},
     {"hex20", mesh::CellType::hex20, HexFormulation::full},
+    {"wedge15", mesh::CellType::wedge15, HexFormulation::full},
     {"hex20_reduced", mesh::CellType::hex20, HexFormulation::reduced},
 };
 

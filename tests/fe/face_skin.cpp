@@ -21,7 +21,7 @@ mesh::Mesh block(mesh::CellType type, double curvature) {
     return mesh;
 }
 
-const mesh::CellType quadratic[] = {mesh::CellType::tet10, mesh::CellType::hex20};
+const mesh::CellType quadratic[] = {mesh::CellType::tet10, mesh::CellType::wedge15, mesh::CellType::hex20};
 
 TEST(FaceSkin, StartsAtTheNodesAndFollowsLinearMotions) {
     const Mat3 F = Eigen::AngleAxisd(2, Vec3(1, 2, -1).normalized()) * (Mat3::Identity() + 0.1 * Mat3::Random());

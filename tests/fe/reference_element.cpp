@@ -106,6 +106,8 @@ TEST(ReferenceElements, HaveTheVolumesOfTheirQuadrature) {
     };
     EXPECT_NEAR(volume(Hex8::quadrature()), 8, round_off);
     EXPECT_NEAR(volume(Wedge6::quadrature()), 1, round_off);
+    EXPECT_NEAR(volume(Wedge15::quadrature()), 1, round_off);
+    EXPECT_NEAR(volume(Wedge15::mass_quadrature()), 1, round_off);
     EXPECT_NEAR(volume(Tet4::quadrature()), 1.0 / 6, round_off);
     EXPECT_NEAR(volume(Tet10::quadrature()), 1.0 / 6, round_off);
 }
@@ -123,6 +125,18 @@ TEST(Wedge6, QuadratureIsExactToSecondDegreeInTheTriangleAndThirdAlongTheLine) {
     EXPECT_NEAR(rs, 2 * 1.0 / 24, round_off);
     EXPECT_NEAR(tt_rr, 2.0 / 3 * 2.0 / 24, round_off);
     EXPECT_NEAR(ttt, 0, round_off);
+}
+
+TEST(Wedge15, MassQuadratureIsExactToFourthDegreeInTheTriangleAndFifthAlongTheLine) {
+    double rrss = 0, rrrr_tttt = 0, ttttt = 0;
+    for (const auto& [xi, weight] : Wedge15::mass_quadrature()) {
+        rrss += weight * std::pow(xi[0] * xi[1], 2);
+        rrrr_tttt += weight * std::pow(xi[0] * xi[2], 4);
+        ttttt += weight * std::pow(xi[2], 5);
+    }
+    EXPECT_NEAR(rrss, 2 * 4.0 / 720, round_off);
+    EXPECT_NEAR(rrrr_tttt, 2.0 / 5 * 24 / 720, round_off);
+    EXPECT_NEAR(ttttt, 0, round_off);
 }
 
 } // namespace

@@ -118,11 +118,11 @@ TEST_F(Decks, IncludeFilesOfTheirFolder) {
 
 TEST_F(Decks, SayWhatIsWrongAtWhichLineAllAtOnce) {
     const std::string path = write("bad.inp", "*NODE\n1, 0, 0, 0\n2, 1, zero, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"
-                                              "*ELEMENT, TYPE=CPE6\n1, 1, 2, 3\n"
+                                              "*ELEMENT, TYPE=CPE9\n1, 1, 2, 3\n"
                                               "*ELEMENT, TYPE=C3D4\n7, 1, 3, 4, 99\n8, 1, 3\n"
                                               "*NSET, NSET=none\nmissing\n*NSET\n1\n");
     EXPECT_THAT(error_of(path),
-                AllOf(HasSubstr("bad.inp:3: a node is"), HasSubstr("bad.inp:6: *ELEMENT of type 'CPE6'; only C3D8,"),
+                AllOf(HasSubstr("bad.inp:3: a node is"), HasSubstr("bad.inp:6: *ELEMENT of type 'CPE9'; only C3D8,"),
                       HasSubstr("bad.inp:9: element 7 has node 99"), HasSubstr("bad.inp:10: an element of type C3D4"),
                       HasSubstr("bad.inp:12: no set is called 'missing'"), HasSubstr("bad.inp:13: *NSET without")));
     EXPECT_THAT(error_of(write("faces.inp", cubes + "*SURFACE, NAME=s\n1, S9\n7, S1\n")),

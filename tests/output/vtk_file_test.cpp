@@ -29,7 +29,8 @@ const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},      
 const std::vector<mesh::ElementBlock> blocks{{mesh::CellType::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
                                              {mesh::CellType::wedge6, {4, 5, 8, 7, 6, 9}},
                                              {mesh::CellType::tet4, {8, 9, 10, 4, 4, 5, 6, 8}},
-                                             {mesh::CellType::tet10, {10, 9, 8, 7, 6, 5, 4, 3, 2, 1}}};
+                                             {mesh::CellType::tet10, {10, 9, 8, 7, 6, 5, 4, 3, 2, 1}},
+                                             {mesh::CellType::wedge15, {4, 5, 8, 7, 6, 9, 0, 1, 2, 3, 10, 4, 5, 6, 7}}};
 
 mesh::Facet facet(std::array<Index, 4> nodes) {
     return {nodes, nodes[3] < 0 ? 3 : 4, -1, -1};
@@ -90,12 +91,13 @@ TEST_F(VtkFile, VolumeReadsBackAsItWas) {
     const auto reader = read<vtkXMLUnstructuredGridReader>(folder / "body.vtu");
     vtkUnstructuredGrid& grid = *reader->GetOutput();
     expect_same_points(grid);
-    ASSERT_EQ(grid.GetNumberOfCells(), 5);
+    ASSERT_EQ(grid.GetNumberOfCells(), 6);
     expect_cell(grid, 0, VTK_HEXAHEDRON, blocks[0].connectivity);
     expect_cell(grid, 1, VTK_WEDGE, blocks[1].connectivity);
     expect_cell(grid, 2, VTK_TETRA, {8, 9, 10, 4});
     expect_cell(grid, 3, VTK_TETRA, {4, 5, 6, 8});
     expect_cell(grid, 4, VTK_QUADRATIC_TETRA, blocks[3].connectivity);
+    expect_cell(grid, 5, VTK_QUADRATIC_WEDGE, blocks[4].connectivity);
     expect_same_arrays(grid, arrays);
     EXPECT_EQ(grid.GetFieldData()->GetArray("TimeValue")->GetComponent(0, 0), 0.1);
 }

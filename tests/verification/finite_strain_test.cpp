@@ -72,7 +72,7 @@ TEST_P(Stretched, BlockHasTheExactForceAndWidth) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Stretched, testing::Values("hex8", "wedge6", "tet4", "tet10"),
+INSTANTIATE_TEST_SUITE_P(All, Stretched, testing::Values("hex8", "wedge6", "tet4", "tet10", "wedge15"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(FollowerPressure, IsTheCauchyStressOfTheBlock) {

@@ -109,6 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"hex20_on_hex8", "triangle", "quad", "blend", false, "0", "hex8", "hex20"},
                     Case{"hex8_on_hex20", "quad", "triangle", "blend", false, "0", "hex20", "hex8"},
                     Case{"tet10", "quad", "quad", "rpim", false, "0", "tet10", "tet10"},
+                    Case{"wedge15", "quad", "quad", "blend", true, "0.3", "wedge15", "hex20"},
                     Case{"tet10_on_hex20", "quad", "quad", "blend", true, "0.3", "tet10", "hex20"}),
     [](const auto& tested) { return tested.param.name; });
 

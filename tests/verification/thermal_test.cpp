@@ -49,7 +49,7 @@ double largest_stress(const support::SceneRun& run) {
     return model::nodal_stress(run.plan.model, 0, run.steps.back().state).cwiseAbs().maxCoeff();
 }
 TEST(Thermal, AFreeBlockGrowsWithoutStress) {
-    for (const char* element : {"hex8", "tet10", "hex20"})
+    for (const char* element : {"hex8", "tet10", "wedge15", "hex20"})
         for (std::size_t law = 0; law < std::size(laws); ++law) {
             Overrides all = laws[law];
             all.push_back({"bodies.block.mesh.block.element", element});

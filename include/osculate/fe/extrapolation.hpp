@@ -16,6 +16,10 @@ template <> struct StressField<Tet10> {
     using Element = Tet4;
     static constexpr int points = Tet10::points;
 };
+template <> struct StressField<Wedge15> {
+    using Element = Wedge6;
+    static constexpr int points = Wedge15::points;
+};
 template <> struct StressField<Hex20Reduced> {
     using Element = Hex8;
     static constexpr int points = Hex8::points;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <utility>
 
 namespace osculate::fe {
 
@@ -320,7 +321,91 @@ struct Wedge6 {
     static std::array<QuadraturePoint, mass_points> mass_quadrature() { return quadrature(); }
 };
 
+/// Quadratic serendipity wedge on the same prism as Wedge6, midside nodes on the edges 01, 12, 20, 34, 45, 53, 03, 14, 25. 3 x 3
+/// points for its stiffness, of degree two in the triangle, and 6 x 3 of degree four for its mass.
+struct Wedge15 {
+    static constexpr int nodes = 15;
+    static constexpr int degree = 2;
+    static constexpr int points = 9;
+    static constexpr int mass_points = 18;
+    using Shape = Eigen::Matrix<double, nodes, 1>;
+    using Gradient = Eigen::Matrix<double, nodes, 3>;
+    using Positions = Eigen::Matrix<double, 3, nodes>;
+    static constexpr int edges[9][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
+
+    static Positions node_positions() {
+        Positions c;
+        c.leftCols<6>() = Wedge6::node_positions();
+        for (int m = 0; m < 9; ++m) c.col(6 + m) = (c.col(edges[m][0]) + c.col(edges[m][1])) / 2;
+        return c;
+    }
+
+    static bool contains(const Vec3& xi, double tolerance) { return Wedge6::contains(xi, tolerance); }
+
+    /// With t_a = -1 or 1: N_a = L_a (2 L_a - 1) (1 + t_a t)/2 - L_a (1 - t^2)/2 at a corner, 2 L_a L_b (1 + t_a t) midway between
+    /// a and b of a triangle, L_a (1 - t^2) midway along t.
+    static Shape shape(const Vec3& xi) {
+        const Vec3 L = areas(xi);
+        const double t = xi[2], hump = 1 - t * t;
+        Shape N;
+        for (int a = 0; a < 6; ++a) {
+            const double l = L[a % 3], side = 1 + (a < 3 ? -t : t);
+            N[a] = l * (2 * l - 1) * side / 2 - l * hump / 2;
+            N[6 + a] = 2 * l * L[(a + 1) % 3] * side;
+        }
+        N.tail<3>() = L * hump;
+        return N;
+    }
+
+    static Gradient gradient(const Vec3& xi) {
+        const Vec3 L = areas(xi);
+        Eigen::Matrix<double, 3, 2> dL;
+        dL << -1, -1, 0, 1, 1, 0;
+        const double t = xi[2], hump = 1 - t * t;
+        Gradient dN;
+        for (int a = 0; a < 6; ++a) {
+            const int i = a % 3, j = (a + 1) % 3;
+            const double sign = a < 3 ? -1 : 1, side = 1 + sign * t;
+            dN.row(a) << dL.row(i) * ((4 * L[i] - 1) * side - hump) / 2, sign * L[i] * (2 * L[i] - 1) / 2 + L[i] * t;
+            dN.row(6 + a) << 2 * side * (L[i] * dL.row(j) + L[j] * dL.row(i)), 2 * sign * L[i] * L[j];
+        }
+        for (int i = 0; i < 3; ++i) dN.row(12 + i) << dL.row(i) * hump, -2 * t * L[i];
+        return dN;
+    }
+
+    static std::array<QuadraturePoint, points> quadrature() {
+        constexpr double a = 1.0 / 6, b = 2.0 / 3;
+        return along_line<points>({{{a, a, a}, {a, b, a}, {b, a, a}}});
+    }
+
+    /// [Strang and Fix 1973; Dunavant 1985]
+    static std::array<QuadraturePoint, mass_points> mass_quadrature() {
+        const double root = std::sqrt(38 - 44 * std::sqrt(0.4)), ten = std::sqrt(10.0);
+        const double a = (8 - ten + root) / 18, b = (8 - ten - root) / 18;
+        const double uneven = std::sqrt(213125 - 53320 * ten) / 7440, w = 620.0 / 7440;
+        return along_line<mass_points>({{{a, a, w + uneven},
+                                         {1 - 2 * a, a, w + uneven},
+                                         {a, 1 - 2 * a, w + uneven},
+                                         {b, b, w - uneven},
+                                         {1 - 2 * b, b, w - uneven},
+                                         {b, 1 - 2 * b, w - uneven}}});
+    }
+
+private:
+    static Vec3 areas(const Vec3& xi) { return {1 - xi[0] - xi[1], xi[1], xi[0]}; }
+
+    /// A rule of the triangle, (r, s, weight), times three Gauss points.
+    template <std::size_t n> static std::array<QuadraturePoint, n> along_line(const std::array<Vec3, n / 3>& triangle) {
+        const double g = std::sqrt(0.6);
+        std::array<QuadraturePoint, n> rule;
+        std::size_t q = 0;
+        for (const auto& [t, weight] : {std::pair{-g, 5.0 / 9}, std::pair{0.0, 8.0 / 9}, std::pair{g, 5.0 / 9}})
+            for (const Vec3& p : triangle) rule[q++] = {{p[0], p[1], t}, p[2] * weight};
+        return rule;
+    }
+};
+
 static_assert(ReferenceElement<Hex8> && ReferenceElement<Tet4> && ReferenceElement<Wedge6> && ReferenceElement<Tet10> &&
-              ReferenceElement<Hex20> && ReferenceElement<Hex20Reduced>);
+              ReferenceElement<Hex20> && ReferenceElement<Hex20Reduced> && ReferenceElement<Wedge15>);
 
 } // namespace osculate::fe

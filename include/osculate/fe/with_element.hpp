@@ -14,6 +14,7 @@ template <class F> decltype(auto) with_element(mesh::CellType type, F&& f) {
     case mesh::CellType::wedge6: return f.template operator()<Wedge6>();
     case mesh::CellType::hex8: return f.template operator()<Hex8>();
     case mesh::CellType::tet10: return f.template operator()<Tet10>();
+    case mesh::CellType::wedge15: return f.template operator()<Wedge15>();
     case mesh::CellType::hex20: return f.template operator()<Hex20>();
     }
     throw InternalError("cell type without a reference element");

@@ -10,7 +10,7 @@ enum class BlockPattern { quad, triangle, hybrid };
 
 /// Whether columns of these elements can be cut otherwise than as quad says.
 [[nodiscard]] constexpr bool has_patterns(CellType element) {
-    return element == CellType::hex8 || element == CellType::wedge6;
+    return element == CellType::hex8 || is_wedge(element);
 }
 
 } // namespace osculate::mesh

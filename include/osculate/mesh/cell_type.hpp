@@ -13,10 +13,10 @@
 namespace osculate::mesh {
 
 /// Volume element shapes; node order is VTK's (VTK_TETRA, VTK_WEDGE, VTK_HEXAHEDRON, VTK_QUADRATIC_TETRA,
-/// VTK_QUADRATIC_HEXAHEDRON). Note the wedge: the right-handed normal of its triangle (0, 1, 2) points out of the element,
-/// away from (3, 4, 5). Nodes 4 to 9 of a tet10 are the midpoints of the edges 01, 12, 20, 03, 13, 23; nodes 8 to 19 of a
-/// hex20 those of 01, 12, 23, 30, of 45, 56, 67, 74, and of 04, 15, 26, 37.
-enum class CellType { tet4, wedge6, hex8, tet10, hex20 };
+/// VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_HEXAHEDRON). Note the wedge: the right-handed normal of its triangle (0, 1, 2) points out of the element,
+/// away from (3, 4, 5). Nodes 4 to 9 of a tet10 are the midpoints of the edges 01, 12, 20, 03, 13, 23; nodes 6 to 14 of a wedge15
+/// those of 01, 12, 20, of 34, 45, 53, and of 03, 14, 25; nodes 8 to 19 of a hex20 those of 01, 12, 23, 30, of 45, 56, 67, 74, and of 04, 15, 26, 37.
+enum class CellType { tet4, wedge6, hex8, tet10, wedge15, hex20 };
 
 inline constexpr int most_nodes_per_cell = 20;
 using NodeOrder = std::array<int, most_nodes_per_cell>; ///< entry i: number of our node i in the other order
@@ -68,6 +68,9 @@ inline constexpr LocalFace wedge_deck_faces[] = {
 inline constexpr std::array<int, 3> wedge_corners[] = {{2, 1, 3}, {0, 2, 4}, {1, 0, 5},
                                                        {4, 5, 0}, {5, 3, 1}, {3, 4, 2}};
 
+inline constexpr std::array<int, 2> wedge_edges[] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5},
+                                                     {5, 3}, {0, 3}, {1, 4}, {2, 5}};
+
 inline constexpr LocalFace hex_faces[] = {{{0, 4, 7, 3}, 4}, {{1, 2, 6, 5}, 4}, {{0, 1, 5, 4}, 4},
                                           {{3, 7, 6, 2}, 4}, {{0, 3, 2, 1}, 4}, {{4, 5, 6, 7}, 4}};
 inline constexpr LocalFace hex_deck_faces[] = {{{0, 1, 2, 3}, 4}, {{4, 7, 6, 5}, 4}, {{0, 4, 5, 1}, 4},
@@ -97,10 +100,10 @@ constexpr CellInfo::FaceNodes face_nodes(const LocalFace& face, std::span<const 
     return all;
 }
 
-/// The pieces of all faces with midside nodes.
+/// The pieces of all faces with midside nodes, so many of all.
 template <int pieces, std::size_t n>
 constexpr auto in_pieces(const LocalFace (&faces)[n], std::span<const std::array<int, 2>> edges, int corners) {
-    std::array<LocalFace, pieces * n> result{};
+    std::array<LocalFace, pieces> result{};
     std::size_t filled = 0;
     for (const LocalFace& face : faces) {
         const CellInfo::FaceNodes all = face_nodes(face, edges, corners);
@@ -110,8 +113,9 @@ constexpr auto in_pieces(const LocalFace (&faces)[n], std::span<const std::array
     }
     return result;
 }
-inline constexpr auto tet10_facets = in_pieces<4>(tet_faces, tet_edges, 4);
-inline constexpr auto hex20_facets = in_pieces<5>(hex_faces, hex_edges, 8);
+inline constexpr auto tet10_facets = in_pieces<16>(tet_faces, tet_edges, 4);
+inline constexpr auto wedge15_facets = in_pieces<23>(wedge_faces, wedge_edges, 6);
+inline constexpr auto hex20_facets = in_pieces<30>(hex_faces, hex_edges, 8);
 
 // The first triangle of a wedge in decks and in Gmsh faces inward; ours faces outward.
 inline constexpr CellInfo list[] = {
@@ -175,6 +179,21 @@ inline constexpr CellInfo list[] = {
      tet_deck_faces,
      tet_edges,
      {}},
+    {CellType::wedge15,
+     "wedge15",
+     "wedge15",
+     15,
+     26,
+     18,
+     {0, 2, 1, 3, 5, 4, 7, 9, 6, 13, 14, 12, 8, 11, 10},
+     {"C3D15"},
+     {0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13},
+     {0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13},
+     wedge_faces,
+     wedge15_facets,
+     wedge_deck_faces,
+     wedge_edges,
+     wedge_corners},
     {CellType::hex20,
      "hex20",
      "hexahedron20",
@@ -229,6 +248,9 @@ template <class F> [[nodiscard]] constexpr const CellInfo* find_cell_type(F&& f)
     return *find_cell_type([&](const CellInfo& other) {
         return other.nodes == info.corners() && other.faces.size() == info.faces.size();
     });
+}
+[[nodiscard]] constexpr bool is_wedge(CellType type) {
+    return without_midside_nodes(cell_info(type)).type == CellType::wedge6;
 }
 static_assert(std::ranges::all_of(cell_types(),
                                   [](const CellInfo& info) { return without_midside_nodes(info).edges.empty(); }),

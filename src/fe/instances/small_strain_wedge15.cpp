@@ -1,0 +1,7 @@
+#include "fe/small_strain_kernel.hpp"
+
+namespace osculate::fe {
+
+template std::unique_ptr<ElementKernel> make_small_strain_kernel<DisplacementStrain<Wedge15>>(const Mat6&, bool);
+
+} // namespace osculate::fe

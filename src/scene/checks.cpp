@@ -3,6 +3,7 @@
 #include "osculate/scene/nearest.hpp"
 #include "osculate/scene/units.hpp"
 #include "scene/describe_parts.hpp"
+#include "scene/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,70 +13,9 @@ namespace osculate::scene {
 
 namespace {
 
-class Rules {
+class SceneRules : public Rules {
 public:
-    Rules(const Tree& tree, std::vector<Fault>& faults) : tree_(tree), faults_(faults) {}
-
-    void check_mesh(const std::string& body, const BlockMesh& m) {
-        const std::vector<std::string> path{"bodies", body, "mesh", "block", "pattern"};
-        if (m.pattern == BlockPattern::hybrid && m.element != mesh::CellType::hex8)
-            fault(path, "pattern hybrid with element hex8", "another element");
-        else if (m.pattern == BlockPattern::hybrid && m.divisions[0] * m.divisions[1] < 2)
-            fault(path, "at least two columns of elements for pattern hybrid", "one");
-        else if (m.pattern != BlockPattern::quad && !mesh::has_patterns(m.element))
-            fault(path, "pattern quad with element " + std::string(mesh::cell_info(m.element).name), "another pattern");
-    }
-    void check_mesh(const std::string& /*body*/, const HalfTubeMesh& /*m*/) {}
-    void check_mesh(const std::string& body, const ContactorMesh& m) {
-        const double half = m.width / 2;
-        if (half > m.radius) {
-            fault({"bodies", body, "mesh", "contactor", "width"},
-                  "at most twice the radius, " + number_text(2 * m.radius) + " m", number_text(m.width) + " m");
-            return;
-        }
-        const double least = m.radius - std::sqrt((m.radius - half) * (m.radius + half));
-        if (m.height <= least)
-            fault({"bodies", body, "mesh", "contactor", "height"},
-                  "more than " + number_text(least) + " m, where the flat top meets the underside's edges",
-                  number_text(m.height) + " m");
-    }
-    void check_mesh(const std::string& body, const BallMesh& m) { check_around(body, "ball", m.divisions[0]); }
-    void check_mesh(const std::string& body, const CylinderMesh& m) { check_around(body, "cylinder", m.divisions[0]); }
-    void check_around(const std::string& body, const char* tag, int around) {
-        if (around % 2 != 0)
-            fault({"bodies", body, "mesh", tag, "divisions"}, "an even number of elements around a quarter",
-                  std::to_string(around));
-    }
-    void check_mesh(const std::string& body, const TubeMesh& m) {
-        if (m.divisions[0] < 3)
-            fault({"bodies", body, "mesh", "tube", "divisions"}, "3 or more elements around",
-                  std::to_string(m.divisions[0]));
-    }
-    void check_mesh(const std::string& body, const FileMesh& m) { check_path(body, "file", m.path); }
-    void check_mesh(const std::string& body, const CadMesh& m) {
-        check_path(body, "cad", m.path);
-        if (m.size > 0 && m.smallest > m.size)
-            fault({"bodies", body, "mesh", "cad", "smallest"}, "at most size, " + number_text(m.size) + " m",
-                  number_text(m.smallest) + " m");
-        if (m.focus.size > 0 && m.smallest > m.focus.size)
-            fault({"bodies", body, "mesh", "cad", "smallest"},
-                  "at most the size of focus, " + number_text(m.focus.size) + " m", number_text(m.smallest) + " m");
-    }
-    void check_hardening(const std::string& name, const Body& body) {
-        const auto* plastic = std::get_if<ElasticPlastic>(&body.material);
-        if (plastic == nullptr || plastic->yield_stress.is_value()) return;
-        const std::vector<std::string> key{"bodies", name, "material", "elastic_plastic", "yield_stress"};
-        if (std::holds_alternative<Expression>(plastic->yield_stress.form))
-            fault(key, "a value, or a table over the equivalent plastic strain", "an expression");
-        else if (const double first = std::get<Table>(plastic->yield_stress.form).rows.front()[0]; first != 0)
-            fault(key, "a table that begins at a plastic strain of 0", number_text(first));
-    }
-
-    void check_path(const std::string& body, const char* tag, const std::string& path) {
-        std::error_code ignored;
-        if (!path.empty() && !std::filesystem::is_regular_file(path, ignored))
-            fault({"bodies", body, "mesh", tag, "path"}, "a file that exists", "'" + path + "'");
-    }
+    using Rules::Rules;
 
     void check_set(const std::string& name, const SetSpec& set) {
         const auto* box = std::get_if<SelectBox>(&set.select);
@@ -93,10 +33,7 @@ public:
     void check_sides(const std::string& name, const Pair& pair) {
         const auto written = [&](std::vector<std::string> path) {
             path.insert(path.begin(), {"contact", name});
-            const Tree* node = &tree_;
-            for (const std::string& part : path)
-                if (node = node->find(part); node == nullptr) return false;
-            return true;
+            return has(path);
         };
         const bool slave = written({"slave"}), exact = written({"master", "rigid_surface"}),
                    master = written({"master", "set"}) || exact;
@@ -210,40 +147,6 @@ public:
         if (elastic(body.material).density == 0)
             fault({"bodies", name, body.has_material ? "material" : "rigid"},
                   (body.rigid ? "a density or a mass, which " : "a density, which ") + reason + " needs", "none");
-    }
-
-    void check_rigid(const std::string& name, const Body& body) {
-        if (!body.has_mesh && !body.rigid_surface) fault({"bodies", name}, "a mesh, or a rigid_surface", "neither");
-        if (body.rigid_surface) {
-            if (body.has_mesh) fault({"bodies", name, "mesh"}, "a mesh, or a rigid_surface", "both");
-            if (body.has_material)
-                fault({"bodies", name, "material"}, "none: a rigid_surface does not deform", "a material");
-            if (body.rigid->density > 0)
-                fault({"bodies", name, "rigid", "density"}, "mass and inertia: a rigid_surface has no volume",
-                      "a density");
-        }
-        if (!body.has_material && !body.rigid) fault({"bodies", name}, "a material, or rigid: true", "neither");
-        if (!body.rigid) return;
-        if (body.slice) fault({"bodies", name, "slice"}, "a body that deforms", "a rigid one");
-        const Rigid& rigid = *body.rigid;
-        const std::vector<std::string> path{"bodies", name, "rigid"};
-        const auto key = [&](const char* last) { return std::vector<std::string>{"bodies", name, "rigid", last}; };
-        if (rigid.mass && rigid.density > 0) fault(key("mass"), "a density or a mass", "both");
-        if (rigid.mass && !rigid.inertia) fault(key("mass"), "inertia beside a mass", "none");
-        if (rigid.inertia && !rigid.mass) fault(key("inertia"), "a mass beside inertia", "none");
-        if (rigid.products && !rigid.inertia) fault(key("products"), "inertia beside products", "none");
-        if (rigid.centre && !rigid.mass) fault(key("centre"), "a mass beside a centre of mass", "none");
-        if (body.has_material && rigid.density > 0 && elastic(body.material).density > 0 &&
-            elastic(body.material).density != rigid.density)
-            fault(key("density"), "the density of the material, or none", number_text(rigid.density) + " kg/m^3");
-        if (!rigid.inertia) return;
-        const Vec3 J = *rigid.inertia, P = rigid.products.value_or(Vec3::Zero());
-        // positive definite, by the leading minors
-        const double second = J[0] * J[1] - P[0] * P[0];
-        const double third = J[0] * (J[1] * J[2] - P[1] * P[1]) - P[0] * (P[0] * J[2] - P[1] * P[2]) +
-                             P[2] * (P[0] * P[1] - J[1] * P[2]);
-        if (!(second > 0) || !(third > 0))
-            fault(key("inertia"), "a positive definite tensor of inertia", "one that is not");
     }
 
     /// Sets of rigid bodies have no equations of their own.
@@ -409,14 +312,6 @@ public:
                       "a body with a rigid_surface");
     }
 
-    void check_formulation(const std::string& name, const Body& body) {
-        if (body.hex_formulation == HexFormulation::incompatible_modes && body.has_material &&
-            !std::holds_alternative<LinearElastic>(body.material) &&
-            !std::holds_alternative<Orthotropic>(body.material))
-            fault({"bodies", name, "hex_formulation"}, "full or b_bar with a material at finite strain",
-                  "incompatible_modes");
-    }
-
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {
         if (stage.control.error_tolerance && std::holds_alternative<StaticAnalysis>(stage.analysis))
             fault({"stages", name, "control", "error_tolerance"}, "a dynamic stage", "a static one");
@@ -451,7 +346,7 @@ public:
                 fault({"stages", name, "displacement", set, axis}, "a component that supports." + set + " leaves free",
                       axis + ", which is held");
             }
-            const Tree* written = locate({"stages", name, "displacement", set});
+            const Tree* written = deepest({"stages", name, "displacement", set});
             if (written->key == set && written->children.empty())
                 fault({"stages", name, "displacement", set}, "at least one of x, y, z", "none");
             for (std::size_t a = 0; a < 3; ++a)
@@ -480,7 +375,7 @@ public:
         for (int k = std::holds_alternative<DynamicAnalysis>(stage.analysis) ? 0 : 1; k <= stage.steps; ++k) {
             const double t = stage.duration * k / stage.steps, y = value(t);
             if (std::isfinite(y) && range.contains(y)) continue;
-            const Tree* at = locate(path);
+            const Tree* at = deepest(path);
             if (at->kind == Tree::Kind::list && component < at->children.size()) at = &at->children[component];
             if (const Tree* text = at->find("expression")) at = text;
             const std::string bounds = range.text();
@@ -495,36 +390,13 @@ public:
         if (expect.outcome == Outcome::completed && !expect.cause.empty())
             fault({"expect", "cause"}, "outcome gives_up with a cause", "outcome completed");
     }
-
-private:
-    /// The deepest part of a path that the tree has.
-    [[nodiscard]] const Tree* locate(const std::vector<std::string>& path) const {
-        const Tree* node = &tree_;
-        for (const std::string& part : path) {
-            const Tree* child = node->find(part);
-            if (!child) break;
-            node = child;
-        }
-        return node;
-    }
-
-    void fault(const std::vector<std::string>& path, std::string expected, std::string found) {
-        faults_.push_back(fault_at(locate(path)->place, join(path, "."), std::move(expected), std::move(found)));
-    }
-
-    const Tree& tree_;
-    std::vector<Fault>& faults_;
 };
 
 } // namespace
 
 void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& faults) {
-    Rules rules(tree, faults);
-    for (const auto& [name, body] : scene.bodies)
-        std::visit([&, &n = name](const auto& source) { rules.check_mesh(n, source); }, body.mesh.source);
-    for (const auto& [name, body] : scene.bodies) rules.check_formulation(name, body);
-    for (const auto& [name, body] : scene.bodies) rules.check_hardening(name, body);
-    for (const auto& [name, body] : scene.bodies) rules.check_rigid(name, body);
+    check_bodies(scene, tree, faults);
+    SceneRules rules(tree, faults);
     rules.check_rigid_sets(scene);
     rules.check_couplings(scene);
     rules.check_ties(scene);

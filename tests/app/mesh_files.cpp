@@ -116,9 +116,16 @@ TEST_F(MeshFilesOfScenes, GeometryIsMeshedAsTheSceneSays) {
     EXPECT_THROW((void)scene_with("  b: {mesh: {cad: {path: part.brep, size: 1 m, smallest: 2 m}}, "
                                   "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"),
                  SceneError);
-    EXPECT_THROW((void)scene_with("  b: {mesh: {cad: {path: part.brep, smallest: 0.2 m, focus: {size: 0.1 m}}}, "
-                                  "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"),
-                 SceneError);
+    const scene::Scene even =
+        scene_with("  b: {mesh: {cad: {path: part.brep}}, material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n");
+    EXPECT_EQ(scene::parse_scene(scene::write_scene(even), "again.yaml").bodies, even.bodies);
+    // small elements of no size, of a size that the others have, or of one that is forbidden
+    for (const char* focus : {"focus: {point: [0, 0, 1 m]}", "focus: {point: [0, 0, 0]}",
+                              "size: 0.3 m, focus: {size: 0.3 m}", "smallest: 0.2 m, focus: {size: 0.1 m}"})
+        EXPECT_THROW((void)scene_with("  b: {mesh: {cad: {path: part.brep, " + std::string(focus) +
+                                      "}}, material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"),
+                     SceneError)
+            << focus;
 }
 
 } // namespace

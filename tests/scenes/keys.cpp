@@ -65,6 +65,22 @@ TEST(MeshKeys, SerendipityHexahedraHaveNoOtherNodes) {
     }
 }
 
+TEST(MeshKeys, SerendipityWedgesHaveNodesOnTheirDiagonalsBeside) {
+    // those of hexahedra, and one for each diagonal of the faces that are cut
+    for (const auto& [text, nodes] :
+         {std::pair{
+              "{contactor: {radius: 5 m, width: 2 m, length: 3 m, height: 0.5 m, rear: -1 m, divisions: [4, 2, 1], "
+              "element: wedge15}}",
+              5 * 3 * 2 + 4 * 3 * 2 + 5 * 2 * 2 + 5 * 3 + 4 * 2 * 2},
+          std::pair{
+              "{half_tube: {inner_radius: 2 m, thickness: 0.5 m, length: 3 m, divisions: [8, 2, 1], element: wedge15}}",
+              9 * 3 * 2 + 8 * 3 * 2 + 9 * 2 * 2 + 9 * 3 + 8 * 2 * 2}}) {
+        const mesh::Mesh mesh = mesh_of(text);
+        EXPECT_EQ(mesh.blocks.front().type, mesh::CellType::wedge15);
+        EXPECT_EQ(mesh.node_count(), nodes) << text;
+    }
+}
+
 TEST(MeshKeys, HalfTubeHasItsRadii) {
     const mesh::Mesh mesh = mesh_of(
         "{half_tube: {inner_radius: 2 m, thickness: 0.5 m, length: 3 m, divisions: [8, 2, 1], element: tet10}}");

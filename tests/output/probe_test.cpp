@@ -46,9 +46,8 @@ TEST(PointProbe, IsExactForALinearDisplacement) {
 }
 
 TEST(PointProbe, IsExactInDistortedElementsOfEveryType) {
-    for (const mesh::CellType type :
-         {mesh::CellType::hex8, mesh::CellType::wedge6, mesh::CellType::tet4, mesh::CellType::tet10,
-          mesh::CellType::wedge15, mesh::CellType::hex20}) {
+    for (const mesh::CellType type : {mesh::CellType::hex8, mesh::CellType::wedge6, mesh::CellType::tet4,
+                                      mesh::CellType::tet10, mesh::CellType::wedge15, mesh::CellType::hex20}) {
         model::Model model;
         const auto pattern = type == mesh::CellType::wedge6 ? mesh::BlockPattern::triangle : mesh::BlockPattern::quad;
         const auto element = type == mesh::CellType::wedge6 ? mesh::CellType::hex8 : type;

@@ -131,6 +131,9 @@ private:
 
     void check_element_type(const DeckCard& card) {
         const std::string type = capitals_of(card, "TYPE");
+        if (card.keyword == "ELEMENT" && type.starts_with("CAX") && model_.mesh.bored > 0)
+            model_.note(deck_.place(card), "*ELEMENT, TYPE=" + type,
+                        "what is on the axis stands beside it, by a thousandth of the mesh's size");
         if (card.keyword == "ELEMENT" && (type == "C3D8R" || type == "CPE4R" || type == "CPS4R" || type == "CAX4R"))
             model_.note(
                 deck_.place(card), "*ELEMENT, TYPE=" + type,

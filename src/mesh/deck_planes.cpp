@@ -1,5 +1,6 @@
 #include "mesh/deck_planes.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -70,7 +71,26 @@ Index DeckPlanes::above(Index point, const PlaneType& type, double thickness, do
     return at->second;
 }
 
+void DeckPlanes::leave_axis(const std::vector<Index>& points) {
+    if (bore_ == 0) {
+        Eigen::AlignedBox3d box;
+        for (const Vec3& x : mesh_.raw.points) box.extend(x);
+        bore_ = DeckMesh::bore * box.diagonal().norm();
+    }
+    const auto radius = [&](Index point) -> double& { return mesh_.raw.points[static_cast<std::size_t>(point)][0]; };
+    double largest = 0;
+    for (const Index point : points) largest = std::max(largest, radius(point));
+    constexpr double round_off = 1e-9, small = 0.2;
+    if (bore_ > small * largest) return; // elements too fine for it are refused, as they have no volume there
+    for (const Index point : points)
+        if (std::abs(radius(point)) <= round_off * largest) {
+            radius(point) = bore_;
+            ++mesh_.bored;
+        }
+}
+
 RawCell DeckPlanes::layer(const PlaneType& type, const std::vector<Index>& points, double thickness) {
+    if (type.slice == DeckSlice::axisymmetric) leave_axis(points);
     const std::size_t corners = points.size() > 4 ? points.size() / 2 : points.size();
     std::vector<Index> all;
     const auto add = [&](std::size_t first, std::size_t last, double share) {

@@ -30,11 +30,14 @@ public:
     RawCell layer(const PlaneType& type, const std::vector<Index>& points, double thickness);
 
 private:
+    /// Moves points that are on the axis off it, see DeckMesh::bore.
+    void leave_axis(const std::vector<Index>& points);
     /// Point over another, at a share of the layer, 0.5 or 1.
     Index above(Index point, const PlaneType& type, double thickness, double share);
 
     DeckReading& reading_;
     DeckMesh& mesh_;
+    double bore_ = 0;                      ///< radius, m; 0 until it is asked for
     std::map<std::string, double> of_set_; ///< thickness by names of element sets, in capitals
     std::map<std::tuple<Index, DeckSlice, double, double>, Index> made_;
 };

@@ -84,6 +84,27 @@ TEST_F(ImportingPlanes, HaveTheirTemperaturesThroughTheLayer) {
     EXPECT_EQ(plan.stages[0].temperatures[0].nodes.size(), 20);
 }
 
+TEST_F(ImportingPlanes, OnTheirAxisStandBesideIt) {
+    // a solid cylinder of radius and height 1
+    for (const auto& [type, elements] : {std::pair{"CAX3", "1,1,2,3\n2,1,3,4\n"},
+                                         {"CAX4", "1,1,2,3,4\n"},
+                                         {"CAX6", "1,1,2,3,5,6,9\n2,1,3,4,9,7,8\n"},
+                                         {"CAX8", "1,1,2,3,4,5,6,7,8\n"}}) {
+        const std::string model =
+            std::string("*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n5,.5,0\n6,1,.5\n7,.5,1\n8,0,.5\n9,.5,.5\n*ELEMENT, TYPE=") +
+            type + ", ELSET=E\n" + elements +
+            "*NSET, NSET=Axis\n1,4\n*NSET, NSET=Bed\n1,2\n*MATERIAL, NAME=M\n*ELASTIC\n1000,0.3\n*SOLID SECTION, "
+            "ELSET=E, "
+            "MATERIAL=M\n1.\n*BOUNDARY\nAxis,1\nBed,2\n";
+        const ImportedScene imported = import("*STEP\n*STATIC\n*CLOAD\n3,2,-720\n*END STEP\n", DeckUnits::si, model);
+        EXPECT_TRUE(imported.lost.empty()) << imported.text;
+        EXPECT_THAT(imported.text, HasSubstr("what is on the axis stands beside it"));
+        const app::Plan plan = plan_of(checked(imported));
+        constexpr double turn = 0.5 * std::numbers::pi / 180, bore = 2e-6, chord = 1.3e-5; // relative
+        EXPECT_NEAR(model::mass_properties(plan.model.bodies[0], 1).mass / (turn / 2), 1, bore + chord) << type;
+    }
+}
+
 TEST_F(ImportingPlanes, EquationsThatDifferByTheirFirstNodeAreOne) {
     const std::string equations = "*EQUATION\n2\n15,3,1.,16,3,-1.\n2\n17,3,1.,16,3,-1.\n*EQUATION\n3\n"
                                   "18,1,2.,7,1,-1.,8,2,0.5\n";

@@ -29,6 +29,10 @@ struct DeckMesh {
     std::map<Index, std::vector<Index>> above; ///< points of the layer over a point of a plane element
     /// Degrees. CalculiX takes 2; chords and arcs of midside nodes then differ by 1.5e-4 of the radius, which is felt in contact.
     static constexpr double sector_angle = 0.5;
+    /// Radius to which points on the axis of CAX elements are moved, of the diagonal of the mesh: so layers have a face along the
+    /// axis, and their points are told apart. What is missing of the volume is a millionth.
+    static constexpr double bore = 1e-3;
+    Index bored = 0; ///< points that were moved so
 
     /// Face of a cell, as deck_face() but for plane elements.
     [[nodiscard]] RawFace face_of(Index cell, int face) const;
@@ -38,8 +42,8 @@ struct DeckMesh {
     std::vector<std::pair<long long, Index>> cell_order, point_order; ///< ascending
 };
 
-/// Reads *NODE, *ELEMENT of types C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D20, C3D20R, and of CPE, CPS and CAX with 3, 4 or
-/// 8 nodes, *NSET, *ELSET (GENERATE; a set may name
+/// Reads *NODE, *ELEMENT of types C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D20, C3D20R, and of CPE, CPS and CAX with 3, 4, 6
+/// or 8 nodes, *NSET, *ELSET (GENERATE; a set may name
 /// others) and *SURFACE of faces S1 to S6, of whole element sets (their exterior faces) and of nodes. Ignores other
 /// keywords. Element sets become parts, surfaces of nodes become node sets. Throws MeshError with all faults, each with
 /// file and line.

@@ -245,6 +245,7 @@ inline NamedScene transformed(NamedScene named, const Transformation& by, std::v
     }
     if (by.swap_sides) {
         for (auto& [name, pair] : scene.contact) {
+            if (!pair.master.rigid_surface.empty()) continue; // which is no slave
             std::swap(pair.slave, pair.master.set);
             std::swap(pair.between[0], pair.between[1]);
         }

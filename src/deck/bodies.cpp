@@ -10,20 +10,33 @@
 namespace osculate::deck {
 namespace {
 
-/// Of a piece: the section of most of its elements.
-const DeckSection* section_of(DeckModel& model, const std::vector<Index>& cells, const std::vector<int>& section) {
+/// Finds what the elements of a body are made of. @param section  of every cell of the mesh, -1: none
+void find_sections(DeckModel& model, const std::vector<int>& section, DeckBody& body) {
     std::map<int, std::size_t> count;
-    for (const Index c : cells) ++count[section[static_cast<std::size_t>(c)]];
+    for (const Index c : body.cells) ++count[section[static_cast<std::size_t>(c)]];
     const auto most =
         std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most->first < 0) return nullptr;
-    const DeckSection& chosen = model.sections[static_cast<std::size_t>(most->first)];
-    for (const auto& [other, elements] : count)
-        if (other < 0 || model.sections[static_cast<std::size_t>(other)].material != chosen.material)
-            model.lose(other < 0 ? chosen.place : model.sections[static_cast<std::size_t>(other)].place,
-                       fmt::format("{} elements of another material in the piece of '{}'", elements, chosen.elements),
-                       "a body has one material; it is that of most of its elements");
-    return &chosen;
+    if (most->first < 0) return;
+    body.section = &model.sections[static_cast<std::size_t>(most->first)];
+    const std::set<Index> cells(body.cells.begin(), body.cells.end());
+    for (const auto& [other, elements] : count) {
+        if (other < 0) {
+            model.lose(
+                body.section->place,
+                fmt::format("{} elements without a section in the piece of '{}'", elements, body.section->elements),
+                "they get the material of most of its elements");
+            continue;
+        }
+        const DeckSection& one = model.sections[static_cast<std::size_t>(other)];
+        if (&one == body.section) continue;
+        if (one.material == body.section->material && one.orientation == body.section->orientation) continue;
+        body.other_sections.push_back(&one);
+        if (std::ranges::any_of(one.cells, [&](Index c) {
+                return cells.contains(c) && section[static_cast<std::size_t>(c)] == most->first;
+            }))
+            model.lose(one.place, "the section of '" + one.elements + "', whose elements a later one takes in part",
+                       "a section of a body has its elements whole");
+    }
 }
 
 std::string formulation_of(const DeckModel& model, const std::vector<Index>& cells) {
@@ -74,7 +87,10 @@ std::vector<DeckBody> make_bodies(DeckModel& model) {
     for (std::size_t c = 0; c < piece.size(); ++c)
         bodies[static_cast<std::size_t>(piece[c] - 1)].cells.push_back(static_cast<Index>(c));
     std::map<const DeckSection*, int> pieces_of_section;
-    for (DeckBody& body : bodies) ++pieces_of_section[body.section = section_of(model, body.cells, section)];
+    for (DeckBody& body : bodies) {
+        find_sections(model, section, body);
+        ++pieces_of_section[body.section];
+    }
     std::set<std::string> taken;
     std::map<const DeckSection*, int> seen;
     mesh::MeshFileOptions options;

@@ -18,8 +18,9 @@ struct DeckBody {
     mesh::Mesh mesh;
     std::vector<Index> points; ///< of the deck, of every node
     std::vector<mesh::Facet> exterior;
-    const DeckSection* section = nullptr; ///< the one that most of its elements have
-    std::string formulation;              ///< of its hexahedra
+    const DeckSection* section = nullptr;           ///< the one that most of its elements have
+    std::vector<const DeckSection*> other_sections; ///< of its other elements; of several that have one the last counts
+    std::string formulation;                        ///< of its hexahedra
     mesh::DeckSlice slice = mesh::DeckSlice::none;
 };
 

@@ -100,11 +100,19 @@ private:
             if (dangling) text += ", repair: [dangling_nodes]";
             text += "}";
             if (units_.length != 1) text += ", scale: " + number(units_.length);
-            const std::string material = material_of(body);
+            const std::string material = material_of(body, body.section);
             text += "}\n    material: " + material + "\n";
+            bool small_strain = is_small_strain(material);
+            if (!body.other_sections.empty()) text += "    sections:\n";
+            std::set<std::string> taken;
+            for (const DeckSection* section : body.other_sections) {
+                const std::string own = material_of(body, section);
+                small_strain = small_strain && is_small_strain(own);
+                text += "      " + fresh_name(section->elements, taken) +
+                        ": {elements: " + in_quotes(section->elements) + ", material: " + own + "}\n";
+            }
             std::string formulation = body.formulation;
-            if (formulation == "incompatible_modes" && !material.starts_with("{linear_elastic") &&
-                !material.starts_with("{orthotropic")) {
+            if (formulation == "incompatible_modes" && !small_strain) {
                 formulation = "b_bar";
                 model_.lose(body.section == nullptr ? model_.mesh.raw.file : body.section->place,
                             "C3D8I or C3D8R of body " + body.name,
@@ -118,6 +126,10 @@ private:
                 text += "    slice: {kind: axisymmetric, axis: [0, 1, 0]}\n";
         }
         return text;
+    }
+
+    static bool is_small_strain(const std::string& material) {
+        return material.starts_with("{linear_elastic") || material.starts_with("{orthotropic");
     }
 
     /// Of a material whose moduli depend on temperature: those of the one temperature that the body has at the ends of all
@@ -149,7 +161,7 @@ private:
         return {interpolated(m.by_temperature, T, 1), interpolated(m.by_temperature, T, 2)};
     }
 
-    std::string orthotropic_of(const DeckBody& body, const DeckMaterial& m) {
+    std::string orthotropic_of(const DeckSection& section, const DeckMaterial& m) {
         if (nlgeom_)
             model_.lose(m.place, "NLGEOM with the orthotropic material " + m.name, "such bodies are at small strain");
         const std::array<double, 9>& c = *m.orthotropic;
@@ -159,11 +171,10 @@ private:
         };
         std::string text =
             "{orthotropic: {E: " + three(0, units_.stress) + ", nu: " + three(3, 1) + ", G: " + three(6, units_.stress);
-        if (!body.section->orientation.empty()) {
-            const auto at = model_.orientations.find(body.section->orientation);
+        if (!section.orientation.empty()) {
+            const auto at = model_.orientations.find(section.orientation);
             if (at == model_.orientations.end()) {
-                model_.lose(body.section->place, "ORIENTATION=" + body.section->orientation,
-                            "there is none of that name");
+                model_.lose(section.place, "ORIENTATION=" + section.orientation, "there is none of that name");
             } else {
                 const auto& [a, b] = at->second;
                 text += fmt::format(", axes: [[{}, {}, {}], [{}, {}, {}]]", number(a[0]), number(a[1]), number(a[2]),
@@ -175,15 +186,14 @@ private:
         return text + "}}";
     }
 
-    std::string material_of(const DeckBody& body) {
+    std::string material_of(const DeckBody& body, const DeckSection* section) {
         std::array<double, 2> elastic{1, 0};
         std::string law = nlgeom_ ? "saint_venant_kirchhoff" : "linear_elastic";
         double density = 0, expansion = 0;
         const std::vector<std::array<double, 2>>* hardening = nullptr;
-        const auto found =
-            body.section == nullptr ? model_.materials.end() : model_.materials.find(body.section->material);
+        const auto found = section == nullptr ? model_.materials.end() : model_.materials.find(section->material);
         if (found == model_.materials.end()) {
-            model_.lose(body.section == nullptr ? model_.mesh.raw.file : body.section->place, "body " + body.name,
+            model_.lose(section == nullptr ? model_.mesh.raw.file : section->place, "body " + body.name,
                         "it has no material: E = 1 is used instead");
         } else {
             const DeckMaterial& m = found->second;
@@ -201,7 +211,7 @@ private:
                         model_.note(m.place, "*PLASTIC without NLGEOM", "plastic bodies are at finite strain");
                 }
             } else if (m.orthotropic) {
-                return orthotropic_of(body, m);
+                return orthotropic_of(*section, m);
             } else if (m.neo_hookean && (*m.neo_hookean)[0] > 0 && (*m.neo_hookean)[1] > 0) {
                 const double mu = 2 * (*m.neo_hookean)[0], K = 2 / (*m.neo_hookean)[1];
                 elastic = {9 * K * mu / (3 * K + mu), (3 * K - 2 * mu) / (2 * (3 * K + mu))};
@@ -419,11 +429,14 @@ private:
     std::string damping() {
         std::set<std::array<double, 2>> all;
         std::string place;
-        for (const DeckBody& body : bodies_) {
-            const auto at =
-                body.section == nullptr ? model_.materials.end() : model_.materials.find(body.section->material);
+        const auto take = [&](const DeckSection* section) {
+            const auto at = section == nullptr ? model_.materials.end() : model_.materials.find(section->material);
             all.insert(at == model_.materials.end() ? std::array{0.0, 0.0} : at->second.damping);
             if (at != model_.materials.end() && at->second.damping != std::array{0.0, 0.0}) place = at->second.place;
+        };
+        for (const DeckBody& body : bodies_) {
+            take(body.section);
+            for (const DeckSection* section : body.other_sections) take(section);
         }
         const auto [alpha, beta] = *all.rbegin();
         if (all.size() > 1) {

@@ -160,10 +160,22 @@ void DeckLoads::add_forces(const DeckStep& step) {
     }
 }
 
+std::vector<const DeckMaterial*> DeckLoads::materials(const DeckBody& body) const {
+    std::vector<const DeckMaterial*> all;
+    const auto take = [&](const DeckSection* section) {
+        if (section == nullptr) return;
+        if (const auto at = model_.materials.find(section->material); at != model_.materials.end())
+            all.push_back(&at->second);
+    };
+    take(body.section);
+    for (const DeckSection* section : body.other_sections) take(section);
+    return all;
+}
+
 double DeckLoads::density(const DeckBody& body) const {
-    if (body.section == nullptr) return 0;
-    const auto material = model_.materials.find(body.section->material);
-    return material == model_.materials.end() ? 0 : material->second.density;
+    double largest = 0;
+    for (const DeckMaterial* m : materials(body)) largest = std::max(largest, m->density);
+    return largest;
 }
 
 void DeckLoads::add_gravity(const DeckStep& step) {
@@ -178,6 +190,11 @@ void DeckLoads::add_gravity(const DeckStep& step) {
             if (in.empty()) continue;
             if (!(density(body) > 0)) {
                 model_.lose(g.place, "GRAV on body " + body.name, "it has no density");
+            } else if (std::ranges::any_of(materials(body),
+                                           [&](const auto* m) { return m->density != density(body); })) {
+                model_.lose(g.place, "GRAV on body " + body.name,
+                            "a force per volume is the same in all of a body, and "
+                            "its materials differ in density");
             } else if (in.size() != body.cells.size()) {
                 parts.push_back(&g);
             } else {
@@ -293,10 +310,14 @@ void DeckLoads::write_temperatures(std::vector<StageLoads>& stages) {
         for (std::size_t p = 0; p < points; ++p) history[p].push_back(now[p]);
     }
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        const auto material = bodies_[b].section == nullptr ? model_.materials.end()
-                                                            : model_.materials.find(bodies_[b].section->material);
-        if (material == model_.materials.end() || material->second.expansion == 0) continue;
-        const DeckMaterial& m = material->second;
+        const std::vector<const DeckMaterial*> all = materials(bodies_[b]);
+        const auto expands = std::ranges::find_if(all, [](const DeckMaterial* m) { return m->expansion != 0; });
+        if (expands == all.end()) continue;
+        const DeckMaterial& m = **expands;
+        for (const DeckMaterial* other : all)
+            if (other->expansion != 0 && other != &m && !(other->expansions.empty() && m.expansions.empty()))
+                model_.lose(other->place, "*EXPANSION of several materials in body " + bodies_[b].name,
+                            "one that depends on temperature is the only one of its body");
         // strain at a temperature, of that from which expansions count, over the expansion of the scene
         const auto grown = [&](double T) {
             return m.expansions.empty() ? T : interpolated(m.expansions, T, 1) * (T - m.zero) / m.expansion;

@@ -82,6 +82,8 @@ private:
     void write_pressures(std::vector<StageLoads>& stages);
     void write_forces(std::vector<StageLoads>& stages);
     void write_temperatures(std::vector<StageLoads>& stages);
+    [[nodiscard]] std::vector<const DeckMaterial*> materials(const DeckBody& body) const;
+    /// Largest of its materials.
     [[nodiscard]] double density(const DeckBody& body) const;
 
     DeckModel& model_;

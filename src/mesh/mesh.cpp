@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
+#include <tuple>
 #include <utility>
 
 namespace osculate::mesh {
@@ -10,6 +12,34 @@ Index Mesh::element_count() const {
     Index count = 0;
     for (const ElementBlock& block : blocks) count += block.size();
     return count;
+}
+
+void divide(Mesh& mesh, const std::vector<std::vector<int>>& section) {
+    std::vector<ElementBlock> blocks;
+    std::vector<std::vector<std::pair<Index, Index>>> place(
+        mesh.blocks.size()); // new block and element of each element
+    for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+        const ElementBlock& old = mesh.blocks[b];
+        const auto n = static_cast<std::size_t>(nodes_per_cell(old.type));
+        std::map<int, std::size_t> block_of; // by sections, ascending
+        for (const int s : section[b]) block_of.emplace(s, 0);
+        for (auto& [s, block] : block_of) {
+            block = blocks.size();
+            blocks.push_back({old.type, {}, s});
+        }
+        for (std::size_t e = 0; e < section[b].size(); ++e) {
+            const std::size_t to = block_of.at(section[b][e]);
+            place[b].emplace_back(static_cast<Index>(to), blocks[to].size());
+            const auto first = old.connectivity.begin() + static_cast<std::ptrdiff_t>(e * n);
+            blocks[to].connectivity.insert(blocks[to].connectivity.end(), first,
+                                           first + static_cast<std::ptrdiff_t>(n));
+        }
+    }
+    mesh.blocks = std::move(blocks);
+    for (auto& [name, surface] : mesh.surfaces)
+        for (Facet& facet : surface)
+            std::tie(facet.block, facet.element) =
+                place[static_cast<std::size_t>(facet.block)][static_cast<std::size_t>(facet.element)];
 }
 
 std::vector<Index> nodes_of(const std::vector<Facet>& facets) {

@@ -48,17 +48,22 @@ std::string names_of(const std::map<std::string, std::vector<Index>>& parts) {
     return text.empty() ? "none" : text;
 }
 
+const std::vector<Index>& cells_of_part(const RawMesh& raw, const std::string& name) {
+    const auto found = raw.parts.find(name);
+    if (found == raw.parts.end())
+        throw MeshError(raw.file, "no part is called '" + name + "'; parts with volume: " + names_of(raw.parts));
+    return found->second;
+}
+
 /// The part that is asked for, with all points of the file.
 RawMesh select(const RawMesh& raw, const MeshFileOptions& options) {
     RawMesh part = raw;
+    for (std::size_t s = 0; s < options.sections.size(); ++s)
+        for (const Index c : cells_of_part(raw, options.sections[s])) part.cells[c].section = static_cast<int>(s) + 1;
     std::vector<Index> cells(raw.cells.size());
     std::iota(cells.begin(), cells.end(), 0);
     if (!options.part.empty()) {
-        const auto found = raw.parts.find(options.part);
-        if (found == raw.parts.end())
-            throw MeshError(raw.file,
-                            "no part is called '" + options.part + "'; parts with volume: " + names_of(raw.parts));
-        cells = found->second;
+        cells = cells_of_part(raw, options.part);
         sort_unique(cells);
     }
     if (options.piece > 0) {
@@ -76,8 +81,9 @@ RawMesh select(const RawMesh& raw, const MeshFileOptions& options) {
     // Cells that other parts are made of use their points; parts that are not cells of this one have no meaning any more.
     for (const RawCell& cell : raw.cells)
         for (const Index node : cell) part.elsewhere[node] = 1;
-    part.cells.clear();
-    for (const Index c : cells) part.cells.push_back(raw.cells[c]);
+    std::vector<RawCell> chosen;
+    for (const Index c : cells) chosen.push_back(part.cells[c]);
+    part.cells = std::move(chosen);
     part.parts.clear();
     return part;
 }
@@ -156,13 +162,20 @@ void name_node_sets(const RawMesh& raw, const std::vector<Index>& number, Mesh& 
 }
 
 void add_blocks(const RawMesh& raw, const std::vector<Index>& number, Mesh& mesh) {
+    std::vector<std::vector<int>> section;
     for (const CellInfo& info : cell_types()) {
         ElementBlock block{info.type, {}};
+        std::vector<int> own;
         for (const RawCell& cell : raw.cells)
-            if (cell.type == block.type)
+            if (cell.type == block.type) {
                 for (const Index node : cell) block.connectivity.push_back(number[node]);
-        if (block.size() > 0) mesh.blocks.push_back(std::move(block));
+                own.push_back(cell.section);
+            }
+        if (block.size() == 0) continue;
+        mesh.blocks.push_back(std::move(block));
+        section.push_back(std::move(own));
     }
+    divide(mesh, section);
 }
 
 } // namespace

@@ -9,21 +9,27 @@ namespace osculate::model {
 
 namespace {
 
-/// Calls f(kernel, global nodes, X (3 x n)) for every element of a body.
+struct Element {
+    const fe::ElementKernel& kernel;
+    double density;
+    std::vector<Index> nodes; ///< global
+    Eigen::Matrix3Xd X;
+};
+
+/// Calls f(element) for every element of a body.
 template <class F> void for_each_element(const Body& body, F&& f) {
     for (std::size_t b = 0; b < body.mesh.blocks.size(); ++b) {
         const mesh::ElementBlock& block = body.mesh.blocks[b];
-        const fe::ElementKernel& kernel = *body.kernels[b];
-        const int n = kernel.nodes();
-        std::vector<Index> nodes(static_cast<std::size_t>(n));
-        Eigen::Matrix3Xd X(3, n);
+        const int n = body.kernels[b]->nodes();
+        Element element{*body.kernels[b], body.density.empty() ? 0 : body.density[b],
+                        std::vector<Index>(static_cast<std::size_t>(n)), Eigen::Matrix3Xd(3, n)};
         for (Index e = 0; e < block.size(); ++e) {
             for (int i = 0; i < n; ++i) {
                 const Index local = block.connectivity[static_cast<std::size_t>(n) * e + i];
-                nodes[static_cast<std::size_t>(i)] = body.first_node + local;
-                X.col(i) = body.mesh.nodes[local];
+                element.nodes[static_cast<std::size_t>(i)] = body.first_node + local;
+                element.X.col(i) = body.mesh.nodes[local];
             }
-            f(kernel, nodes, X);
+            f(element);
         }
     }
 }
@@ -39,8 +45,7 @@ linear::BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
         if (body.rigid) // its nodes have no equations
             for (Index node = body.first_node; node < last; ++node) elements.push_back({node});
         else
-            for_each_element(body, [&](const fe::ElementKernel&, const std::vector<Index>& element,
-                                       const Eigen::Matrix3Xd&) { elements.push_back(element); });
+            for_each_element(body, [&](const Element& one) { elements.push_back(one.nodes); });
     }
     for (Index r = last; r + 1 < nodes; r += 2) elements.push_back({r, r + 1}); // of rigid bodies and couplings
     return {nodes, elements};
@@ -100,17 +105,17 @@ std::optional<std::vector<double>> redistribution(const Body& body, bool lumped,
     std::vector<std::size_t> element_of;
     std::size_t elements = 0;
     Matrix mass;
-    for_each_element(
-        body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
-            const Eigen::Matrix3Xd x = frame(X);
-            element_mass(kernel, X, body.density, lumped, mass);
-            target += moments(mass, x);
-            if (redistribute(element, massless, mass)) {
-                parts.push_back(moments(mass, x));
-                element_of.push_back(elements);
-            }
-            ++elements;
-        });
+    for_each_element(body, [&](const Element& one) {
+        const auto& [kernel, density, element, X] = one;
+        const Eigen::Matrix3Xd x = frame(X);
+        element_mass(kernel, X, density, lumped, mass);
+        target += moments(mass, x);
+        if (redistribute(element, massless, mass)) {
+            parts.push_back(moments(mass, x));
+            element_of.push_back(elements);
+        }
+        ++elements;
+    });
     Eigen::Matrix<double, 10, Eigen::Dynamic> columns(10, static_cast<Index>(parts.size()));
     for (std::size_t p = 0; p < parts.size(); ++p) columns.col(static_cast<Index>(p)) = parts[p];
     const std::optional<Vector> found = moment_factors(columns, target);
@@ -130,26 +135,26 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
         if (body.rigid) continue;
         const auto first = massless.begin() + (massless.empty() ? 0 : body.first_node);
         std::optional<std::vector<double>> factors;
-        if (!massless.empty() && body.density > 0 &&
+        if (!massless.empty() && body.has_mass() &&
             std::any_of(first, first + body.nodes(), [](char m) { return m != 0; })) {
             factors = redistribution(body, lumped, massless);
             if (!factors) assembled.kept.push_back(static_cast<Index>(b));
         }
         std::size_t e = 0;
         Matrix scalar, Me;
-        for_each_element(
-            body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
-                const Index n = kernel.nodes();
-                element_mass(kernel, X, body.density, lumped, scalar);
-                if (factors) {
-                    (void)redistribute(element, massless, scalar);
-                    scalar *= (*factors)[e++];
-                }
-                Me.setZero(3 * n, 3 * n);
-                for (Index i = 0; i < n; ++i)
-                    for (Index k = 0; k < n; ++k) Me.block<3, 3>(3 * i, 3 * k).diagonal().setConstant(scalar(i, k));
-                assembled.M.add(element, Me);
-            });
+        for_each_element(body, [&](const Element& one) {
+            const auto& [kernel, density, element, X] = one;
+            const Index n = kernel.nodes();
+            element_mass(kernel, X, density, lumped, scalar);
+            if (factors) {
+                (void)redistribute(element, massless, scalar);
+                scalar *= (*factors)[e++];
+            }
+            Me.setZero(3 * n, 3 * n);
+            for (Index i = 0; i < n; ++i)
+                for (Index k = 0; k < n; ++k) Me.block<3, 3>(3 * i, 3 * k).diagonal().setConstant(scalar(i, k));
+            assembled.M.add(element, Me);
+        });
     }
     return assembled;
 }
@@ -159,13 +164,13 @@ linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index no
     for (const Body& body : bodies) {
         if (body.rigid) continue;
         Matrix Ke;
-        for_each_element(
-            body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
-                if (!kernel.linear()) return;
-                Ke.resize(3 * kernel.nodes(), 3 * kernel.nodes());
-                kernel.stiffness(X, Ke);
-                K.add(element, Ke);
-            });
+        for_each_element(body, [&](const Element& one) {
+            const auto& [kernel, density, element, X] = one;
+            if (!kernel.linear()) return;
+            Ke.resize(3 * kernel.nodes(), 3 * kernel.nodes());
+            kernel.stiffness(X, Ke);
+            K.add(element, Ke);
+        });
     }
     return K;
 }
@@ -229,30 +234,30 @@ std::vector<double> volume_shares(const Model& model) {
         if (body.rigid) continue;
         double volume = 0;
         Vector part;
-        for_each_element(
-            body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
-                part.resize(kernel.nodes());
-                kernel.lumped_mass(X, 1, part);
-                for (int i = 0; i < kernel.nodes(); ++i) share[element[static_cast<std::size_t>(i)]] += part(i);
-                volume += part.sum();
-            });
+        for_each_element(body, [&](const Element& one) {
+            const auto& [kernel, density, element, X] = one;
+            part.resize(kernel.nodes());
+            kernel.lumped_mass(X, 1, part);
+            for (int i = 0; i < kernel.nodes(); ++i) share[element[static_cast<std::size_t>(i)]] += part(i);
+            volume += part.sum();
+        });
         for (Index i = 0; i < body.nodes(); ++i) share[body.first_node + i] /= volume;
     }
     return share;
 }
 
 Vec3 centre_of_mass(const Body& body) {
-    // nodal shares of the volume are exact for the first moment, too
+    // nodal shares of the mass, or of the volume, are exact for the first moment, too
     Field share(static_cast<std::size_t>(body.first_node + body.nodes()));
-    add_body_force(body, Vec3::UnitX(), share);
+    body.has_mass() ? add_gravity(body, Vec3::UnitX(), share) : add_body_force(body, Vec3::UnitX(), share);
     Vec3 moment = Vec3::Zero();
-    double volume = 0;
+    double mass = 0;
     for (Index i = 0; i < body.nodes(); ++i) {
-        const double v = share[static_cast<std::size_t>(body.first_node + i)].x();
-        moment += v * body.mesh.nodes[i];
-        volume += v;
+        const double m = share[static_cast<std::size_t>(body.first_node + i)].x();
+        moment += m * body.mesh.nodes[i];
+        mass += m;
     }
-    return moment / volume;
+    return moment / mass;
 }
 
 MassProperties mass_properties(const Body& body, double density) {
@@ -261,9 +266,9 @@ MassProperties mass_properties(const Body& body, double density) {
     Mat3 second = Mat3::Zero(); // about the first node, which is near
     const Vec3& origin = body.mesh.nodes.front();
     Matrix mass;
-    for_each_element(body, [&](const fe::ElementKernel& kernel, const std::vector<Index>&, const Eigen::Matrix3Xd& X) {
-        element_mass(kernel, X, density, false, mass);
-        const Eigen::Matrix3Xd x = X.colwise() - origin;
+    for_each_element(body, [&](const Element& one) {
+        element_mass(one.kernel, one.X, density, false, mass);
+        const Eigen::Matrix3Xd x = one.X.colwise() - origin;
         total.mass += mass.sum();
         first += x * mass.rowwise().sum();
         second += x * mass * x.transpose();
@@ -276,27 +281,37 @@ MassProperties mass_properties(const Body& body, double density) {
     return total;
 }
 
+namespace {
+/// @param force  f(element) of a volume, N/m^3
+template <class Force> void add_volume_force(const Body& body, Field& f, const Force& force) {
+    for_each_element(body, [&](const Element& one) {
+        Eigen::Matrix3Xd fe(3, one.kernel.nodes());
+        one.kernel.body_force(one.X, force(one), fe);
+        for (int i = 0; i < one.kernel.nodes(); ++i) f[one.nodes[static_cast<std::size_t>(i)]] += fe.col(i);
+    });
+}
+} // namespace
+
 void add_body_force(const Body& body, const Vec3& b, Field& f) {
-    for_each_element(
-        body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
-            Eigen::Matrix3Xd fe(3, kernel.nodes());
-            kernel.body_force(X, b, fe);
-            for (int i = 0; i < kernel.nodes(); ++i) f[element[static_cast<std::size_t>(i)]] += fe.col(i);
-        });
+    add_volume_force(body, f, [&](const Element&) { return b; });
 }
 
-void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis, double factor, Field& f) {
+void add_gravity(const Body& body, const Vec3& g, Field& f) {
+    add_volume_force(body, f, [&](const Element& one) -> Vec3 { return one.density * g; });
+}
+
+void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis, double speed, Field& f) {
     // positions are interpolated as displacements are: the integral of N_i x is a product with the mass matrix
     Matrix mass;
-    for_each_element(
-        body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element, const Eigen::Matrix3Xd& X) {
-            mass.setZero(kernel.nodes(), kernel.nodes());
-            kernel.mass(X, factor, mass);
-            const Eigen::Matrix3Xd arm = X.colwise() - point;
-            const Eigen::Matrix3Xd across = arm - axis * (axis.transpose() * arm);
-            const Eigen::Matrix3Xd fe = across * mass;
-            for (int i = 0; i < kernel.nodes(); ++i) f[element[static_cast<std::size_t>(i)]] += fe.col(i);
-        });
+    for_each_element(body, [&](const Element& one) {
+        const auto& [kernel, density, element, X] = one;
+        mass.setZero(kernel.nodes(), kernel.nodes());
+        kernel.mass(X, density * speed * speed, mass);
+        const Eigen::Matrix3Xd arm = X.colwise() - point;
+        const Eigen::Matrix3Xd across = arm - axis * (axis.transpose() * arm);
+        const Eigen::Matrix3Xd fe = across * mass;
+        for (int i = 0; i < kernel.nodes(); ++i) f[element[static_cast<std::size_t>(i)]] += fe.col(i);
+    });
 }
 
 Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index b, const State& state) {
@@ -306,8 +321,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index 
     if (body.rigid) return stress;
     Vector weight = Vector::Zero(body.nodes());
     Matrix element_stress;
-    for_each_element(body, [&](const fe::ElementKernel& kernel, const std::vector<Index>& element,
-                               const Eigen::Matrix3Xd& X) {
+    for_each_element(body, [&](const Element& one) {
+        const auto& [kernel, density, element, X] = one;
         Eigen::Matrix3Xd ue(3, kernel.nodes());
         for (int i = 0; i < kernel.nodes(); ++i) ue.col(i) = state.u[element[static_cast<std::size_t>(i)]];
         element_stress.resize(6, kernel.nodes());

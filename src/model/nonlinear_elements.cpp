@@ -50,7 +50,7 @@ NonlinearElements::NonlinearElements(const std::vector<Body>& bodies, const line
             block.kernel = bodies[b].kernels[k].get();
             block.body = static_cast<Index>(b);
             block.first_element = begin;
-            block.expansion = block.kernel->heated() ? bodies[b].expansion : 0;
+            block.expansion = block.kernel->heated() ? bodies[b].expansion[k] : 0;
             block.size = elements.size();
             block.history_first = history;
             block.history_size = block.kernel->history_size();

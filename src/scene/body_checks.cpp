@@ -67,14 +67,23 @@ public:
             fault({"bodies", body, "mesh", "cad", "smallest"},
                   "at most the size of focus, " + number_text(m.focus.size) + " m", number_text(m.smallest) + " m");
     }
-    void check_hardening(const std::string& name, const Body& body) {
-        const auto* plastic = std::get_if<ElasticPlastic>(&body.material);
+    /// @param at  the key of a body or section
+    void check_hardening(std::vector<std::string> at, const Material& material) {
+        const auto* plastic = std::get_if<ElasticPlastic>(&material);
         if (plastic == nullptr || plastic->yield_stress.is_value()) return;
-        const std::vector<std::string> key{"bodies", name, "material", "elastic_plastic", "yield_stress"};
+        std::vector<std::string>& key = at;
+        key.insert(key.end(), {"material", "elastic_plastic", "yield_stress"});
         if (std::holds_alternative<Expression>(plastic->yield_stress.form))
             fault(key, "a value, or a table over the equivalent plastic strain", "an expression");
         else if (const double first = std::get<Table>(plastic->yield_stress.form).rows.front()[0]; first != 0)
             fault(key, "a table that begins at a plastic strain of 0", number_text(first));
+    }
+
+    void check_box(const std::string& body, const std::string& part, const Section& section) {
+        const auto* box = std::get_if<SelectBox>(&section.elements);
+        if (box != nullptr && !(box->min.array() < box->max.array()).all())
+            fault({"bodies", body, "sections", part, "box"}, "a min below its max in every component",
+                  "one that is not");
     }
 
     void check_path(const std::string& body, const char* tag, const std::string& path) {
@@ -84,9 +93,12 @@ public:
     }
 
     void check_formulation(const std::string& name, const Body& body) {
-        if (body.hex_formulation == HexFormulation::incompatible_modes && body.has_material &&
-            !std::holds_alternative<LinearElastic>(body.material) &&
-            !std::holds_alternative<Orthotropic>(body.material))
+        const auto finite_strain = [](const Material& material) {
+            return !std::holds_alternative<LinearElastic>(material) && !std::holds_alternative<Orthotropic>(material);
+        };
+        if (body.hex_formulation == HexFormulation::incompatible_modes &&
+            ((body.has_material && finite_strain(body.material)) ||
+             std::ranges::any_of(body.sections, [&](const auto& one) { return finite_strain(one.second.material); })))
             fault({"bodies", name, "hex_formulation"}, "full or b_bar with a material at finite strain",
                   "incompatible_modes");
     }
@@ -104,6 +116,7 @@ public:
         if (!body.has_material && !body.rigid) fault({"bodies", name}, "a material, or rigid: true", "neither");
         if (!body.rigid) return;
         if (body.slice) fault({"bodies", name, "slice"}, "a body that deforms", "a rigid one");
+        if (!body.sections.empty()) fault({"bodies", name, "sections"}, "a body that deforms", "a rigid one");
         const Rigid& rigid = *body.rigid;
         const std::vector<std::string> path{"bodies", name, "rigid"};
         const auto key = [&](const char* last) { return std::vector<std::string>{"bodies", name, "rigid", last}; };
@@ -133,7 +146,13 @@ void check_bodies(const Scene& scene, const Tree& tree, std::vector<Fault>& faul
     for (const auto& [name, body] : scene.bodies)
         std::visit([&, &n = name](const auto& source) { rules.check_mesh(n, source); }, body.mesh.source);
     for (const auto& [name, body] : scene.bodies) rules.check_formulation(name, body);
-    for (const auto& [name, body] : scene.bodies) rules.check_hardening(name, body);
+    for (const auto& [name, body] : scene.bodies) {
+        rules.check_hardening({"bodies", name}, body.material);
+        for (const auto& [part, section] : body.sections) {
+            rules.check_hardening({"bodies", name, "sections", part}, section.material);
+            rules.check_box(name, part, section);
+        }
+    }
     for (const auto& [name, body] : scene.bodies) rules.check_rigid(name, body);
 }
 

@@ -147,6 +147,9 @@ public:
         if (elastic(body.material).density == 0)
             fault({"bodies", name, body.has_material ? "material" : "rigid"},
                   (body.rigid ? "a density or a mass, which " : "a density, which ") + reason + " needs", "none");
+        for (const auto& [part, section] : body.sections)
+            if (elastic(section.material).density == 0)
+                fault({"bodies", name, "sections", part, "material"}, "a density, which " + reason + " needs", "none");
     }
 
     /// Sets of rigid bodies have no equations of their own.

@@ -282,73 +282,6 @@ void describe(Visitor& v, CadMesh& m) {
     describe_share(v, m);
 }
 
-void describe_density(Visitor& v, ElasticConstants& m) {
-    v.number({.name = "density",
-              .meaning = "Mass per volume; 0 where the body has none.",
-              .unit = dimension::density,
-              .range = range::not_negative},
-             m.density);
-    v.number({.name = "expansion",
-              .meaning = "Thermal expansion, see stages.<stage>.temperature.",
-              .unit = dimension::expansion,
-              .range = {.low = -1, .high = 1}},
-             m.expansion);
-}
-
-void describe(Visitor& v, Orthotropic& m) {
-    v.vector({.name = "E",
-              .meaning = "Young's moduli along the three axes.",
-              .unit = dimension::pressure,
-              .range = range::positive,
-              .required = true},
-             m.moduli);
-    v.vector(
-        {.name = "nu",
-         .meaning =
-             "Poisson's ratios nu_12, nu_13, nu_23: of the contraction along the second axis under tension along the "
-             "first.",
-         .range = {.low = -100, .high = 100},
-         .required = true},
-        m.ratios);
-    v.vector({.name = "G",
-              .meaning = "Shear moduli G_12, G_13, G_23.",
-              .unit = dimension::pressure,
-              .range = range::positive,
-              .required = true},
-             m.shear);
-    v.axes({.name = "axes", .meaning = "The first two axes, made orthonormal; the third is normal to both."}, m.axes);
-    describe_density(v, m);
-    m.E = m.moduli.maxCoeff();
-    m.nu = 0.3;
-}
-
-void describe(Visitor& v, ElasticConstants& m) {
-    v.number({.name = "E",
-              .meaning = "Young's modulus.",
-              .unit = dimension::pressure,
-              .range = range::positive,
-              .required = true},
-             m.E);
-    v.number({.name = "nu",
-              .meaning = "Poisson's ratio.",
-              .range = {.low = -1, .high = 0.5, .open_low = true, .open_high = true},
-              .required = true},
-             m.nu);
-    describe_density(v, m);
-}
-
-void describe(Visitor& v, ElasticPlastic& m) {
-    describe(v, static_cast<ElasticConstants&>(m));
-    v.course({.name = "yield_stress",
-              .meaning =
-                  "Yield stress in uniaxial tension: a value, or a table whose first column is the equivalent plastic "
-                  "strain, from 0, in place of time; constant after its last row.",
-              .unit = dimension::pressure,
-              .range = range::positive,
-              .required = true},
-             m.yield_stress);
-}
-
 void describe(Visitor& v, MeshSpec& mesh) {
     static const Words tags{"block", "half_tube", "contactor", "ball", "cylinder", "tube", "file", "cad"};
     one_of(v, tags,
@@ -428,24 +361,16 @@ void describe(Visitor& v, Body& body) {
                           "for a plane body, or for one of revolution."},
                      is_slice, [&] { describe(v, slice); });
     body.slice = is_slice ? std::optional(slice) : std::nullopt;
-    const auto material = [&] {
-        static const Words tags{"linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "elastic_plastic",
-                                "orthotropic"};
-        one_of(v, tags,
-               {"Isotropic linear elasticity at small strain: no large rotations.",
-                "Hooke's law at finite strain: large rotations, small strains.",
-                "Compressible neo-Hookean elasticity: large rotations, large strains.",
-                "Von Mises plasticity with isotropic hardening: large rotations, large strains.",
-                "Linear elasticity with three axes of its own at small strain: no large rotations."},
-               true, body.material, [&v](auto& alternative) { describe(v, alternative); });
-    };
     const Key law{.name = "material",
                   .meaning = "Constitutive law. Of that of a rigid body only the density counts.",
                   .required = true,
                   .instead = "rigid"};
     bool has_material = body.has_material;
-    v.optional_group(law, has_material, material);
+    v.optional_group(law, has_material, [&] { describe(v, body.material); });
     body.has_material = has_material;
+    named(v, {.name = "sections", .meaning = "Parts of the body that are of other materials.", .item = "section"},
+          body.sections,
+          [&v](const std::string& name, Section& section) { v.group({.name = name}, [&] { describe(v, section); }); });
     static const Words formulations{"full", "b_bar", "incompatible_modes", "reduced"};
     word(v,
          {.name = "hex_formulation",

@@ -60,6 +60,9 @@ void one_of(Visitor& v, const Words& tags, const std::vector<const char*>& meani
 }
 
 void describe(Visitor& v, Body& body);
+void describe(Visitor& v, Material& material);
+void describe(Visitor& v, Section& section);
+void describe(Visitor& v, SelectBox& box);
 void describe(Visitor& v, Rigid& rigid);
 void describe(Visitor& v, Slice& slice);
 void describe(Visitor& v, RigidSurface& surface);

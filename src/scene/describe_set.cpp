@@ -30,11 +30,6 @@ void describe(Visitor& v, SelectCylinder& s) {
         s.radius);
 }
 
-void describe(Visitor& v, SelectBox& s) {
-    point(v, "min", "Lower corner.", s.min);
-    point(v, "max", "Upper corner.", s.max);
-}
-
 void describe(Visitor& v, SelectNormal& s) {
     direction(v, "direction", "Direction that outward normals are compared with.", s.direction);
     v.number({.name = "angle",
@@ -45,6 +40,11 @@ void describe(Visitor& v, SelectNormal& s) {
 }
 
 } // namespace
+
+void describe(Visitor& v, SelectBox& s) {
+    point(v, "min", "Lower corner.", s.min);
+    point(v, "max", "Upper corner.", s.max);
+}
 
 void describe(Visitor& v, SetSpec& set) {
     v.text({.name = "body", .meaning = "Body the set belongs to.", .required = true, .names = Names::body}, set.body);

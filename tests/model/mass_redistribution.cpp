@@ -15,8 +15,8 @@ constexpr double kept_to = 1e-12; ///< of mass, first and second moments over th
 Body body_of(mesh::Mesh mesh) {
     Body body;
     body.name = "body";
-    body.density = 1000;
     body.mesh = std::move(mesh);
+    body.density.assign(body.mesh.blocks.size(), 1000);
     for (const mesh::ElementBlock& block : body.mesh.blocks)
         body.kernels.push_back(fe::make_kernel(block.type, HexFormulation::full, material::LinearElastic{1e6, 0.3}));
     return body;

@@ -15,6 +15,7 @@ namespace osculate::mesh {
 struct ElementBlock {
     CellType type = CellType::hex8;
     std::vector<Index> connectivity; ///< nodes_per_cell(type) node numbers per element
+    int section = 0;                 ///< which of the parts that were asked for, from 1; 0: none of them
 
     [[nodiscard]] Index size() const { return static_cast<Index>(connectivity.size()) / nodes_per_cell(type); }
 };
@@ -40,6 +41,9 @@ struct Mesh {
     [[nodiscard]] Index node_count() const { return static_cast<Index>(nodes.size()); }
     [[nodiscard]] Index element_count() const;
 };
+
+/// Divides blocks so that the elements of each are of one section. @param section  of every element, block by block
+void divide(Mesh& mesh, const std::vector<std::vector<int>>& section);
 
 /// Facets that belong to exactly one element, oriented outward, in order of block, element and local face.
 /// O(n log n) in the number of element faces.

@@ -25,6 +25,8 @@ struct MeshFileOptions {
     std::string part; ///< a named set of cells; empty: all of them
     int piece = 0;    ///< which connected piece of it, from 1, in the order of their first cells; 0: all
     Repairs repairs;
+    std::vector<std::string>
+        sections{}; ///< named sets of cells that get blocks of their own; the last that has a cell counts
 };
 
 /// The mesh of a body: the part's cells in blocks per type, the nodes that they use in the file's order, and those node

@@ -14,6 +14,7 @@ namespace osculate::mesh {
 struct RawCell {
     std::int64_t id = 0; ///< the file's
     CellType type = CellType::hex8;
+    int section = 0; ///< ElementBlock::section
     std::array<Index, most_nodes_per_cell> nodes = none();
 
     [[nodiscard]] int count() const { return nodes_per_cell(type); }

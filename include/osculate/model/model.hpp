@@ -9,6 +9,7 @@
 #include "osculate/model/nonlinear_elements.hpp"
 #include "osculate/model/rigid_body.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,11 +24,17 @@ struct Body {
     mesh::Mesh mesh;
     Index first_node = 0;                                    ///< global number of its node 0
     std::vector<std::unique_ptr<fe::ElementKernel>> kernels; ///< one per element block
-    double density = 0;                                      ///< kg/m^3
-    double expansion = 0;                                    ///< thermal, 1/K
+    std::vector<double> density;                             ///< kg/m^3; one per element block
+    std::vector<double> expansion;                           ///< thermal, 1/K; one per element block
     bool rigid = false; ///< moves as one, see RigidBody; its kernels know volumes alone
 
     [[nodiscard]] Index nodes() const { return mesh.node_count(); }
+    [[nodiscard]] bool has_mass() const { ///< in some part
+        return std::ranges::any_of(density, [](double d) { return d > 0; });
+    }
+    [[nodiscard]] bool grows() const { ///< where it gets warmer, in some part
+        return std::ranges::any_of(expansion, [](double a) { return a != 0; });
+    }
 };
 
 /// A named part of one body, with global node numbers.
@@ -153,7 +160,7 @@ struct AssembledMass {
                                           const std::vector<char>& massless);
 /// (nodes) lumped fraction of each node in the volume of its body; the fractions of a body sum to 1.
 [[nodiscard]] std::vector<double> volume_shares(const Model& model);
-/// Centre of mass of a body of uniform density in its reference configuration, m.
+/// Centre of mass of a body in its reference configuration, of its volume where it has no mass, m.
 [[nodiscard]] Vec3 centre_of_mass(const Body& body);
 /// Mass, centre of mass and inertia about it of a body of uniform density in its reference configuration.
 struct MassProperties {
@@ -165,9 +172,12 @@ struct MassProperties {
 /// Consistent nodal forces of a body force b (N/m^3) on one body, added into f (all nodes).
 void add_body_force(const Body& body, const Vec3& b, Field& f);
 
-/// Consistent nodal forces factor * (distance from an axis) on one body (N/m^4), exact for the elements' own positions, added
-/// into f (all nodes). @param axis  unit vector
-void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis, double factor, Field& f);
+/// The same of the weight density * g.
+void add_gravity(const Body& body, const Vec3& g, Field& f);
+
+/// Consistent nodal forces density * speed^2 * (distance from an axis) on one body, exact for the elements' own positions,
+/// added into f (all nodes). @param speed  rad/s
+void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis, double speed, Field& f);
 
 /// State after an accepted step, restored after a rejected one: plain values.
 struct State {

@@ -8,6 +8,7 @@
 #include "app/check/thin_layers.hpp"
 #include "app/check/twice_paired.hpp"
 #include "app/check/unit_warnings.hpp"
+#include "app/plan/body_materials.hpp"
 #include "app/plan/gaps.hpp"
 #include "app/plan/settle_pairs.hpp"
 #include "osculate/app/estimate.hpp"
@@ -47,8 +48,10 @@ const model::Body& owner(const model::Model& model, Index node) {
 }
 
 double modulus(const LoadedScene& loaded, Index node) {
-    const scene::Body& body = *scene::find(loaded.scene.bodies, owner(loaded.plan.model, node).name);
-    return body.rigid ? std::numeric_limits<double>::infinity() : scene::elastic(body.material).E;
+    const model::Body& body = owner(loaded.plan.model, node);
+    const scene::Body& spec = *scene::find(loaded.scene.bodies, body.name);
+    return spec.rigid ? std::numeric_limits<double>::infinity()
+                      : modulus_at(spec, body, model::material_node(loaded.plan.model, node));
 }
 
 double stiffness_ratio(const LoadedScene& loaded, const model::ContactPair& pair) {

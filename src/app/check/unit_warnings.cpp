@@ -1,5 +1,6 @@
 #include "app/check/unit_warnings.hpp"
 
+#include "app/plan/body_materials.hpp"
 #include "app/plan/courses.hpp"
 
 #include <algorithm>
@@ -68,17 +69,22 @@ private:
         static_assert(std::size(laws) == std::variant_size_v<scene::Material>, "a law without its word");
         for (const auto& [name, body] : scene_.bodies) {
             if (body.rigid) continue;
-            const scene::ElasticConstants& m = scene::elastic(body.material);
-            const std::string law = "bodies." + name + ".material." + laws[body.material.index()];
-            if (m.E < softest)
-                say(law + ".E", "{:.4g} Pa: softer than any gel; rubber has some MPa, metals 50 to 400 GPa", m.E);
-            if (m.E > stiffest)
-                say(law + ".E", "{:.4g} GPa: stiffer than diamond; metals have 50 to 400 GPa", 1e-9 * m.E);
-            if (m.density > 0 && m.density < lightest)
-                say(law + ".density", "{:.4g} kg/m^3: lighter than aerogel; water has 1000, steel 7850", m.density);
-            if (m.density > heaviest)
-                say(law + ".density", "{:.4g} kg/m^3: heavier than any metal; water has 1000, steel 7850", m.density);
+            const std::string key = "bodies." + name;
+            material(key + ".material." + laws[body.material.index()], scene::elastic(body.material));
+            for (const auto& [part, section] : body.sections)
+                material(key + ".sections." + part + ".material." + laws[section.material.index()],
+                         scene::elastic(section.material));
         }
+    }
+
+    void material(const std::string& law, const scene::ElasticConstants& m) {
+        if (m.E < softest)
+            say(law + ".E", "{:.4g} Pa: softer than any gel; rubber has some MPa, metals 50 to 400 GPa", m.E);
+        if (m.E > stiffest) say(law + ".E", "{:.4g} GPa: stiffer than diamond; metals have 50 to 400 GPa", 1e-9 * m.E);
+        if (m.density > 0 && m.density < lightest)
+            say(law + ".density", "{:.4g} kg/m^3: lighter than aerogel; water has 1000, steel 7850", m.density);
+        if (m.density > heaviest)
+            say(law + ".density", "{:.4g} kg/m^3: heavier than any metal; water has 1000, steel 7850", m.density);
     }
 
     void sizes() {
@@ -109,8 +115,8 @@ private:
             for (const auto& [name, course] : *loads) {
                 const model::Set* loaded = set(name);
                 if (loaded == nullptr || scene_.bodies[static_cast<std::size_t>(loaded->body)].second.rigid) continue;
-                const double E =
-                    scene::elastic(scene_.bodies[static_cast<std::size_t>(loaded->body)].second.material).E;
+                const auto b = static_cast<std::size_t>(loaded->body);
+                const double E = modulus_under(scene_.bodies[b].second, plan_.model.bodies[b], loaded->facets);
                 const double p = largest(course, stage.duration);
                 if (p > E)
                     say("stages." + stage_name + "." + key + "." + name,

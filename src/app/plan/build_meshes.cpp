@@ -30,8 +30,43 @@ struct Sources {
     }
 };
 
-mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, Sources& sources,
+/// Names of parts of the mesh file that are sections, in order.
+std::vector<std::string> named_sections(const scene::Body& body) {
+    std::vector<std::string> names;
+    for (const auto& [name, section] : body.sections)
+        if (const auto* part = std::get_if<std::string>(&section.elements)) names.push_back(*part);
+    return names;
+}
+
+/// Numbers sections as the scene does, those of boxes among them.
+void number_sections(const scene::Body& body, mesh::Mesh& m) {
+    if (body.sections.empty()) return;
+    std::vector<int> of_name{0}; // scene's number of the file's
+    for (std::size_t s = 0; s < body.sections.size(); ++s)
+        if (body.sections[s].second.elements.index() == 0) of_name.push_back(static_cast<int>(s) + 1);
+    std::vector<std::vector<int>> section;
+    for (const mesh::ElementBlock& block : m.blocks) {
+        const int n = mesh::nodes_per_cell(block.type);
+        std::vector<int>& own = section.emplace_back(static_cast<std::size_t>(block.size()),
+                                                     of_name[static_cast<std::size_t>(block.section)]);
+        for (Index e = 0; e < block.size(); ++e) {
+            Vec3 centre = Vec3::Zero();
+            for (int i = 0; i < n; ++i)
+                centre += m.nodes[static_cast<std::size_t>(block.connectivity[static_cast<std::size_t>(e) * n + i])];
+            centre /= n;
+            int& number = own[static_cast<std::size_t>(e)];
+            for (std::size_t s = 0; s < body.sections.size(); ++s)
+                if (const auto* box = std::get_if<scene::SelectBox>(&body.sections[s].second.elements);
+                    box != nullptr && Eigen::AlignedBox3d(box->min, box->max).contains(centre))
+                    number = std::max(number, static_cast<int>(s) + 1);
+        }
+    }
+    mesh::divide(m, section);
+}
+
+mesh::Mesh generate(const scene::Body& body, const std::string& directory, Sources& sources,
                     std::vector<std::string>& notes) {
+    const scene::MeshSpec& spec = body.mesh;
     mesh::Mesh m = std::visit(
         Overloaded{
             [](const scene::BlockMesh& b) {
@@ -54,7 +89,8 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, S
             },
             [&](const scene::FileMesh& f) {
                 const auto path = (std::filesystem::path(directory) / f.path).string();
-                return mesh::make_mesh(sources.file(path), {f.part, f.piece, repairs_of(f.repair)}, &notes);
+                return mesh::make_mesh(sources.file(path),
+                                       {f.part, f.piece, repairs_of(f.repair), named_sections(body)}, &notes);
             },
             [&](const scene::CadMesh& c) {
                 const mesh::CadOptions options{(std::filesystem::path(directory) / c.path).string(),
@@ -63,13 +99,14 @@ mesh::Mesh generate(const scene::MeshSpec& spec, const std::string& directory, S
                                                c.per_circle,
                                                c.quadratic,
                                                c.focus};
-                return mesh::make_mesh(sources.geometry(options), {c.part, c.piece, {}}, &notes);
+                return mesh::make_mesh(sources.geometry(options), {c.part, c.piece, {}, named_sections(body)}, &notes);
             },
         },
         spec.source);
     const scene::Placement& p = spec.placement;
     if (p.angle != 0 || p.scale != 1 || !p.translation.isZero(0))
         mesh::place(m, p.axis, p.angle, p.translation, p.scale);
+    number_sections(body, m);
     return m;
 }
 
@@ -104,7 +141,7 @@ std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene, std::vector<std:
                 continue;
             }
             std::vector<std::string> of_body;
-            meshes.push_back(generate(body.mesh, scene.directory, sources, of_body));
+            meshes.push_back(generate(body, scene.directory, sources, of_body));
             for (const std::string& note : of_body)
                 if (notes != nullptr) notes->push_back("body " + name + ": " + note);
         } catch (const mesh::MeshError& error) {

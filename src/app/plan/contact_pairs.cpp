@@ -1,6 +1,7 @@
 #include "app/plan/contact_pairs.hpp"
 
 #include "app/overloaded.hpp"
+#include "app/plan/body_materials.hpp"
 #include "app/plan/draft_slices.hpp"
 #include "app/plan/rigid_surface.hpp"
 #include "app/plan/smooth_parts.hpp"
@@ -255,8 +256,11 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     }
     // c = E * tributary area / h: the stiffness of a layer of elements, so free of units, of the softer body: it is the one
     // that gives way
-    const double E = std::min(scene::elastic(scene.bodies[slave.body].second.material).E,
-                              scene::elastic(scene.bodies[master.body].second.material).E);
+    const auto modulus = [&](const model::Set& set) {
+        const auto b = static_cast<std::size_t>(set.body);
+        return modulus_under(scene.bodies[b].second, model.bodies[b], set.facets);
+    };
+    const double E = std::min(modulus(slave), modulus(master));
     if (!averages(options.discretisation)) // nodes that move as another are one slave
         for (const auto& [above, base] : of_slice(scene, model, slave)) {
             const auto at = area_and_size.find(above);
@@ -381,7 +385,6 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
         model::OuterSurface& one = surfaces.emplace_back();
         one.body = static_cast<Index>(b);
         one.name = model.bodies[b].name;
-        one.E = scene::elastic(scene.bodies[b].second.material).E;
         const auto skin = skins.find(one.body);
         model::Set all = skin != skins.end() ? skin->second : outer_surface(scene, model, one.body, exterior[b]);
         if (skin != skins.end())
@@ -397,6 +400,7 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
         const std::vector<Mat3> planes = in_symmetry_planes(scene, model, all, all.nodes);
         for (std::size_t i = 0; i < planes.size(); ++i)
             if (planes[i] != Mat3::Identity()) one.in_plane.emplace(all.nodes[i], planes[i]);
+        one.E = modulus_under(scene.bodies[b].second, model.bodies[b], all.facets);
         one.facets = std::move(all.facets);
     }
     model::GeneralContactOptions options = general_options(scene, model, surfaces, skins);

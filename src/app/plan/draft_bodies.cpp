@@ -2,6 +2,7 @@
 
 #include "app/fault.hpp"
 #include "app/overloaded.hpp"
+#include "app/plan/body_materials.hpp"
 #include "app/plan/draft.hpp"
 #include "app/plan/rigid_surface.hpp"
 #include "osculate/core/error.hpp"
@@ -34,7 +35,9 @@ void give_rigid_bodies_materials(scene::Scene& scene) {
     constexpr double stiffer = 1e3;
     double stiffest = 0;
     for (const auto& [name, body] : scene.bodies)
-        if (!body.rigid) stiffest = std::max(stiffest, scene::elastic(body.material).E);
+        if (!body.rigid)
+            for (int s = 0; s <= static_cast<int>(body.sections.size()); ++s)
+                stiffest = std::max(stiffest, scene::elastic(material_of(body, s)).E);
     for (auto& [name, body] : scene.bodies) {
         if (!body.rigid) continue;
         scene::LinearElastic stand_in;
@@ -61,8 +64,9 @@ void set_mass(Draft& draft, const std::string& name, const scene::Body& spec, mo
                                          fmt::format("a volume of {:.3g} m^3", own.mass)));
     }
     rigid.centre = given.centre ? *given.centre - origin : own.centre;
-    rigid.mass = given.mass ? *given.mass : body.density * own.mass;
-    rigid.inertia = body.density * own.inertia;
+    const double density = body.density.empty() ? 0 : body.density.front();
+    rigid.mass = given.mass ? *given.mass : density * own.mass;
+    rigid.inertia = density * own.inertia;
     if (!given.inertia) return;
     const Vec3 &J = *given.inertia, P = given.products.value_or(Vec3::Zero());
     rigid.inertia << J.x(), P.x(), P.z(), P.x(), J.y(), P.y(), P.z(), P.y(), J.z();
@@ -109,6 +113,23 @@ std::optional<Unfit> unfit_formulation(const mesh::Mesh& mesh, HexFormulation fo
         return Unfit{"full or reduced for hex20 elements",
                      formulation == HexFormulation::b_bar ? "b_bar" : "incompatible_modes"};
     return {};
+}
+
+/// Whether every section has elements, and a material that stores energy; faults otherwise.
+bool sound_materials(Draft& draft, const std::string& name, const scene::Body& spec, const mesh::Mesh& mesh) {
+    const std::size_t before = draft.faults.size();
+    for (int s = 0; s <= static_cast<int>(spec.sections.size()); ++s) {
+        const std::string key =
+            "bodies." + name + (s == 0 ? "" : ".sections." + spec.sections[static_cast<std::size_t>(s) - 1].first);
+        if (s > 0 && std::ranges::none_of(mesh.blocks, [&](const auto& block) { return block.section == s; }))
+            draft.faults.push_back(fault(key, "at least one element that no later section has", "none"));
+        const auto* o = std::get_if<scene::Orthotropic>(&material_of(spec, s));
+        if (o == nullptr || material::Orthotropic{o->moduli, o->ratios, o->shear, o->axes}.stable()) continue;
+        draft.faults.push_back(fault(
+            key + ".material.orthotropic.nu", "ratios with which every strain stores energy, as nu_12^2 < E_1/E_2",
+            fmt::format("[{:.4g}, {:.4g}, {:.4g}]", o->ratios[0], o->ratios[1], o->ratios[2])));
+    }
+    return draft.faults.size() == before;
 }
 
 std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation formulation, const scene::Material& spec,
@@ -219,28 +240,24 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
         check_mesh(draft, name, meshes[b]);
         model::Body body;
         body.name = name;
-        body.density = scene::elastic(spec.material).density;
         body.rigid = spec.rigid.has_value();
         body.mesh = std::move(meshes[b]);
         body.first_node = draft.plan.model.nodes();
-        if (const auto* o = std::get_if<scene::Orthotropic>(&spec.material);
-            o != nullptr && !body.rigid && !material::Orthotropic{o->moduli, o->ratios, o->shear, o->axes}.stable()) {
-            draft.faults.push_back(
-                fault("bodies." + name + ".material.orthotropic.nu",
-                      "ratios with which every strain stores energy, as nu_12^2 < E_1/E_2",
-                      fmt::format("[{:.4g}, {:.4g}, {:.4g}]", o->ratios[0], o->ratios[1], o->ratios[2])));
-            return;
-        }
+        if (!body.rigid && !sound_materials(draft, name, spec, body.mesh)) return;
         if (const auto unfit = unfit_formulation(body.mesh, spec.hex_formulation)) {
             draft.faults.push_back(fault("bodies." + name + ".hex_formulation", unfit->expected, unfit->found));
             return;
         }
-        body.expansion = scene::elastic(spec.material).expansion;
-        const bool heated = !body.rigid && body.expansion != 0 &&
-                            std::ranges::any_of(draft.scene.stages,
-                                                [](const auto& stage) { return stage.second.temperature.size() > 0; });
-        for (const mesh::ElementBlock& block : body.mesh.blocks)
-            body.kernels.push_back(kernel(block.type, spec.hex_formulation, spec.material, heated));
+        const bool heated = !body.rigid && std::ranges::any_of(draft.scene.stages, [](const auto& stage) {
+            return stage.second.temperature.size() > 0;
+        });
+        for (const mesh::ElementBlock& block : body.mesh.blocks) {
+            const scene::Material& material = material_of(spec, block.section);
+            const auto& [E, nu, density, expansion] = scene::elastic(material);
+            body.density.push_back(density);
+            body.expansion.push_back(expansion);
+            body.kernels.push_back(kernel(block.type, spec.hex_formulation, material, heated && expansion != 0));
+        }
         auto& X = draft.plan.model.X.values();
         X.insert(X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
         draft.exterior.push_back(mesh::exterior_facets(body.mesh));

@@ -147,7 +147,7 @@ private:
         const model::Body& body = draft_.plan.model.bodies[static_cast<std::size_t>(ring_.body)];
         const scene::Body& spec = *scene::find(draft_.scene.bodies, body.name);
         const Vec3& g = draft_.scene.gravity;
-        if (body.density > 0 && from_axis(g, axis_) > on_axis * g.norm())
+        if (body.has_mass() && from_axis(g, axis_) > on_axis * g.norm())
             return refuse(".axis", "gravity along the axis: it is not the same in every sector otherwise",
                           "gravity across it");
         const Vec3 centre = model::centre_of_mass(body);

@@ -123,8 +123,7 @@ void add_gravity(Draft& draft) {
             m.mass(dynamics->lumped_mass).multiply_add(Field(m.X.size(), draft.scene.gravity), weight, draft.threads);
         else
             for (const model::Body& body : m.bodies)
-                if (body.density > 0 && !body.rigid)
-                    model::add_body_force(body, body.density * draft.scene.gravity, weight);
+                if (!body.rigid) model::add_gravity(body, draft.scene.gravity, weight);
         for (const model::RigidBody& rigid : m.rigid) add_weight(draft, rigid, weight);
         for (Field* force : {&draft.plan.stages[s].force_start, &draft.plan.stages[s].force_end}) force->add(1, weight);
     }

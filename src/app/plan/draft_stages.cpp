@@ -68,7 +68,7 @@ Field ramped_forces(const Draft& draft, const Driving& driving) {
     for (const auto& [name, c] : driving.centrifugal) {
         const model::Body& body = draft.plan.model.bodies[draft.body_index(name)];
         model::add_centrifugal_force(body, c.axis.point - draft.plan.model.origin, c.axis.direction.normalized(),
-                                     body.density * c.speed * c.speed, force);
+                                     c.speed, force);
     }
     for (const auto& [set_name, f] : driving.nodal_force)
         for (const Index node : draft.set(set_name).nodes)
@@ -181,7 +181,7 @@ std::vector<Index> nodes_of_part(Draft& draft, const std::string& part, const st
     if (nodes.empty()) {
         draft.faults.push_back(fault(key + "." + part, "the name of a body or set", "'" + part + "'"));
     } else if (const model::Body& body = *model::body_of(draft.plan.model, nodes.front());
-               body.rigid || body.expansion == 0) {
+               body.rigid || !body.grows()) {
         draft.faults.push_back(fault(key + "." + part, "a body that deforms and has a thermal expansion",
                                      "'" + body.name + "', which does not grow"));
     }
@@ -202,7 +202,7 @@ void check_centrifugal(Draft& draft, const std::string& key, const std::string& 
     };
     if (m.bodies[static_cast<std::size_t>(b)].rigid)
         draft.faults.push_back(fault(key, "a body that deforms", "a rigid one"));
-    else if (!(m.bodies[static_cast<std::size_t>(b)].density > 0))
+    else if (!m.bodies[static_cast<std::size_t>(b)].has_mass())
         draft.faults.push_back(fault("bodies." + name + ".material", "a density, for " + key, "none"));
     for (const model::CyclicSymmetry& ring : draft.rings)
         if (ring.body == b && is_other(ring.point + m.origin, ring.axis))

@@ -1,6 +1,7 @@
 #include "app/plan/settle_pairs.hpp"
 
 #include "app/fault.hpp"
+#include "app/plan/body_materials.hpp"
 #include "app/plan/smooth_parts.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
@@ -22,7 +23,7 @@ constexpr double clearly = 1.1;
 struct Side {
     std::string set;
     double size; ///< root of the mean area of its facets, m
-    double E;    ///< Young's modulus of its body, Pa
+    double E;    ///< Young's modulus under it, Pa
 };
 
 Side side_of(const Draft& draft, const std::string& name) {
@@ -34,7 +35,8 @@ Side side_of(const Draft& draft, const std::string& name) {
     }
     const double count = std::max<double>(1, static_cast<double>(set.facets.size()));
     const auto body = static_cast<std::size_t>(set.body);
-    return {name, std::sqrt(area / count), scene::elastic(draft.scene.bodies[body].second.material).E};
+    return {name, std::sqrt(area / count),
+            modulus_under(draft.scene.bodies[body].second, draft.plan.model.bodies[body], set.facets)};
 }
 
 /// Gaps are measured at the slave's nodes: a finer side sees more of the other, and a softer one gives way to it.

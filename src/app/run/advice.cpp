@@ -164,7 +164,7 @@ private:
 
     void dynamics(const std::string& why) {
         const std::string key = in_stage("analysis");
-        const auto has_density = [](const model::Body& body) { return body.density > 0; };
+        const auto has_density = [](const model::Body& body) { return body.has_mass(); };
         if (std::ranges::all_of(failed_.model.bodies, has_density))
             change(key, "dynamic", "dynamic, " + why);
         else

@@ -1,6 +1,7 @@
 #include "deck/bodies.hpp"
 
 #include "deck/words.hpp"
+#include "osculate/mesh/mesh_error.hpp"
 #include "osculate/mesh/mesh_file.hpp"
 
 #include <algorithm>
@@ -73,6 +74,21 @@ mesh::DeckSlice slice_of(DeckModel& model, const DeckBody& body) {
 }
 } // namespace
 
+namespace {
+/// Parts that touch at nodes alone are joined there, as decks have it.
+void make_mesh_of(DeckModel& model, mesh::MeshFileOptions options, DeckBody& body) {
+    try {
+        body.mesh = mesh::make_mesh(model.mesh.raw, options);
+    } catch (const mesh::MeshError&) {
+        options.repairs.wanted[static_cast<std::size_t>(mesh::Repair::keep_non_manifold)] = true;
+        body.mesh = mesh::make_mesh(model.mesh.raw, options);
+        body.joined_at_nodes = true;
+        model.note(model.mesh.raw.file, "parts of body " + body.name + " that share nodes but no face",
+                   "they stay joined there; contact refuses such a surface as a master");
+    }
+}
+} // namespace
+
 std::vector<DeckBody> make_bodies(DeckModel& model) {
     const mesh::RawMesh& raw = model.mesh.raw;
     std::vector<Index> all(raw.cells.size());
@@ -104,7 +120,7 @@ std::vector<DeckBody> make_bodies(DeckModel& model) {
         body.formulation = formulation_of(model, body.cells);
         body.slice = slice_of(model, body);
         options.piece = body.piece;
-        body.mesh = mesh::make_mesh(raw, options);
+        make_mesh_of(model, options, body);
         body.exterior = mesh::exterior_facets(body.mesh);
         std::vector<char> used(raw.points.size(), 0);
         for (const Index c : body.cells)
@@ -117,15 +133,19 @@ std::vector<DeckBody> make_bodies(DeckModel& model) {
 
 DeckSets::DeckSets(const DeckModel& model, const std::vector<DeckBody>& bodies, double scale)
     : model_(model), bodies_(bodies), scale_(scale), body_of_(model.mesh.raw.points.size(), -1),
-      node_of_(model.mesh.raw.points.size(), -1) {
+      node_of_(model.mesh.raw.points.size(), -1), numbered_alone_(model.mesh.raw.points.size(), 0) {
     Eigen::AlignedBox3d box;
-    for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        std::map<std::int64_t, int> count;
+        for (const Index p : bodies[b].points) ++count[model.mesh.raw.point_ids[static_cast<std::size_t>(p)]];
         for (std::size_t n = 0; n < bodies[b].points.size(); ++n) {
             const auto p = static_cast<std::size_t>(bodies[b].points[n]);
             body_of_[p] = static_cast<int>(b);
             node_of_[p] = static_cast<Index>(n);
+            numbered_alone_[p] = count.at(model.mesh.raw.point_ids[p]) == 1;
             box.extend(model.mesh.raw.points[p]);
         }
+    }
     constexpr double small = 1e-7; // of the extent: nodes stand further apart, and round-off is less
     tolerance_ = small * box.diagonal().norm();
 }
@@ -172,9 +192,20 @@ std::vector<std::string> DeckSets::of_points(std::size_t body, const std::vector
                                              const std::string& wanted) {
     if (const std::string one = of_points_as_one(body, points, wanted); !one.empty()) return {one};
     std::vector<std::string> names;
-    for (const Index p : points)
-        names.push_back(add(body, wanted + "_" + std::to_string(model_.mesh.raw.point_ids[static_cast<std::size_t>(p)]),
-                            box_around({p})));
+    const auto number = [&](Index p) { return model_.mesh.raw.point_ids[static_cast<std::size_t>(p)]; };
+    if (std::ranges::all_of(points, [&](Index p) { return numbered_alone_[static_cast<std::size_t>(p)] != 0; })) {
+        std::string numbers;
+        for (const Index p : points) numbers += (numbers.empty() ? "" : ", ") + std::to_string(number(p));
+        return {add(body, points.size() == 1 ? wanted + "_" + numbers : wanted, "node_numbers: [" + numbers + "]")};
+    }
+    for (const Index p : points) {
+        if (!box_has_just(bodies_[body], {p}))
+            throw mesh::MeshError(model_.mesh.raw.file,
+                                  fmt::format("another node of body {} is where node {} is: no set "
+                                              "tells them apart",
+                                              bodies_[body].name, number(p)));
+        names.push_back(add(body, wanted + "_" + std::to_string(number(p)), box_around({p})));
+    }
     return names;
 }
 

@@ -20,6 +20,7 @@ struct DeckBody {
     std::vector<mesh::Facet> exterior;
     const DeckSection* section = nullptr;           ///< the one that most of its elements have
     std::vector<const DeckSection*> other_sections; ///< of its other elements; of several that have one the last counts
+    bool joined_at_nodes = false;                   ///< mesh::Repair::keep_non_manifold
     std::string formulation;                        ///< of its hexahedra
     mesh::DeckSlice slice = mesh::DeckSlice::none;
 };
@@ -33,7 +34,8 @@ public:
     /// @param scale  metres per unit of the deck
     DeckSets(const DeckModel& model, const std::vector<DeckBody>& bodies, double scale);
 
-    /// Names of sets that have just these points of a body: a node set of the deck, a box around them, or a box each.
+    /// Names of sets that have just these points of a body: a node set of the deck, a box around them, their numbers, or a box
+    /// each where points of a layer share a number. Throws mesh::MeshError where nothing tells two points apart.
     std::vector<std::string> of_points(std::size_t body, const std::vector<Index>& points, const std::string& wanted);
     /// A set with just these facets, empty where there is none. @param facets  of DeckBody::exterior
     std::string of_facets(std::size_t body, const std::vector<Index>& facets, const std::string& wanted);
@@ -57,6 +59,7 @@ private:
     double scale_, tolerance_;
     std::vector<int> body_of_;
     std::vector<Index> node_of_;
+    std::vector<char> numbered_alone_; ///< whether no other point of the body has its number
     std::set<std::string> taken_;
     std::map<std::string, std::string> known_; ///< body and selection -> name
     std::string yaml_;

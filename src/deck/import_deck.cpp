@@ -97,7 +97,10 @@ private:
         for (const DeckBody& body : bodies_) {
             text += "  " + body.name + ":\n    mesh: {file: {path: " + in_quotes(path_);
             if (body.piece > 0) text += fmt::format(", piece: {}", body.piece);
-            if (dangling) text += ", repair: [dangling_nodes]";
+            if (dangling || body.joined_at_nodes)
+                text += fmt::format(", repair: [{}{}{}]", dangling ? "dangling_nodes" : "",
+                                    dangling && body.joined_at_nodes ? ", " : "",
+                                    body.joined_at_nodes ? "keep_non_manifold" : "");
             text += "}";
             if (units_.length != 1) text += ", scale: " + number(units_.length);
             const std::string material = material_of(body, body.section);

@@ -97,6 +97,7 @@ std::vector<Index> compact(const RawMesh& raw, Mesh& mesh) {
         if (number[p] == 0) {
             number[p] = mesh.node_count();
             mesh.nodes.push_back(raw.points[p]);
+            mesh.node_ids.push_back(raw.point_ids[p]);
         }
     return number;
 }

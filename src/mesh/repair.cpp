@@ -297,17 +297,21 @@ bool check_neighbours(const RawMesh& raw, const NonManifold& found, MeshFaults& 
     return found.unlike_faces.empty();
 }
 
-void check_manifold(RawMesh& raw, bool wanted, MeshFaults& all) {
+/// @param split, keep  which of the two repairs is wanted; both: split
+void check_manifold(RawMesh& raw, bool split, bool keep, MeshFaults& all) {
     const NonManifold found = find_non_manifold(raw);
     if (!check_neighbours(raw, found, all)) return; // what follows is of little use on an open body
-    Kind kind(all, raw, mends(Repair::non_manifold)), lasting(all, raw, "");
+    Kind kind(all, raw, mends(Repair::non_manifold) + ", [keep_non_manifold] leaves it"), lasting(all, raw, "");
     for (const FaceOfCell& face : found.crowded_faces)
         lasting.add(name_of(raw, raw.cells[face.cell]) + " has a face that two other " + raw.cell_word +
                     "s have, too: they overlap");
     lasting.finish("such faces");
-    if (wanted && found.crowded_faces.empty()) {
+    if ((split || keep) && found.crowded_faces.empty()) {
         Noted noted;
         for (const Index p : found.touching_points) noted.add(std::to_string(raw.point_ids[p]));
+        if (!split)
+            return noted.finish(all, raw,
+                                std::string(raw.point_word) + "s at which alone parts of the body are joined");
         split_non_manifold(raw, found);
         noted.finish(all, raw, std::string(raw.point_word) + "s doubled where parts of the body only touch");
         for (const auto& [a, b] : find_non_manifold(raw).crowded_edges)
@@ -328,8 +332,9 @@ void check_manifold(RawMesh& raw, bool wanted, MeshFaults& all) {
 } // namespace
 
 const std::vector<std::string>& repair_words() {
-    static const std::vector<std::string> words{"inverted",       "degenerate",       "duplicate",
-                                                "dangling_nodes", "coincident_nodes", "non_manifold"};
+    static const std::vector<std::string> words{"inverted",         "degenerate",       "duplicate",
+                                                "dangling_nodes",   "coincident_nodes", "non_manifold",
+                                                "keep_non_manifold"};
     return words;
 }
 
@@ -344,7 +349,7 @@ MeshFaults find_and_mend(RawMesh& raw, const Repairs& repairs) {
     const bool duplicates = check_duplicates(raw, repairs[Repair::duplicate], all);
     // faces of a cell that has a node twice are none, and it is a fault already
     if (!duplicates && std::ranges::none_of(raw.cells, has_node_twice))
-        check_manifold(raw, repairs[Repair::non_manifold], all);
+        check_manifold(raw, repairs[Repair::non_manifold], repairs[Repair::keep_non_manifold], all);
     return all;
 }
 

@@ -59,6 +59,19 @@ std::optional<Region> select_named(const Mesh& mesh, const std::vector<Facet>& e
     return region;
 }
 
+Region select_numbers(const Mesh& mesh, const std::vector<Facet>& exterior, std::vector<int> numbers) {
+    std::ranges::sort(numbers);
+    Region region;
+    std::vector<char> member(mesh.nodes.size(), 0);
+    for (std::size_t i = 0; i < mesh.node_ids.size(); ++i) {
+        if (!std::ranges::binary_search(numbers, mesh.node_ids[i])) continue;
+        member[i] = 1;
+        region.nodes.push_back(static_cast<Index>(i));
+    }
+    region.facets = facets_within(exterior, member);
+    return region;
+}
+
 Region select_plane(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& point, const Vec3& normal) {
     const double tolerance = tolerance_of(mesh);
     const Vec3 n = normal.normalized();

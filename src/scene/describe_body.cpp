@@ -226,7 +226,7 @@ void describe(Visitor& v, FileMesh& m) {
     }();
     v.words({.name = "repair",
              .meaning = "Faults of the mesh that are repaired, others are refused; all, or true for the list: all but "
-                        "coincident_nodes.",
+                        "coincident_nodes and keep_non_manifold.",
              .default_text = "[]"},
             repairs, m.repair);
 }

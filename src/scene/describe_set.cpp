@@ -48,7 +48,7 @@ void describe(Visitor& v, SelectBox& s) {
 
 void describe(Visitor& v, SetSpec& set) {
     v.text({.name = "body", .meaning = "Body the set belongs to.", .required = true, .names = Names::body}, set.body);
-    static const Words tags{"surface", "nodes", "plane", "cylinder", "box", "normal"};
+    static const Words tags{"surface", "nodes", "plane", "cylinder", "box", "normal", "node_numbers"};
     constexpr std::size_t nodes = 1; // surface and nodes are both a SelectNamed
     const std::size_t index = set.select.index();
     const auto* by_name = std::get_if<SelectNamed>(&set.select);
@@ -57,7 +57,7 @@ void describe(Visitor& v, SetSpec& set) {
         v.group({.name = tag, .meaning = meaning}, [&] {
             std::visit(
                 [&]<class S>(S& s) {
-                    if constexpr (!std::is_same_v<S, SelectNamed>) describe(v, s);
+                    if constexpr (!std::is_same_v<S, SelectNamed> && !std::is_same_v<S, SelectNumbers>) describe(v, s);
                 },
                 set.select);
         });
@@ -67,7 +67,7 @@ void describe(Visitor& v, SetSpec& set) {
               .required = true,
               .choose =
                   [&](std::size_t i) {
-                      emplace(set.select, i <= nodes ? 0 : i - 1, std::make_index_sequence<5>{});
+                      emplace(set.select, i <= nodes ? 0 : i - 1, std::make_index_sequence<6>{});
                       if (i == nodes) std::get<SelectNamed>(set.select).nodes = true;
                   },
               .describe =
@@ -83,7 +83,13 @@ void describe(Visitor& v, SetSpec& set) {
                       case 2: return group("plane", "Exterior facets in a plane.");
                       case 3: return group("cylinder", "Exterior facets on a cylinder.");
                       case 4: return group("box", "Exterior facets inside a box.");
-                      default: return group("normal", "Exterior facets that face a direction.");
+                      case 5: return group("normal", "Exterior facets that face a direction.");
+                      default:
+                          return v.integers({.name = "node_numbers",
+                                             .meaning = "Nodes by their numbers in the mesh file.",
+                                             .range = {.low = 0, .high = 2147483647},
+                                             .required = true},
+                                            std::get<SelectNumbers>(set.select).numbers);
                       }
                   }});
 }

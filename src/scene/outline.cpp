@@ -51,6 +51,7 @@ public:
     void divisions(const Key& key, std::array<int, 3>& value) override {
         add(key, std::to_string(value[0]) + " × " + std::to_string(value[1]) + " × " + std::to_string(value[2]));
     }
+    void integers(const Key& key, std::vector<int>& value) override { add(key, listed(value)); }
     void flag(const Key& key, bool& value) override { add(key, value ? "yes" : "no"); }
     void text(const Key& key, std::string& value) override {
         if (!value.empty()) add(key, value);

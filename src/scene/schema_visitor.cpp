@@ -274,6 +274,12 @@ void SchemaVisitor::divisions(const Key& key, std::array<int, 3>& value) {
     add(key, list_of(item, 3), "three whole numbers, product at most " + number_text(key.largest_product), value);
 }
 
+void SchemaVisitor::integers(const Key& key, std::vector<int>& /*value*/) {
+    Json item{{"type", "integer"}};
+    item.update(bounds(key.range));
+    add(key, {{"type", "array"}, {"minItems", 1}, {"items", item}}, "a list of whole numbers", nullptr);
+}
+
 void SchemaVisitor::flag(const Key& key, bool& value) {
     add(key, {{"enum", {true, false, "yes", "no"}}}, "true or false", value);
 }

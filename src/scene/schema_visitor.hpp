@@ -27,6 +27,7 @@ public:
     void courses(const Key& key, std::array<Course, 3>& value) override;
     void integer(const Key& key, int& value) override;
     void divisions(const Key& key, std::array<int, 3>& value) override;
+    void integers(const Key& key, std::vector<int>& value) override;
     void flag(const Key& key, bool& value) override;
     void text(const Key& key, std::string& value) override;
     void two_names(const Key& key, std::array<std::string, 2>& value) override;

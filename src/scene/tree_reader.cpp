@@ -214,6 +214,17 @@ void TreeReader::divisions(const Key& key, std::array<int, 3>& value) {
     if (product > 0) value = read;
 }
 
+void TreeReader::integers(const Key& key, std::vector<int>& value) {
+    const std::string expected = "a list, each " + expected_integer(key);
+    const Tree* tree = take(key, expected);
+    if (!tree) return;
+    if (tree->kind != Tree::Kind::list || tree->children.empty()) return fault(*tree, key, expected);
+    std::vector<int> read;
+    for (const Tree& child : tree->children)
+        if (const auto one = read_integer(child, key, expected)) read.push_back(*one);
+    if (read.size() == tree->children.size()) value = std::move(read);
+}
+
 void TreeReader::flag(const Key& key, bool& value) {
     const std::string expected = "true or false";
     const Tree* tree = take(key, expected);

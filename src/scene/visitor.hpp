@@ -96,6 +96,7 @@ public:
     virtual void courses(const Key& key, std::array<Course, 3>& value) = 0; ///< components of a vector
     virtual void integer(const Key& key, int& value) = 0;
     virtual void divisions(const Key& key, std::array<int, 3>& value) = 0;
+    virtual void integers(const Key& key, std::vector<int>& value) = 0; ///< one or more
     virtual void flag(const Key& key, bool& value) = 0;
     virtual void text(const Key& key, std::string& value) = 0;
     virtual void two_names(const Key& key, std::array<std::string, 2>& value) = 0; ///< empty: not given
@@ -108,6 +109,13 @@ public:
     virtual void one_of(const Choice& choice) = 0;
     virtual void named(const Key& key, const Entries& entries) = 0;
 };
+
+/// "1, 5, 7"
+[[nodiscard]] inline std::string listed(const std::vector<int>& numbers) {
+    std::string text;
+    for (const int number : numbers) text += (text.empty() ? "" : ", ") + std::to_string(number);
+    return text;
+}
 
 /// Walks over the values that are there: what is absent or empty is passed over.
 class PresentVisitor : public Visitor {

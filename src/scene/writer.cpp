@@ -70,6 +70,7 @@ public:
         line(key,
              "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]");
     }
+    void integers(const Key& key, std::vector<int>& value) override { line(key, "[" + listed(value) + "]"); }
     void flag(const Key& key, bool& value) override { line(key, value ? "true" : "false"); }
     void text(const Key& key, std::string& value) override {
         if (!value.empty()) line(key, in_quotes(value));

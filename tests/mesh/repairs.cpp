@@ -124,6 +124,15 @@ TEST_F(MeshRepairs, BodiesThatTouchAtAnEdgeOrANodeArePulledApart) {
     EXPECT_EQ(make_mesh(at_node, repairing({Repair::non_manifold})).node_count(), 8);
 }
 
+TEST_F(MeshRepairs, BodiesThatTouchAtAnEdgeStayJoinedWhereThatIsWanted) {
+    std::vector<std::string> notes;
+    MeshFileOptions keep = repairing({Repair::keep_non_manifold});
+    const Mesh joined = make_mesh(raw(on_edge), keep, &notes);
+    EXPECT_EQ(joined.node_count(), 14);
+    EXPECT_THAT(notes, ElementsAre(HasSubstr("2 nodes at which alone parts of the body are joined: 3, 7")));
+    EXPECT_EQ(make_mesh(raw(on_edge), repairing({Repair::keep_non_manifold, Repair::non_manifold})).node_count(), 16);
+}
+
 /// A straight ten-node tetrahedron on the triangle of nodes 1, 2, 3 and the nodes of another below it, which may share
 /// the nodes 5, 6, 7 in the middle of the triangle's edges or have 15, 16, 17 at their places, 17 moved by a length.
 std::string two_tetrahedra(const std::string& below, double moved = 0) {

@@ -19,6 +19,8 @@ inline std::vector<Index> renumber(mesh::Mesh& m, std::mt19937& random) {
     std::vector<Vec3> nodes(m.nodes.size());
     for (std::size_t i = 0; i < to.size(); ++i) nodes[static_cast<std::size_t>(to[i])] = m.nodes[i];
     m.nodes = nodes;
+    auto ids = m.node_ids;
+    for (std::size_t i = 0; i < ids.size(); ++i) m.node_ids[static_cast<std::size_t>(to[i])] = ids[i];
     const auto moved = [&](Index node) { return to[static_cast<std::size_t>(node)]; };
     std::vector<std::vector<Index>> element_to;
     for (mesh::ElementBlock& block : m.blocks) {

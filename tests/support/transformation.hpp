@@ -82,6 +82,7 @@ public:
     }
     void integer(const scene::Key& /*key*/, int& /*value*/) override {}
     void divisions(const scene::Key& /*key*/, std::array<int, 3>& /*value*/) override {}
+    void integers(const scene::Key& /*key*/, std::vector<int>& /*value*/) override {}
     void flag(const scene::Key& /*key*/, bool& /*value*/) override {}
     void text(const scene::Key& /*key*/, std::string& /*value*/) override {}
     void two_names(const scene::Key& /*key*/, std::array<std::string, 2>& /*names*/) override {}

@@ -5,6 +5,7 @@
 #include "osculate/mesh/cell_type.hpp"
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -33,7 +34,8 @@ struct Facet {
 };
 
 struct Mesh {
-    std::vector<Vec3> nodes; ///< reference positions, metres
+    std::vector<Vec3> nodes;            ///< reference positions, metres
+    std::vector<std::int64_t> node_ids; ///< numbers in the file, several nodes may have one; empty: not from a file
     std::vector<ElementBlock> blocks;
     std::map<std::string, std::vector<Index>> node_sets;
     std::map<std::string, std::vector<Facet>> surfaces; ///< named parts of the exterior

@@ -14,11 +14,12 @@ enum class Repair {
     inverted,   ///< a cell with a negative volume: its nodes are reordered to make the volume positive
     degenerate, ///< a cell with a repeated node or no volume: a hexahedron that is a wedge becomes one; flat cells go
     duplicate,  ///< a cell with the same nodes as an earlier one: it is removed
-    dangling_nodes,   ///< nodes that nothing in the file uses: they are removed
-    coincident_nodes, ///< nodes at the same place: the first of them replaces the others
-    non_manifold,     ///< parts of the body that touch only at a node or an edge: each gets its own nodes
+    dangling_nodes,    ///< nodes that nothing in the file uses: they are removed
+    coincident_nodes,  ///< nodes at the same place: the first of them replaces the others
+    non_manifold,      ///< parts of the body that touch only at a node or an edge: each gets its own nodes
+    keep_non_manifold, ///< the same: they stay joined there, and no contact has such a surface for a master
 };
-inline constexpr int repair_count = 6;
+inline constexpr int repair_count = 7;
 /// In the order of the enumerators, as in scenes.
 [[nodiscard]] const std::vector<std::string>& repair_words();
 

@@ -18,6 +18,9 @@ struct Region {
     std::vector<Facet> facets; ///< oriented outward
 };
 
+/// Nodes by their numbers in the file, and the exterior facets that they cover.
+[[nodiscard]] Region select_numbers(const Mesh& mesh, const std::vector<Facet>& exterior, std::vector<int> numbers);
+
 /// The surface or node set with this name in the mesh. If both exist, the result has the surface's facets and the nodes
 /// of either. A node set alone gives also the exterior facets that it covers. No value if the mesh has no such name.
 [[nodiscard]] std::optional<Region> select_named(const Mesh& mesh, const std::vector<Facet>& exterior,

@@ -40,9 +40,14 @@ struct SelectNormal {
     bool operator==(const SelectNormal&) const = default;
 };
 
+struct SelectNumbers {
+    std::vector<int> numbers; ///< of nodes in the mesh file
+    bool operator==(const SelectNumbers&) const = default;
+};
+
 struct SetSpec {
     std::string body;
-    std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal> select;
+    std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal, SelectNumbers> select;
     bool operator==(const SetSpec&) const = default;
 };
 

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 #include <numeric>
+#include <set>
 
 namespace osculate::app {
 
@@ -178,6 +179,19 @@ mesh::Region select(Draft& draft, const std::string& set_name, const std::string
     return {};
 }
 
+/// Nodes by their numbers; one fault where any number is of none.
+mesh::Region select(Draft& draft, const std::string& set_name, const std::string& body, const scene::SelectNumbers& s,
+                    const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
+    const std::set<std::int64_t> known(m.node_ids.begin(), m.node_ids.end());
+    const auto missing = std::ranges::find_if(s.numbers, [&](int number) { return !known.contains(number); });
+    if (missing != s.numbers.end())
+        draft.faults.push_back(
+            fault("sets." + set_name + ".node_numbers",
+                  known.empty() ? "a body whose mesh is from a file" : "numbers of nodes of body '" + body + "'",
+                  known.empty() ? "body '" + body + "'" : std::to_string(*missing)));
+    return mesh::select_numbers(m, exterior, s.numbers);
+}
+
 /// Elements that are folded over where only their shape functions show it.
 std::vector<std::string> folded_elements(const mesh::Mesh& m, const Vec3& origin) {
     constexpr std::size_t listed = 20;
@@ -296,6 +310,7 @@ void add_sets(Draft& draft) {
                     return mesh::select_cylinder(m, exterior, s.point - o, s.axis, s.radius);
                 },
                 [&](const scene::SelectBox& s) { return mesh::select_box(m, exterior, s.min - o, s.max - o); },
+                [&](const scene::SelectNumbers& s) { return select(draft, name, spec.body, s, m, exterior); },
                 [&](const scene::SelectNormal& s) { return mesh::select_normal(m, exterior, s.direction, s.angle); },
             },
             spec.select);

@@ -229,7 +229,8 @@ std::string DeckSets::of_facets(std::size_t body, const std::vector<Index>& face
     if (within != asked.size()) return "";
     std::vector<Index> points;
     for (const Index n : nodes) points.push_back(b.points[static_cast<std::size_t>(n)]);
-    return of_points_as_one(body, points, wanted);
+    const std::vector<std::string> sets = of_points(body, points, wanted);
+    return sets.size() == 1 ? sets.front() : ""; // boxes of single points have no facets
 }
 
 std::string DeckSets::of_surface(std::size_t body, const std::string& in_capitals) {

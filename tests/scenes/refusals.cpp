@@ -54,6 +54,16 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"empty_set",
                 {"20:3: sets.under: expected at least one node of body 'cap', found an empty set: nothing lies "
                  "there"}},
+        Refusal{
+            "sections",
+            {"10:22: bodies.base.hex_formulation: expected full or b_bar with a material at finite strain, found "
+             "incompatible_modes",
+             "12:19: bodies.base.sections.away.box: expected a min below its max in every component, found one that "
+             "is not",
+             "14:13: bodies.base.sections.both: expected only one of elements, box, found elements and box",
+             "15:13: bodies.base.sections.none.material: expected a map of keys, found nothing",
+             "21:7: bodies.tool.sections: expected a body that deforms, found a rigid one",
+             "25:39: sets.few.node_numbers: expected a list, each a whole number in [0, 2147483647], found '0.5'"}},
         Refusal{"bad_yaml", {"7:82: expected valid YAML, found illegal flow end"}},
         Refusal{"unsupported_body",
                 {"10:3: bodies.cap: expected supports or contact that hold the body, found free rigid-body motions: "

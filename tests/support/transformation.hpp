@@ -158,6 +158,31 @@ inline void turn_scene(scene::Scene& scene, const Mat3& turn) {
     }
 }
 
+/// Moves what a scene says about places beside its meshes.
+inline void move_scene(scene::Scene& scene, const Vec3& by) {
+    const auto move = [&](std::optional<Vec3>& point) {
+        if (point) *point += by;
+    };
+    for (auto& [name, coupling] : scene.couplings) move(coupling.reference_point);
+    for (auto& [name, body] : scene.bodies) {
+        if (body.rigid) move(body.rigid->centre), move(body.rigid->reference_point);
+        if (body.slice) body.slice->point += by;
+        if (!body.rigid_surface) continue;
+        std::visit(
+            [&]<class S>(S& surface) {
+                if constexpr (std::is_same_v<S, scene::PlaneSurface>) surface.point += by;
+                if constexpr (std::is_same_v<S, scene::CylinderSurface>) surface.axis_point += by;
+                if constexpr (std::is_same_v<S, scene::SphereSurface>) surface.centre += by;
+                if constexpr (std::is_same_v<S, scene::ConeSurface>) surface.apex += by;
+                if constexpr (std::is_same_v<S, scene::ExtrudedSurface>)
+                    for (Vec3& point : surface.points) point += by;
+            },
+            *body.rigid_surface);
+    }
+    for (auto& [name, stage] : scene.stages)
+        for (auto& [body, c] : stage.centrifugal) c.axis.point += by;
+}
+
 inline void mirror_orientation(mesh::Mesh& m) {
     for (mesh::ElementBlock& block : m.blocks) {
         const mesh::CellInfo& info = mesh::cell_info(block.type);
@@ -231,6 +256,7 @@ inline NamedScene transformed(NamedScene named, const Transformation& by, std::v
     detail::Rescaler rescaler(by);
     describe(rescaler, scene);
     if (by.turn != Mat3::Identity()) detail::turn_scene(scene, by.turn);
+    if (by.sizes_away != 0) detail::move_scene(scene, by.length * there);
     std::vector<Index> first(meshes.size(), 0); // of every body, afterwards
     const auto count = [&](std::size_t b) { return meshes[b].node_count(); };
     if (by.reverse_bodies)

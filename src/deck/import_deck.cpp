@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace osculate::deck {
@@ -242,6 +243,25 @@ private:
 
     // ---- contact ----
 
+    static constexpr double most_turn = 7.5 * std::numbers::pi / 180; ///< 48 facets around a circle
+
+    /// Largest angle between neighbouring facets of a surface, rad.
+    double largest_turn(std::size_t body, const std::string& surface) {
+        const DeckBody& b = bodies_[body];
+        std::map<std::pair<Index, Index>, Vec3> across; // normal of the first facet at an edge
+        double largest = 0;
+        for (const mesh::Facet& facet : facets_of(body, surface)) {
+            const Vec3 normal = mesh::facet_normal(facet, b.mesh.nodes);
+            for (int c = 0; c < facet.count; ++c) {
+                const auto [low, high] = std::minmax(facet.nodes[static_cast<std::size_t>(c)],
+                                                     facet.nodes[static_cast<std::size_t>((c + 1) % facet.count)]);
+                const auto [at, fresh] = across.try_emplace({low, high}, normal);
+                if (!fresh) largest = std::max(largest, std::acos(std::clamp(at->second.dot(normal), -1.0, 1.0)));
+            }
+        }
+        return largest;
+    }
+
     std::string write_contact() {
         std::string text;
         std::set<std::string> taken;
@@ -255,11 +275,6 @@ private:
                                       master = sets_.of_surface(b, pair.master);
                     if (slave.empty() || master.empty()) continue;
                     any = true;
-                    if (facets_of(a, pair.slave).empty()) {
-                        model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
-                                    "nodes that cover no facet of their body cannot be slaves");
-                        continue;
-                    }
                     const bool mortar = pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave));
                     if (pair.mortar && !mortar)
                         model_.note(
@@ -268,8 +283,16 @@ private:
                     // nodes of a deck meet the facets of the mesh; averages over facets are the default in statics
                     const std::string name = fresh_name(slave + "_on_" + master, taken);
                     change_pair(pair, name);
+                    const bool coarse = mortar && largest_turn(b, pair.master) > most_turn;
+                    if (coarse)
+                        model_.note(pair.place,
+                                    "facets of " + pair.master + " that turn by " +
+                                        number(std::round(largest_turn(b, pair.master) * 180 / std::numbers::pi)) +
+                                        " degrees from one to the next",
+                                    "as coarse as that, a smooth surface through their nodes is another one: contact "
+                                    "takes the facets, as the deck's own program does");
                     text += "  " + name + ":\n    slave: " + slave + "\n    master: {set: " + master +
-                            (mortar ? "" : ", surface: facets") + "}\n";
+                            (mortar && !coarse ? "" : ", surface: facets") + "}\n";
                     if (!mortar) text += "    discretisation: node  # node to surface\n";
                     if (pair.adjust > 0) text += "    adjust: " + number(units_.length * pair.adjust) + "\n";
                     text += law_of(pair);

@@ -224,9 +224,9 @@ TEST_F(VtuReader, SaysWhyAFileIsBad) {
     const vtkNew<vtkUnstructuredGrid> empty;
     write(empty);
     EXPECT_NE(error(), "");
-    write(make_grid({{Vec3(0, 0, 0)}, {}, {}, {}}));
+    write(make_grid({{Vec3(0, 0, 0)}, {}, {}, {}, {}}));
     EXPECT_THAT(error(), HasSubstr("no cells"));
-    auto flat = make_grid({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {}, {}, {}});
+    auto flat = make_grid({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {}, {}, {}, {}});
     add_cell(flat, VTK_TRIANGLE, {0, 1, 2});
     write(flat);
     EXPECT_THAT(error(), HasSubstr("no volume cells"));

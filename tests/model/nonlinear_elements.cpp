@@ -15,11 +15,10 @@ const material::LinearElastic hooke{1.0, 0.3}; // forces of order one
 
 /// A body of hexahedra and wedges, each in its block.
 Body hybrid_block(Index first_node, const Vec3& origin, const std::array<int, 3>& divisions, bool linear) {
-    Body body{"block",
-              mesh::make_block(origin, {1, 1, 1}, divisions, mesh::CellType::hex8, mesh::BlockPattern::hybrid),
-              first_node,
-              {},
-              0};
+    Body body{
+        "block",    mesh::make_block(origin, {1, 1, 1}, divisions, mesh::CellType::hex8, mesh::BlockPattern::hybrid),
+        first_node, {},
+        {},         {}};
     for (const mesh::ElementBlock& block : body.mesh.blocks)
         body.kernels.push_back(linear ? fe::make_kernel(block.type, HexFormulation::full, hooke)
                                       : fe::make_kernel(block.type, HexFormulation::full, material::NeoHookean(hooke)));
@@ -129,7 +128,7 @@ TEST(NodalStress, IsTheMeanOverTheElementsByTheirVolume) {
     const double low = 1, high = 3;
     Model model;
     Body& body = model.bodies.emplace_back();
-    body = Body{"pile", mesh::make_block(Vec3::Zero(), {1, 1, 2}, {1, 1, 2}), 0, {}, 0};
+    body = Body{"pile", mesh::make_block(Vec3::Zero(), {1, 1, 2}, {1, 1, 2}), 0, {}, {}, {}};
     State state;
     for (Vec3& X : body.mesh.nodes) {
         if (X.z() == 2) X.z() = low + high;

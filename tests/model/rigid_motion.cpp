@@ -12,7 +12,7 @@ using testing::IsEmpty;
 
 /// A brick far from the origin, so that levers about the origin would not be told from translations.
 Body brick() {
-    return {"brick", mesh::make_block({1000, 2000, 3000}, {1, 2, 3}, {1, 1, 1}), 0, {}, 0};
+    return {"brick", mesh::make_block({1000, 2000, 3000}, {1, 2, 3}, {1, 1, 1}), 0, {}, {}, {}};
 }
 
 TEST(RigidHold, ABodyThatNothingHoldsIsFreeInSixWays) {
@@ -54,7 +54,7 @@ TEST(RigidHold, AHeldFaceLeavesNothing) {
 /// Levers are measured by the body: a speck and a mountain are held like a brick.
 TEST(RigidHold, TheSizeOfABodyDoesNotMatter) {
     for (const double size : {1e-8, 1e-3, 1e8}) {
-        const Body body{"block", mesh::make_block(Vec3::Zero(), {size, 2 * size, 3 * size}, {1, 1, 1}), 0, {}, 0};
+        const Body body{"block", mesh::make_block(Vec3::Zero(), {size, 2 * size, 3 * size}, {1, 1, 1}), 0, {}, {}, {}};
         RigidHold face(body, body.mesh.nodes), slider(body, body.mesh.nodes);
         for (const Vec3& X : body.mesh.nodes)
             if (X.z() == 0) {

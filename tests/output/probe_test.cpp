@@ -51,7 +51,7 @@ TEST(PointProbe, IsExactInDistortedElementsOfEveryType) {
         model::Model model;
         const auto pattern = type == mesh::CellType::wedge6 ? mesh::BlockPattern::triangle : mesh::BlockPattern::quad;
         const auto element = type == mesh::CellType::wedge6 ? mesh::CellType::hex8 : type;
-        model::Body body{"block", mesh::make_block({0, 0, 0}, {2, 1, 1}, {3, 2, 2}, element, pattern), 0, {}, 0};
+        model::Body body{"block", mesh::make_block({0, 0, 0}, {2, 1, 1}, {3, 2, 2}, element, pattern), 0, {}, {}, {}};
         ASSERT_EQ(body.mesh.blocks.front().type, type);
         if (type != mesh::CellType::tet10) // whose edges stay straight
             for (Vec3& X : body.mesh.nodes)
@@ -123,7 +123,7 @@ TEST(NodesProbe, ReducesWhatHasAValue) {
 TEST(NodesProbe, TakesTheMeanOverTheAreaByTheShapeFunctions) {
     for (const mesh::CellType type : {mesh::CellType::hex8, mesh::CellType::tet10}) {
         model::Model model;
-        model::Body body{"block", mesh::make_block({0, 0, 0}, {2, 1, 1}, {2, 1, 1}, type), 0, {}, 0};
+        model::Body body{"block", mesh::make_block({0, 0, 0}, {2, 1, 1}, {2, 1, 1}, type), 0, {}, {}, {}};
         for (Vec3& X : body.mesh.nodes) X.x() = X.x() * (1 + X.x()) / 3; // elements of unlike sizes, 0 to 2
         if (type == mesh::CellType::tet10)                               // with straight edges
             for (std::size_t e = 0; e < static_cast<std::size_t>(body.mesh.element_count()); ++e) {

@@ -49,7 +49,7 @@ public:
 
 private:
     void add_body(const std::string& name, mesh::Mesh mesh) {
-        model::Body body{name, std::move(mesh), model.nodes(), {}};
+        model::Body body{name, std::move(mesh), model.nodes(), {}, {}, {}};
         body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, HexFormulation::full, {E, 0}));
         model.X.values().insert(model.X.values().end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
         model.bodies.push_back(std::move(body));

@@ -24,7 +24,9 @@ public:
     using MakeKernel = std::function<std::unique_ptr<fe::ElementKernel>(mesh::CellType)>;
 
     Index add_body(const std::string& name, mesh::Mesh mesh, const MakeKernel& make_kernel, double density = 0) {
-        model::Body body{name, std::move(mesh), model.nodes(), {}, density};
+        model::Body body{name, std::move(mesh), model.nodes(), {}, {}, {}};
+        body.density.assign(body.mesh.blocks.size(), density);
+        body.expansion.assign(body.mesh.blocks.size(), 0);
         for (const mesh::ElementBlock& block : body.mesh.blocks) body.kernels.push_back(make_kernel(block.type));
         std::vector<Vec3>& X = model.X.values();
         X.insert(X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());

@@ -167,7 +167,7 @@ TEST_F(Flight, EveryPartOfAStateIsLookedAt) {
 
 TEST(NotFinite, IsExplainedByBodyNodeAndValue) {
     model::Model model;
-    model.bodies.push_back({"cube", {}, 5, {}, 0});
+    model.bodies.push_back({"cube", {}, 5, {}, {}, {}});
     model.bodies[0].mesh.nodes.resize(8);
     Attempt attempt;
     explain(NotFinite{"velocity", 7, infinite}, model, attempt);

@@ -4,6 +4,7 @@
 #include "app/plan/contact_pairs.hpp"
 #include "app/plan/draft.hpp"
 #include "app/plan/gaps.hpp"
+#include "app/plan/loose_slaves.hpp"
 #include "app/plan/rigid_surface.hpp"
 #include "osculate/mesh/quality.hpp"
 
@@ -18,7 +19,8 @@ namespace {
 std::vector<std::pair<Index, Vec3>> places(Draft& draft, const std::string& name, scene::Pair spec,
                                            const model::Set& slave, const model::Set& master) {
     spec.discretisation = Discretisation::node; // distances of nodes, no averages
-    const auto pair = make_contact_pair(draft.scene, name, spec, draft.plan.model, slave, master, nullptr);
+    const auto pair = make_contact_pair(draft.scene, name, spec, draft.plan.model, slave, master,
+                                        loose_slaves(draft, spec.slave), nullptr);
     model::ContactEvaluation evaluation(*pair);
     (void)initial_gaps(evaluation, draft.plan.model.X, draft.timings, draft.threads);
     std::vector<std::pair<Index, Vec3>> found;

@@ -203,11 +203,12 @@ const contact::ExactShape* shape_of(const model::Model& model, const model::Set&
 
 /// Slave nodes of a slice that have another below them in the set, and this one; of a skin, as their hosts are.
 std::vector<std::pair<Index, Index>> of_slice(const scene::Scene& scene, const model::Model& model,
-                                              const model::Set& slave) {
+                                              const model::Set& slave, const std::map<Index, double>& loose) {
     const std::map<Index, Index> above = nodes_above(scene, model, slave.body);
     if (above.empty()) return {};
     std::map<Index, Index> by_host;
     for (const Index node : mesh::nodes_of(slave.facets)) by_host.emplace(material_node(model, node), node);
+    for (const auto& [node, area] : loose) by_host.emplace(material_node(model, node), node);
     std::vector<std::pair<Index, Index>> pairs;
     for (const auto& [host, node] : by_host)
         if (const auto at = above.find(host); at != above.end())
@@ -228,6 +229,7 @@ double mean_size(const std::vector<mesh::Facet>& facets, const std::vector<Vec3>
 std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& scene, const std::string& name,
                                                             const scene::Pair& spec, const model::Model& model,
                                                             const model::Set& slave, const model::Set& master,
+                                                            const std::map<Index, double>& loose,
                                                             const std::vector<mesh::Facet>* exterior) {
     const std::vector<Vec3>& X = model.X;
     model::ContactOptions options;
@@ -238,8 +240,9 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     options.stick_stiffness = spec.stick_stiffness.value_or(0);
     options.closing_tolerance = spec.closing_tolerance;
     const contact::ExactShape* shape = shape_of(model, master);
+    const double slave_size = slave.facets.empty() ? std::sqrt(loose.begin()->second) : mean_size(slave.facets, X);
     std::shared_ptr<const model::MasterSide> side =
-        shape != nullptr ? make_exact_side(model, master, *shape, mean_size(slave.facets, X), options)
+        shape != nullptr ? make_exact_side(model, master, *shape, slave_size, options)
                          : make_side(scene, spec.master, options.discretisation, model, master, exterior, options);
 
     model::SlaveNodes slaves;
@@ -254,6 +257,7 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
             largest = std::max(largest, size);
         }
     }
+    for (const auto& [node, area] : loose) area_and_size.emplace(node, std::pair(area, std::sqrt(area)));
     // c = E * tributary area / h: the stiffness of a layer of elements, so free of units, of the softer body: it is the one
     // that gives way
     const auto modulus = [&](const model::Set& set) {
@@ -262,7 +266,7 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     };
     const double E = std::min(modulus(slave), modulus(master));
     if (!averages(options.discretisation)) // nodes that move as another are one slave
-        for (const auto& [above, base] : of_slice(scene, model, slave)) {
+        for (const auto& [above, base] : of_slice(scene, model, slave, loose)) {
             const auto at = area_and_size.find(above);
             area_and_size.at(base).first += at->second.first;
             area_and_size.erase(at);

@@ -11,13 +11,14 @@
 namespace osculate::app {
 
 /// @param model          bodies' positions and all sets
-/// @param slave, master  sets with facets
+/// @param slave, master  sets with facets; the slave may have loose nodes alone
+/// @param loose          see loose_slaves()
 /// @param exterior       of the master's body, its own node numbers, where paths are to be followed; null: they are not
 /// Throws std::runtime_error naming the nodes where the master is no oriented manifold.
 [[nodiscard]] std::unique_ptr<const model::ContactPair>
 make_contact_pair(const scene::Scene& scene, const std::string& name, const scene::Pair& spec,
                   const model::Model& model, const model::Set& slave, const model::Set& master,
-                  const std::vector<mesh::Facet>* exterior);
+                  const std::map<Index, double>& loose, const std::vector<mesh::Facet>* exterior);
 
 /// The outer surface of a body but for what lies in symmetry planes, by the scene's name of the body.
 [[nodiscard]] model::Set outer_surface(const scene::Scene& scene, const model::Model& model, Index body,

@@ -4,6 +4,7 @@
 #include "app/plan/contact_pairs.hpp"
 #include "app/plan/draft.hpp"
 #include "app/plan/gaps.hpp"
+#include "app/plan/loose_slaves.hpp"
 #include "app/plan/rigid_surface.hpp"
 #include "osculate/model/general_contact.hpp"
 
@@ -19,8 +20,16 @@ void add_pairs(Draft& draft) {
         const model::Set& master = draft.contact_set(master_set(spec.master));
         const std::string key = "contact." + name;
         bool broken = false;
+        const std::map<Index, double> loose = loose_slaves(draft, spec.slave);
+        if (const auto inside = std::ranges::find(loose, 0.0, [](const auto& one) { return one.second; });
+            inside != loose.end()) {
+            const Vec3 X = draft.plan.model.X[static_cast<std::size_t>(inside->first)] + draft.plan.model.origin;
+            draft.faults.push_back(fault(key + ".slave", "nodes on the outside of their body",
+                                         fmt::format("a node at [{:.6g}, {:.6g}, {:.6g}] m inside", X[0], X[1], X[2])));
+            continue;
+        }
         for (const auto& [part, group] : {std::pair{".slave", &slave}, std::pair{".master.set", &master}})
-            if (group->facets.empty()) {
+            if (group->facets.empty() && (group == &master || loose.empty())) {
                 draft.faults.push_back(fault(key + part, "a set with facets", "a set of nodes that cover no facet"));
                 broken = true;
             }
@@ -28,7 +37,7 @@ void add_pairs(Draft& draft) {
         const ScopedTimer timer(draft.timings, Part::patches);
         try {
             draft.plan.model.pairs.push_back(make_contact_pair(draft.scene, name, spec, draft.plan.model, slave, master,
-                                                               paths ? &draft.exterior[master.body] : nullptr));
+                                                               loose, paths ? &draft.exterior[master.body] : nullptr));
         } catch (const std::runtime_error& error) {
             draft.faults.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
         }

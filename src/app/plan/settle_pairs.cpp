@@ -2,6 +2,7 @@
 
 #include "app/fault.hpp"
 #include "app/plan/body_materials.hpp"
+#include "app/plan/loose_slaves.hpp"
 #include "app/plan/smooth_parts.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
@@ -111,6 +112,15 @@ void settle_pairs(Draft& draft) {
         if (slice && !gives && pair.discretisation && *pair.discretisation != Discretisation::node)
             draft.faults.push_back(fault("contact." + name + ".discretisation",
                                          "node, where the slave is a slice and contact is exact", "another"));
+        const bool loose = !loose_slaves(draft, pair.slave).empty();
+        if (loose && pair.discretisation && *pair.discretisation != Discretisation::node)
+            draft.faults.push_back(fault("contact." + name + ".discretisation",
+                                         "node, where nodes of the slave cover no facet to take averages over",
+                                         "another"));
+        if (!pair.discretisation && loose) {
+            pair.discretisation = Discretisation::node;
+            choice.discretisation = "node: nodes of the slave cover no facet";
+        }
         if (!pair.discretisation && slice && !gives) {
             pair.discretisation = Discretisation::node;
             choice.discretisation = "node: the slave is a slice, whose nodes above one another are one";

@@ -39,7 +39,9 @@ public:
         for (std::size_t p = 0; p < pairs.size(); ++p) {
             kept.slave_force.emplace_back();
             for (Index j = 0; j < pairs[p]->size(); ++j)
-                kept.slave_force[p][pairs[p]->slaves().node[j]] = step.state.contact[p].lambda[j];
+                // a node of a skin by that of the mesh which it goes with
+                kept.slave_force[p][model::material_node(trace_.plan.model, pairs[p]->slaves().node[j])] =
+                    step.state.contact[p].lambda[j];
         }
         trace_.steps.push_back(std::move(kept));
         if (static_cast<int>(trace_.steps.size()) == most_steps_) throw Enough{};

@@ -1,7 +1,6 @@
-#!/usr/bin/env python3
 """Puts the scenes of one page of invariance into another, in place of the rows that it has of them.
 
-    scripts/pages/merge_invariance.py PAGE PART
+    python3 scripts/pages/merge_invariance.py PAGE PART
 """
 import re
 import sys

@@ -42,7 +42,7 @@ public:
              "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]",
              "product <= " + number_text(key.largest_product));
     }
-    void integers(const Key& key, std::vector<int>& /*value*/) override { list(key, "list of whole numbers", "none"); }
+    void integers(const Key& key, std::vector<int>& /*value*/) override { list(key, "whole numbers", "none"); }
     void flag(const Key& key, bool& value) override { list(key, "true or false", value ? "true" : "false"); }
     void text(const Key& key, std::string& value) override {
         list(key,

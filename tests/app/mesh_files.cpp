@@ -45,7 +45,7 @@ TEST_F(MeshFilesOfScenes, BodiesArePartsOfOneFileMendedAsAsked) {
         scene_with("  left:\n    mesh: {file: {path: cubes.inp, part: left, repair: [dangling_nodes]}}\n"
                    "    material: {linear_elastic: {E: 1 MPa, nu: 0.2}}\n"
                    "  right:\n    mesh: {file: {path: cubes.inp, piece: 2, repair: [inverted, "
-                   "degenerate, duplicate, dangling_nodes, coincident_nodes, non_manifold]}}\n"
+                   "degenerate, duplicate, dangling_nodes, coincident_nodes, non_manifold, keep_non_manifold]}}\n"
                    "    material: {linear_elastic: {E: 1 MPa, nu: 0.2}}\n");
     std::vector<std::string> notes;
     const auto meshes = build_meshes(scene, &notes);

@@ -140,6 +140,30 @@ stages:
     EXPECT_LT((tip(*tied) - tip(*glued)).norm(), 1e-9 * tip(*glued).norm());
 }
 
+TEST(BodyOfSections, WithAxesOfItsOwnIsAsTheIsotropicOneOfItsConstants) {
+    const std::vector<scene::Override> load{{"gravity", "[1 mm/s^2, 2 mm/s^2, -10 mm/s^2]"},
+                                            {"stages.pull", "{temperature: {bar: 0.01 K}}"}};
+    const auto with = [&](const std::string& material) {
+        std::vector<scene::Override> all = load;
+        all.push_back({"bodies.bar.sections.hard.material", material});
+        return run(bar, all);
+    };
+    const auto isotropic = with("{linear_elastic: {E: 4 MPa, nu: 0.25, density: 700 kg/m^3, expansion: 1e-5 1/K}}");
+    const auto axes =
+        with("{orthotropic: {E: [4 MPa, 4 MPa, 4 MPa], nu: [0.25, 0.25, 0.25], G: [1.6 MPa, 1.6 MPa, 1.6 MPa], "
+             "axes: [[1, 2, 3], [0, 1, -1]], density: 700 kg/m^3, expansion: 1e-5 1/K}}");
+    // Hooke's law at finite strain differs by the strains, which are below 1e-4
+    const auto finite =
+        with("{saint_venant_kirchhoff: {E: 4 MPa, nu: 0.25, density: 700 kg/m^3, expansion: 1e-5 1/K}}");
+    double largest = 0;
+    for (const Vec3& u : isotropic->steps.back().state.u) largest = std::max(largest, u.norm());
+    for (std::size_t i = 0; i < isotropic->plan.model.X.size(); ++i) {
+        const Vec3& u = isotropic->steps.back().state.u[i];
+        EXPECT_LT((axes->steps.back().state.u[i] - u).norm(), 1e-9 * largest);
+        EXPECT_LT((finite->steps.back().state.u[i] - u).norm(), 1e-2 * largest);
+    }
+}
+
 TEST(BodyOfSections, GivesAnElementToTheLastThatHasIt) {
     const auto found =
         run(bar, {{"bodies.bar.sections.harder", "{box: {min: [3 m, -1 m, -1 m], max: [5 m, 2 m, 2 m]}, "
@@ -170,6 +194,12 @@ TEST(BodyOfSections, IsRefusedWithoutElementsOrAsAPartThatIsNotThere) {
     EXPECT_NE(said({{"bodies.bar.sections",
                      "{hard: {elements: HARD, material: {linear_elastic: {E: 4 MPa, nu: 0, density: 1 kg/m^3}}}}"}})
                   .find("bodies.bar.sections.hard"),
+              std::string::npos);
+}
+
+TEST(SetsByNumbers, NeedAMeshFromAFile) {
+    EXPECT_NE(said({{"sets.some", "{body: bar, node_numbers: [1, 2]}"}})
+                  .find("sets.some.node_numbers: expected a body whose mesh is from a file"),
               std::string::npos);
 }
 

@@ -218,7 +218,9 @@ void RpimPatch::weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<Matrix
 
 MatrixX3 RpimPatch::second_derivatives(const Vec2& u) const {
     MatrixX3 phi_ab = MatrixX3::Zero(size(), 3);
-    for_each_basis(u, [&](Index k, const BasisRow& row) { phi_ab += H_.row(k).transpose() * row.second.transpose(); });
+    for_each_basis(u, [&](Index k, const BasisRow& row) {
+        for (Index c = 0; c < 3; ++c) phi_ab.col(c) += row.second(c) * H_.row(k).transpose();
+    });
     return phi_ab;
 }
 

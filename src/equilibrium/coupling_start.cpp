@@ -51,7 +51,9 @@ void add_equations(const model::Model& model, linear::Dependence& dependence) {
             for (const auto& [other, by] : led[end].by) {
                 const auto at = std::ranges::find(carriers, other, &linear::Dependence::Carrier::node);
                 linear::Dependence::Carrier& carrier =
-                    at != carriers.end() ? *at : carriers.emplace_back(other, Mat3::Zero(), Mat3::Zero());
+                    at != carriers.end()
+                        ? *at
+                        : carriers.emplace_back(linear::Dependence::Carrier{other, Mat3::Zero(), Mat3::Zero()});
                 carrier.moves += d * by.transpose();
                 carrier.loads += by * d.transpose();
             }
@@ -69,7 +71,8 @@ void add_ties(const model::Model& model, linear::Dependence& dependence) {
     const auto add_one = [](Carriers& carriers, Index node, const Mat3& share) {
         const auto at = std::ranges::find(carriers, node, &linear::Dependence::Carrier::node);
         linear::Dependence::Carrier& carrier =
-            at != carriers.end() ? *at : carriers.emplace_back(node, Mat3::Zero(), Mat3::Zero());
+            at != carriers.end() ? *at
+                                 : carriers.emplace_back(linear::Dependence::Carrier{node, Mat3::Zero(), Mat3::Zero()});
         carrier.moves += share;
         carrier.loads += share.transpose();
     };

@@ -97,7 +97,7 @@ std::vector<SkinWeights> skin_weights(const mesh::Mesh& mesh, const std::vector<
             for (const auto& [block, element] : elements[node])
                 add_turned(mesh.blocks[static_cast<std::size_t>(block)], element, first_node, X, d,
                            1 / static_cast<double>(elements[node].size()), point);
-        SkinWeights& one = skin.emplace_back(node);
+        SkinWeights& one = skin.emplace_back(SkinWeights{node, {}});
         for (const auto& [carrier, weight] : point)
             if (carrier == node || std::abs(weight) > round_off) one.carriers.emplace_back(carrier, weight);
     }

@@ -201,7 +201,9 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
     };
 
     std::vector<ContactHistory> histories;
-    for (auto& [sides, part] : found) {
+    for (auto& entry : found) {
+        const std::pair<Index, Index>& sides = entry.first;
+        Found& part = entry.second;
         std::vector<mesh::Facet> facets;
         for (const Index f : part.facets) {
             facets.push_back(facets_[f]);

@@ -113,7 +113,9 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         const bool first = E != E_other ? E < E_other : one.surface < other.surface; // the softer is the slave
         add(first ? one : other, first ? other : one);
     }
-    for (auto& [sides, edges] : found) {
+    for (auto& entry : found) {
+        const std::pair<Index, Index>& sides = entry.first;
+        auto& edges = entry.second;
         std::ranges::sort(edges);
         ContactHistory& history = histories.emplace_back(opened(make_edges(scope, sides.first, sides.second, edges)));
         const auto old = std::ranges::find_if(before, [&](const ContactHistory& one) {

@@ -62,7 +62,8 @@ std::vector<BodyResultants> body_resultants(const Snapshot& snapshot) {
     std::vector<BodyResultants> sums(surfaces.size());
     for (std::size_t p = model.pairs.size(); p < snapshot.state().contact.size(); ++p) {
         const model::ContactEvaluation& evaluation = snapshot.evaluation(static_cast<Index>(p));
-        const auto [slave, master] = model.general->sides_of(evaluation.pair());
+        const std::pair<Index, Index> sides = model.general->sides_of(evaluation.pair());
+        const Index slave = sides.first, master = sides.second; // a lambda takes no parts of a pair
         const std::vector<Vec3>& lambda = snapshot.state().contact[p].lambda;
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
             evaluation.for_each_force(j, lambda[static_cast<std::size_t>(j)], [&](Index node, const Vec3& force) {

@@ -162,7 +162,8 @@ void DualWeights::add_variations(Index j, const Vector& weights, Row&& row, OfSl
                                  Matrix& dweights) const {
     const double by = share(j);
     const Index carriers = dweights.rows();
-    for (const auto& [f, corner] : incident_[static_cast<std::size_t>(j)]) {
+    for (const auto& [f, k] : incident_[static_cast<std::size_t>(j)]) {
+        const Index corner = k; // a lambda takes no parts of a pair
         const Facet& facet = facets_[static_cast<std::size_t>(f)];
         if (!facet.dual.usable) continue;
         const auto count = static_cast<Index>(facet.vertices.size());

@@ -304,13 +304,17 @@ void add_sets(Draft& draft) {
         const Vec3& o = draft.plan.model.origin;
         const mesh::Region region = std::visit(
             Overloaded{
-                [&](const scene::SelectNamed& s) { return select(draft, name, spec.body, s, m, exterior); },
+                [&, &name = name, &spec = spec](const scene::SelectNamed& s) {
+                    return select(draft, name, spec.body, s, m, exterior);
+                },
                 [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point - o, s.normal); },
                 [&](const scene::SelectCylinder& s) {
                     return mesh::select_cylinder(m, exterior, s.point - o, s.axis, s.radius);
                 },
                 [&](const scene::SelectBox& s) { return mesh::select_box(m, exterior, s.min - o, s.max - o); },
-                [&](const scene::SelectNumbers& s) { return select(draft, name, spec.body, s, m, exterior); },
+                [&, &name = name, &spec = spec](const scene::SelectNumbers& s) {
+                    return select(draft, name, spec.body, s, m, exterior);
+                },
                 [&](const scene::SelectNormal& s) { return mesh::select_normal(m, exterior, s.direction, s.angle); },
             },
             spec.select);

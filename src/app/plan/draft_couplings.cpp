@@ -113,7 +113,7 @@ void add_couplings(Draft& draft) {
         }
     };
     for (const auto& [set, support] : draft.scene.supports)
-        refuse(set, "supports." + set, [&](Index node, const std::string& name) -> std::string {
+        refuse(set, "supports." + set, [&, &support = support](Index node, const std::string& name) -> std::string {
             const model::RigidBody& coupling = draft.rigid(name);
             const Vec3 arm = m.X[static_cast<std::size_t>(node)] - coupling.centre;
             std::array<bool, 6> missing{};

@@ -239,8 +239,8 @@ void add_cyclic_symmetry(Draft& draft) {
         RingMaker maker(draft, name, spec);
         if (!maker.make()) continue;
         model::CyclicSymmetry ring = maker.take();
-        const auto refuse = [&](const std::string& key, const std::string& expected, Index node,
-                                const std::string& what) {
+        const auto refuse = [&, &name = name](const std::string& key, const std::string& expected, Index node,
+                                              const std::string& what) {
             const Vec3 X = m.X[static_cast<std::size_t>(node)] + m.origin;
             draft.faults.push_back(
                 fault("cyclic." + name + key, expected,

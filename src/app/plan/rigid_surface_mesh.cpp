@@ -176,7 +176,8 @@ mesh::Mesh shell(const contact::ExtrudedShape& s, const Eigen::AlignedBox3d& nea
         stations.pop_back();
     }
     const double thickness = std::min(0.05 * size, 0.4 * shortest);
-    const auto [low, high] = extent(near, s.origin, s.along);
+    const auto reach = extent(near, s.origin, s.along);
+    const double low = reach.first, high = reach.second; // a lambda takes no parts of a pair
     const double more = beyond * (high - low);
     constexpr int cells = 4;
     const auto columns = static_cast<int>(stations.size()) - (s.closed ? 0 : 1);

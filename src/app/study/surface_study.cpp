@@ -1,5 +1,6 @@
 #include "osculate/app/surface_study.hpp"
 
+#include "app/overloaded.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/study/study_meshes.hpp"
 
@@ -11,8 +12,6 @@
 namespace osculate::app {
 
 namespace {
-
-template <class... Ts> struct Overloaded : Ts... { using Ts::operator()...; };
 
 study::ExactSurface exact_surface(const scene::StudySurface& surface) {
     return std::visit(Overloaded{

@@ -190,10 +190,27 @@ private:
         model_.transforms.push_back(axes);
     }
 
+    /// Abaqus' SMOOTH STEP: between rows A_i + (A_i+1 - A_i) s^3 (10 - 15 s + 6 s^2), without slope and curvature at the rows.
+    static Amplitude smooth_steps(const Amplitude& rows) {
+        constexpr int pieces = 64; // 5.8 / 8 / 64^2 of the step between a chord and its arc
+        Amplitude all{rows.front()};
+        for (std::size_t k = 1; k < rows.size(); ++k)
+            for (int i = 1; i <= pieces; ++i) {
+                const double s = static_cast<double>(i) / pieces, rise = s * s * s * (10 + s * (6 * s - 15));
+                const auto between = [&](std::size_t column, double part) {
+                    return rows[k - 1][column] + part * (rows[k][column] - rows[k - 1][column]);
+                };
+                all.push_back({between(0, s), between(1, rise)});
+            }
+        return all;
+    }
+
     void amplitude(const DeckCard& card) {
         const std::string name = capitals_of(card, "NAME");
-        if (const std::string type = capitals_of(card, "DEFINITION"); !type.empty() && type != "TABULAR")
-            return note(card, "only TABULAR amplitudes have a counterpart");
+        const std::string type = capitals_of(card, "DEFINITION");
+        const bool smooth = type == "SMOOTH STEP" || type == "SMOOTHSTEP";
+        if (!type.empty() && type != "TABULAR" && !smooth)
+            return note(card, "only TABULAR amplitudes and SMOOTH STEP have a counterpart");
         if (capitals_of(card, "TIME") == "TOTAL TIME" || card.parameter("USER") != nullptr ||
             card.parameter("SHIFTX") != nullptr || card.parameter("SHIFTY") != nullptr)
             return note(card, "only amplitudes over the time of a step have a counterpart");
@@ -205,7 +222,8 @@ private:
         for (std::size_t k = 1; k < rows.size(); ++k)
             if (!(rows[k][0] > rows[k - 1][0])) return note(card, "its times do not ascend");
         if (rows.empty()) return note(card, "it has no rows");
-        model_.amplitudes[name] = std::move(rows);
+        if (smooth) note(card, "64 straight pieces between two rows are off by up to 2e-4 of the step");
+        model_.amplitudes[name] = smooth ? smooth_steps(rows) : std::move(rows);
     }
 
     bool amplitude_of(const DeckCard& card, std::string& name) {

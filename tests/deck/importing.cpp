@@ -429,6 +429,17 @@ TEST_F(Importing, PairsAreNamedWithAndWithoutBlanks) {
     EXPECT_THAT(import(pressed, DeckUnits::mm, model).lost, ElementsAre(HasSubstr("TYPE=SURFACETONODE is not known")));
 }
 
+TEST_F(Importing, SmoothStepsRiseAsTheirPolynomial) {
+    const std::string model = mesh_of_cubes + properties + "*AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP\n0,0,.5,2,1,1\n";
+    const ImportedScene imported =
+        import("*STEP\n*STATIC, DIRECT\n.125,1.\n*DSLOAD, AMPLITUDE=A\nTop,P,1.\n*END STEP\n", DeckUnits::mm, model);
+    EXPECT_THAT(imported.lost, IsEmpty());
+    const auto at = scene::find(checked(imported).stages.at(0).second.pressure, "Top")->function();
+    for (const auto& [t, factor] :
+         {std::pair{0.0, 0.0}, {0.125, 0.207}, {0.25, 1.0}, {0.5, 2.0}, {0.75, 1.5}, {1.0, 1.0}})
+        EXPECT_NEAR(at(t), factor * 1e6, 1e6 * 4e-4) << t;
+}
+
 /// Two cubes above one another; the upper stands on node 27, at the place of node 7, in place of it.
 std::string column(const std::string& node) {
     return "*NODE, NSET=All\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"

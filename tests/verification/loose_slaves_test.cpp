@@ -55,6 +55,9 @@ TEST(LooseSlaves, CarryWhatSupportsAtTheirNodesWould) {
     ASSERT_EQ(pressed->contact[0].pair().size(), 3);
     EXPECT_EQ(pressed->contact[0].pair().options().discretisation, Discretisation::node);
     EXPECT_NEAR(pressed->steps.back().pairs[0].on_slave.z(), 4e3, 1e-6);
+    // of elements of 0.5 m: a corner, and two nodes on edges, of which the sides do not count
+    EXPECT_NEAR(pressed->contact[0].pair().slaves().area[0], 0.25 * 0.25, 1e-12);
+    EXPECT_NEAR(pressed->contact[0].pair().slaves().area[1], 0.5 * 0.25, 1e-12);
     const auto& u = pressed->steps.back().state.u;
     double largest = 0;
     for (const Vec3& v : held->steps.back().state.u) largest = std::max(largest, v.norm());

@@ -18,7 +18,7 @@ struct Multiquadric {
     [[nodiscard]] RadialValue operator()(double rho) const {
         const double base = rho + R * R;
         if (base <= 0) return {}; // R = 0 at its own centre: f and rho * ddf vanish there for q > 1
-        if (q == 2.5) {           // r^5, the default: a root takes a fifth of the time of a power
+        if (q == 2.5) {           // r^5, the default: a root costs less than a power
             const double root = std::sqrt(base);
             return {base * base * root, 2.5 * base * root, 3.75 * root, 1.875 / root};
         }

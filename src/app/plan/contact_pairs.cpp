@@ -203,7 +203,7 @@ const contact::ExactShape* shape_of(const model::Model& model, const model::Set&
 
 /// Slave nodes of a slice that have another below them in the set, and this one; of a skin, as their hosts are.
 std::vector<std::pair<Index, Index>> of_slice(const scene::Scene& scene, const model::Model& model,
-                                              const model::Set& slave, const std::map<Index, double>& loose) {
+                                              const model::Set& slave, const std::map<Index, Vec3>& loose) {
     const std::map<Index, Index> above = nodes_above(scene, model, slave.body);
     if (above.empty()) return {};
     std::map<Index, Index> by_host;
@@ -229,7 +229,7 @@ double mean_size(const std::vector<mesh::Facet>& facets, const std::vector<Vec3>
 std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& scene, const std::string& name,
                                                             const scene::Pair& spec, const model::Model& model,
                                                             const model::Set& slave, const model::Set& master,
-                                                            const std::map<Index, double>& loose,
+                                                            const std::map<Index, Vec3>& loose,
                                                             const std::vector<mesh::Facet>* exterior) {
     const std::vector<Vec3>& X = model.X;
     model::ContactOptions options;
@@ -240,7 +240,8 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     options.stick_stiffness = spec.stick_stiffness.value_or(0);
     options.closing_tolerance = spec.closing_tolerance;
     const contact::ExactShape* shape = shape_of(model, master);
-    const double slave_size = slave.facets.empty() ? std::sqrt(loose.begin()->second) : mean_size(slave.facets, X);
+    const double slave_size =
+        slave.facets.empty() ? std::sqrt(loose.begin()->second.norm()) : mean_size(slave.facets, X);
     std::shared_ptr<const model::MasterSide> side =
         shape != nullptr ? make_exact_side(model, master, *shape, slave_size, options)
                          : make_side(scene, spec.master, options.discretisation, model, master, exterior, options);
@@ -257,7 +258,14 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
             largest = std::max(largest, size);
         }
     }
-    for (const auto& [node, area] : loose) area_and_size.emplace(node, std::pair(area, std::sqrt(area)));
+    // of a corner the part that faces the master, as long as the master faces somewhere
+    Vec3 facing = Vec3::Zero();
+    for (const mesh::Facet& facet : master.facets) facing += mesh::facet_area_vector(facet, X);
+    for (const auto& [node, vector] : loose) {
+        const double towards = facing.isZero(0) ? 0 : std::abs(vector.dot(facing.normalized())), whole = vector.norm();
+        const double area = towards > 1e-6 * whole ? towards : whole;
+        area_and_size.emplace(node, std::pair(area, std::sqrt(area)));
+    }
     // c = E * tributary area / h: the stiffness of a layer of elements, so free of units, of the softer body: it is the one
     // that gives way
     const auto modulus = [&](const model::Set& set) {

@@ -18,7 +18,7 @@ namespace osculate::app {
 [[nodiscard]] std::unique_ptr<const model::ContactPair>
 make_contact_pair(const scene::Scene& scene, const std::string& name, const scene::Pair& spec,
                   const model::Model& model, const model::Set& slave, const model::Set& master,
-                  const std::map<Index, double>& loose, const std::vector<mesh::Facet>* exterior);
+                  const std::map<Index, Vec3>& loose, const std::vector<mesh::Facet>* exterior);
 
 /// The outer surface of a body but for what lies in symmetry planes, by the scene's name of the body.
 [[nodiscard]] model::Set outer_surface(const scene::Scene& scene, const model::Model& model, Index body,

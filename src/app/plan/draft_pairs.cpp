@@ -20,8 +20,8 @@ void add_pairs(Draft& draft) {
         const model::Set& master = draft.contact_set(master_set(spec.master));
         const std::string key = "contact." + name;
         bool broken = false;
-        const std::map<Index, double> loose = loose_slaves(draft, spec.slave);
-        if (const auto inside = std::ranges::find(loose, 0.0, [](const auto& one) { return one.second; });
+        const std::map<Index, Vec3> loose = loose_slaves(draft, spec.slave);
+        if (const auto inside = std::ranges::find_if(loose, [](const auto& one) { return one.second.isZero(0); });
             inside != loose.end()) {
             const Vec3 X = draft.plan.model.X[static_cast<std::size_t>(inside->first)] + draft.plan.model.origin;
             draft.faults.push_back(fault(key + ".slave", "nodes on the outside of their body",

@@ -11,7 +11,7 @@ bool chosen_by_nodes(const scene::SetSpec& set) {
 }
 } // namespace
 
-std::map<Index, double> loose_slaves(const Draft& draft, const std::string& name) {
+std::map<Index, Vec3> loose_slaves(const Draft& draft, const std::string& name) {
     const scene::SetSpec* const spec = scene::find(draft.scene.sets, name);
     if (spec == nullptr || !chosen_by_nodes(*spec)) return {};
     const model::Set& set = draft.set(name);
@@ -30,9 +30,7 @@ std::map<Index, double> loose_slaves(const Draft& draft, const std::string& name
             if (const auto at = area.find(facet.nodes[static_cast<std::size_t>(c)]); at != area.end())
                 at->second += share[static_cast<std::size_t>(c)] * normal;
     }
-    std::map<Index, double> sizes;
-    for (const auto& [node, vector] : area) sizes.emplace(node, vector.norm());
-    return sizes;
+    return area;
 }
 
 } // namespace osculate::app

@@ -4,7 +4,7 @@ namespace osculate::contact {
 
 Status Coulomb::status(const ContactState& state) const {
     const Vec3& n = state.normal;
-    const double L_N = (1 - yield_) * state.lambda.dot(n) - c_ * state.gap;
+    const double L_N = (1 - yield_) * state.lambda.dot(n) - c_ * (state.gap + from_);
     if (!(L_N > 0)) return Status::open;
     if (mu_ == 0) return Status::glide;
     const Vec3 v = trial(state);
@@ -15,7 +15,7 @@ Status Coulomb::status(const ContactState& state) const {
 ContactResidual Coulomb::residual(const ContactState& state, Status status) const {
     const Vec3& n = state.normal;
     const Vec3& lambda = state.lambda;
-    const double c = c_, L = lambda.dot(n), q = yield_ * L + c * state.gap;
+    const double c = c_, L = lambda.dot(n), q = yield_ * L + c * (state.gap + from_);
     ContactResidual R;
     if (status == Status::open) {
         R.value = lambda;
@@ -27,7 +27,7 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
     const auto by_normal_of_Tv = [&](const Vec3& v) -> Mat3 {
         return -n.dot(v) * Mat3::Identity() - n * v.transpose();
     };
-    // lambda - L_N n = T lambda + q n,  q = yield L + c g
+    // lambda - L_N n = T lambda + q n,  q = yield L + c (g + from)
     R.value = T * lambda + q * n;
     R.by_lambda = T + yield_ * n * n.transpose();
     R.by_gap = c * n;

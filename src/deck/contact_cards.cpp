@@ -15,6 +15,8 @@ bool ContactCards::take(const DeckCard& card, const std::string& word, DeckStep*
         friction(card);
     } else if (word == "SURFACEBEHAVIOR") {
         surface_behavior(card);
+    } else if (word == "CONTACTDAMPING") {
+        damping(card);
     } else if (word == "CONTACTPAIR") {
         pair(card);
     } else if (word == "TIE" && says("CYCLICSYMMETRY")) {
@@ -25,6 +27,8 @@ bool ContactCards::take(const DeckCard& card, const std::string& word, DeckStep*
         ring_model(card);
     } else if (word == "CHANGEFRICTION" && step_ != nullptr) {
         changed_ = capitals_of(card, "INTERACTION");
+    } else if (word == "CHANGESURFACEBEHAVIOR" && step_ != nullptr) {
+        changed_law_ = capitals_of(card, "INTERACTION");
     } else if (word == "MODELCHANGE" && step_ != nullptr &&
                without_blanks(capitals_of(card, "TYPE")) == "CONTACTPAIR") {
         model_change(card);
@@ -167,18 +171,73 @@ void ContactCards::tie(const DeckCard& card) {
 
 void ContactCards::surface_behavior(const DeckCard& card) {
     const std::string law = without_blanks(capitals_of(card, "PRESSURE-OVERCLOSURE"));
+    if (step_ != nullptr) {
+        const auto changed = model_.interactions.find(changed_law_);
+        if (changed == model_.interactions.end())
+            return lose(card, changed_law_.empty() ? "no *CHANGE SURFACE BEHAVIOR stands before it"
+                                                   : "no *SURFACE INTERACTION is called " + changed_law_);
+        if (law == "TIED" || changed->second.tied) return lose(card, "ties last for the whole run");
+        if (auto of = overclosure_of(card, law)) {
+            if (of->gives_way() != changed->second.overclosure.gives_way())
+                return lose(card, "a pair is exact for the whole run, or it gives way");
+            step_->overclosure[changed_law_] = std::move(*of);
+        }
+        return;
+    }
     if (law == "TIED" && model_.interactions.contains(interaction_)) {
         model_.interactions[interaction_].tied = true;
         return note(card, "the surfaces are tied exactly");
     }
     if (law == "TIED" || card.parameter("NOSEPARATION") != nullptr) return lose(card, "surfaces part and slide");
-    if (law == "LINEAR" && card.first != card.last && model_.interactions.contains(interaction_)) {
-        const std::vector<double> v = numbers(*deck_.begin(card), 1);
-        if (!(v[0] > 0)) return lose(card, "a slope that is not positive");
-        model_.interactions[interaction_].stiffness = v[0];
-        return;
+    if (!model_.interactions.contains(interaction_)) return lose(card, "no *SURFACE INTERACTION stands before it");
+    if (auto of = overclosure_of(card, law)) model_.interactions[interaction_].overclosure = std::move(*of);
+}
+
+void ContactCards::damping(const DeckCard& card) {
+    if (step_ != nullptr || card.first == card.last || !model_.interactions.contains(interaction_))
+        return lose(card, "a coefficient is expected, after *SURFACE INTERACTION and before the steps");
+    const std::vector<double> v = numbers(*deck_.begin(card), 1);
+    double fraction = 0;
+    if (const std::string* given = this->given(card, "TANGENTFRACTION");
+        given != nullptr && (!to_number(*given, fraction) || fraction != 0))
+        lose(card, "TANGENT FRACTION has no counterpart: damping acts along the normal");
+    if (card.parameter("DEFINITION") != nullptr &&
+        without_blanks(capitals_of(card, "DEFINITION")) != "DAMPINGCOEFFICIENT")
+        return lose(card, "only a damping coefficient has a counterpart");
+    if (v[0] < 0) return lose(card, "a negative coefficient");
+    model_.interactions[interaction_].damping = v[0];
+}
+
+std::optional<DeckOverclosure> ContactCards::overclosure_of(const DeckCard& card, const std::string& law) {
+    const auto refuse = [&](const char* why) {
+        lose(card, why);
+        return std::nullopt;
+    };
+    if (law == "HARD") return DeckOverclosure{};
+    if (law != "LINEAR" && law != "EXPONENTIAL" && law != "TABULAR") {
+        note(card, "contact is exact: no penetration, no law of overclosure");
+        return DeckOverclosure{};
     }
-    if (law != "HARD") note(card, "contact is exact: no penetration, no law of overclosure");
+    if (card.first == card.last) return refuse("no numbers");
+    DeckOverclosure of;
+    if (law == "TABULAR") {
+        of.form = DeckOverclosure::Form::tabular;
+        for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
+            const std::vector<double> v = numbers(*line, 2); // pressure, overclosure
+            if (!of.rows.empty() && !(v[1] > of.rows.back()[0] && v[0] > of.rows.back()[1]))
+                return refuse("overclosures and pressures that grow from row to row are expected");
+            of.rows.push_back({v[1], v[0]});
+        }
+        if (of.rows.size() < 2 || of.rows.front()[1] != 0)
+            return refuse("two rows or more, the first without pressure, are expected");
+        return of;
+    }
+    const std::vector<double> v = numbers(*deck_.begin(card), 2);
+    if (!(v[0] > 0)) return refuse("a number that is not positive");
+    of.form = law == "LINEAR" ? DeckOverclosure::Form::linear : DeckOverclosure::Form::exponential;
+    of.rows = {{v[0], v[1]}};
+    if (law == "EXPONENTIAL" && !(v[1] > 0)) return refuse("a pressure at no gap that is not positive");
+    return of;
 }
 
 } // namespace osculate::deck

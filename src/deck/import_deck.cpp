@@ -160,6 +160,9 @@ private:
             for (const auto& [name, friction] : step.friction)
                 if (!slides([&, &name = name](const DeckPair& pair) { return pair.interaction == name; }))
                     model_.lose(step.place, "*CHANGE FRICTION of " + name, "no pair that slides has it");
+            for (const auto& [name, law] : step.overclosure)
+                if (!slides([&, &name = name](const DeckPair& pair) { return pair.interaction == name; }))
+                    model_.lose(step.place, "*CHANGE SURFACE BEHAVIOR of " + name, "no pair that slides has it");
             for (const auto& [slave, master, in_force] : step.pairs)
                 if (!slides([&, &slave = slave, &master = master](const DeckPair& pair) {
                         return pair.slave == slave && pair.master == master;
@@ -174,6 +177,8 @@ private:
             const DeckStep& step = model_.steps[s];
             if (const auto at = step.friction.find(pair.interaction); at != step.friction.end())
                 stages_[s].friction[name] = number(at->second);
+            if (const auto at = step.overclosure.find(pair.interaction); at != step.overclosure.end())
+                stages_[s].overclosure[name] = overclosure(at->second);
             for (const auto& [slave, master, in_force] : step.pairs)
                 if (slave == pair.slave && master == pair.master) stages_[s].pairs[name] = in_force ? "true" : "false";
         }
@@ -256,24 +261,44 @@ private:
         }
         const DeckInteraction& law = at->second;
         const double per_length = units_.stress / units_.length;
-        const bool gives_way = std::ranges::none_of(model_.steps, &DeckStep::dynamic);
+        const bool statics = std::ranges::none_of(model_.steps, &DeckStep::dynamic);
         std::string text;
         if (law.friction > 0) text += "    friction: " + number(law.friction) + "\n";
         const bool rubs_later = std::ranges::any_of(model_.steps, [&](const DeckStep& step) {
             const auto later = step.friction.find(pair.interaction);
             return later != step.friction.end() && later->second > 0;
         });
-        if (!(law.friction > 0) && rubs_later && law.stick > 0 && gives_way)
+        if (!(law.friction > 0) && rubs_later && law.stick > 0 && statics)
             model_.note(pair.place, "stick slope of " + pair.slave + " and " + pair.master,
                         "stick is exact where friction begins in a later step");
-        if (law.friction > 0 && law.stick > 0 && gives_way)
+        if (law.friction > 0 && law.stick > 0 && statics)
             text += "    stick_stiffness: " + number(per_length * law.stick) + "\n";
-        if (law.stiffness > 0 && gives_way)
-            text += "    pressure_overclosure: {linear: {stiffness: " + number(per_length * law.stiffness) + "}}\n";
-        if ((law.stiffness > 0 || law.stick > 0) && !gives_way)
-            model_.note(pair.place, "overclosure and stick slope of " + pair.slave + " and " + pair.master,
-                        "contact and stick are exact where a step is dynamic");
+        if (law.overclosure.gives_way()) text += "    pressure_overclosure: " + overclosure(law.overclosure) + "\n";
+        if (law.stick > 0 && !statics)
+            model_.note(pair.place, "stick slope of " + pair.slave + " and " + pair.master,
+                        "stick is exact where a step is dynamic");
+        if (law.damping > 0 && !law.overclosure.gives_way())
+            model_.lose(pair.place, "damping of " + pair.slave + " and " + pair.master,
+                        "only pairs that give way have it");
+        else if (law.damping > 0 && !statics)
+            text += "    damping: " + number(units_.stress / units_.length * law.damping) + "\n";
         return text;
+    }
+
+    std::string overclosure(const DeckOverclosure& law) const {
+        switch (law.form) {
+        case DeckOverclosure::Form::exact: return "exact";
+        case DeckOverclosure::Form::linear:
+            return "{linear: {stiffness: " + number(units_.stress / units_.length * law.rows.front()[0]) + "}}";
+        case DeckOverclosure::Form::exponential:
+            return "{exponential: {clearance: " + number(units_.length * law.rows.front()[0]) +
+                   ", pressure: " + number(units_.stress * law.rows.front()[1]) + "}}";
+        case DeckOverclosure::Form::tabular: break;
+        }
+        std::string rows;
+        for (const auto& [h, p] : law.rows)
+            rows += (rows.empty() ? "[" : ", [") + number(units_.length * h) + ", " + number(units_.stress * p) + "]";
+        return "{tabular: {table: [" + rows + "]}}";
     }
 
     /// Facets of a surface, or those that a set of nodes has all the nodes of.
@@ -349,6 +374,7 @@ private:
         for (auto& [set, components] : stages_[s].release) components = "[" + components + "]";
         map("release", stages_[s].release, false);
         map("friction", stages_[s].friction, false);
+        map("pressure_overclosure", stages_[s].overclosure, false);
         map("pairs", stages_[s].pairs, false);
         return text;
     }

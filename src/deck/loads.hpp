@@ -25,7 +25,7 @@ struct Units {
 /// Entries of a stage: name of a set or a body -> value as a scene has it.
 struct StageLoads {
     std::map<std::string, std::string> displacement, pressure, follower_pressure, body_force, nodal_force, temperature,
-        release, friction, pairs, centrifugal;
+        release, friction, overclosure, pairs, centrifugal;
 };
 
 /// Pressures are kept face by face and gravity body by body over all steps, so that what a step changes on some faces stays on

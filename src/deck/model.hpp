@@ -61,11 +61,21 @@ struct DeckSection {
     std::string place;
 };
 
+/// Pressure of an interface over its overclosure.
+struct DeckOverclosure {
+    enum class Form { exact, linear, exponential, tabular };
+    Form form = Form::exact;
+    /// Linear: the slope. Exponential: clearance, pressure. Tabular: overclosure and pressure of each row.
+    std::vector<std::array<double, 2>> rows;
+    [[nodiscard]] bool gives_way() const { return form != Form::exact; }
+};
+
 /// Law of an interface.
 struct DeckInteraction {
     double friction = 0, stick = 0; ///< coefficient; stick slope, 0: not given
-    double stiffness = 0;           ///< pressure over overclosure; 0: exact
-    bool tied = false;              ///< surfaces do not part
+    DeckOverclosure overclosure;
+    double damping = 0; ///< pressure over speed
+    bool tied = false;  ///< surfaces do not part
 };
 
 struct DeckPair {
@@ -143,7 +153,8 @@ struct DeckStep {
     std::vector<DeckGravity> gravity;
     std::vector<DeckCentrifugal> centrifugal;
     std::vector<DeckTemperature> temperatures;
-    std::map<std::string, double> friction; ///< by interactions, in capitals: from this step on
+    std::map<std::string, double> friction;             ///< by interactions, in capitals: from this step on
+    std::map<std::string, DeckOverclosure> overclosure; ///< likewise
     std::vector<std::tuple<std::string, std::string, bool>>
         pairs;                                                   ///< slave, master, whether in force from this step on
     bool forget_held = false, forget_forces = false;             ///< OP=NEW

@@ -81,8 +81,7 @@ double ContactTerm::geometry_error(const Iterate& at) const {
                 return held.pair().surface().facet_size(point.facet);
             };
             if (now.point(j).found) {
-                const double gap = now.state(j, lambda_[p][j]).gap +
-                                   now.law(j).normal_compliance() * lambda_[p][j].dot(now.point(j).normal);
+                const double gap = now.distance(j, lambda_[p][j]);
                 largest = std::max(largest, (closed ? std::abs(gap) : -gap) / size(now.point(j)));
             }
             if (closed && held.point(j).found)
@@ -108,8 +107,10 @@ void ContactTerm::pack(const std::vector<model::ContactHistory>& contact, Vector
 bool ContactTerm::begin(const model::State& state, const Iterate& at, const StepLoad&, double dt) {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         evaluations_[p].begin_step(at.x, state.contact[p], timings_, threads_, at.tail);
-        if (dt < recovery_time_)
-            evaluations_[p].keep_depths(1 - dt / recovery_time_, at.x, timings_, threads_, at.tail);
+        if (dynamics_ == nullptr) continue;
+        if (const double recovery = dynamics_->recovery_time; dt < recovery)
+            evaluations_[p].keep_depths(1 - dt / recovery, at.x, timings_, threads_, at.tail);
+        evaluations_[p].take_means(at.x, {dt, 1 - dynamics_->integrator.alpha_f}, timings_, threads_, at.tail);
     }
     return false;
 }
@@ -140,7 +141,8 @@ Statuses ContactTerm::natural_statuses() const {
         const model::ContactEvaluation& evaluation = evaluations_[p];
         auto& list = statuses.emplace_back(lambda_[p].size(), Status::open);
         for (Index j = 0; j < evaluation.pair().size(); ++j)
-            if (evaluation.point(j).found) list[j] = evaluation.law(j).status(evaluation.state(j, lambda_[p][j]));
+            if (evaluation.point(j).found)
+                list[j] = evaluation.law(j, lambda_[p][j]).status(evaluation.state(j, lambda_[p][j]));
     }
     return statuses;
 }
@@ -157,7 +159,7 @@ Mat3 ContactTerm::symmetry_directions(Index node) const {
 
 contact::ContactResidual ContactTerm::law(std::size_t p, Index j) const {
     const model::ContactEvaluation& evaluation = evaluations_[p];
-    return evaluation.law(j).residual(evaluation.state(j, lambda_[p][j]), statuses_[p][j]);
+    return evaluation.law(j, lambda_[p][j]).residual(evaluation.state(j, lambda_[p][j]), statuses_[p][j]);
 }
 
 void ContactTerm::add_forces(Field& f) const {
@@ -226,8 +228,7 @@ bool ContactTerm::rows_within(const Iterate& at, const Field& sums, const ConstV
             const contact::ContactPoint& point = evaluations_[p].point(j);
             const Index slave = evaluations_[p].pair().slaves().node[j];
             if (point.found && contact::is_closed(statuses_[p][j])) {
-                const double yielded = evaluations_[p].law(j).normal_compliance() * lambda_[p][j].dot(point.normal);
-                if (!(std::abs(evaluations_[p].state(j, lambda_[p][j]).gap + yielded) <=
+                if (!(std::abs(evaluations_[p].distance(j, lambda_[p][j])) <=
                       no_gap * evaluations_[p].pair().surface().facet_size(point.facet)))
                     return false;
             }

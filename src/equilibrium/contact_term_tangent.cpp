@@ -84,8 +84,8 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
             one.A = (one.axes.transpose() * one.A).eval();
             one.F = (one.F * kept * one.axes).eval();
             one.w = one.axes.transpose() * (kept * (state.gap * n + T * state.drift));
-            one.w(0) = state.gap;
-            const contact::Coulomb law = evaluation.law(j);
+            const contact::Coulomb law = evaluation.law(j, lambda_[p][j]);
+            one.w(0) = state.gap + law.from();
             one.compliance = law.compliance();
             one.normal_compliance = law.normal_compliance();
             one.anchor = one.axes.transpose() * law.anchor();
@@ -133,7 +133,7 @@ linear::SoftContact ContactTerm::soften(std::size_t p, Index j) const {
     soft.coupling = first_[p] + j;
     soft.where.slave = slave;
     soft.D = kept * law.by_lambda + mirrored;
-    soft.c = evaluation.stiffness(j);
+    soft.c = evaluation.stiffness(j, lambda_[p][j]);
     if (!evaluation.point(j).found || !contact::is_closed(statuses_[p][j])) return soft;
     soft.normal = evaluation.point(j).normal;
     soft.B = kept * (law.by_gap * soft.normal.transpose() + law.by_drift);

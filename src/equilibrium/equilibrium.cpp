@@ -28,7 +28,7 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
       terms_(list_of_terms()), tangent_(model, constraints, unknowns_, terms_, bodies_, contact_,
                                         rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
       factorisable_(choice.factorisable) {
-    if (dynamics != nullptr) contact_.set_recovery_time(dynamics->recovery_time);
+    if (dynamics != nullptr) contact_.set_dynamics(*dynamics);
     at_.u.reset(model.X.size());
     at_.x = at_.tail = unbalanced_ = at_.u;
 }

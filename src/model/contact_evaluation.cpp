@@ -41,9 +41,10 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
       vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), facets_(other.facets_), bulge_(other.bulge_),
       faces_(other.faces_), tracking_(other.tracking_), in_force_(other.in_force_),
       in_force_start_(other.in_force_start_), points_(other.points_), points_at_(other.points_at_),
-      depth_(other.depth_), kept_part_(other.kept_part_), vertices_start_(other.vertices_start_),
-      passes_over_(other.passes_over_), clearance_(other.clearance_), left_(other.left_), states_(other.states_),
-      point_nodes_(other.point_nodes_), facet_changes_(other.facet_changes_) {
+      depth_(other.depth_), kept_part_(other.kept_part_), overclosure_start_(other.overclosure_start_),
+      mean_(other.mean_), vertices_start_(other.vertices_start_), passes_over_(other.passes_over_),
+      clearance_(other.clearance_), left_(other.left_), states_(other.states_), point_nodes_(other.point_nodes_),
+      facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -92,6 +93,7 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
     tracking_.facet = history.facet;
     lambda_start_ = history.lambda;
     depth_.clear();
+    overclosure_start_.clear();
     std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
     const ScopedTimer timer(timings, Part::search);
     if (pair_->slaves().edges) {
@@ -255,25 +257,88 @@ double ContactEvaluation::soft_area(Index j) const {
     return std::max(area(j), least_area * pair_->slaves().area[j]);
 }
 
-double ContactEvaluation::stiffness(Index j) const {
-    const double c = pair_->slaves().stiffness[j] + inertia_[j], K = pair_->options().stiffness;
-    return K > 0 ? std::min(c, most_yield * K * soft_area(j)) : c;
+ContactEvaluation::GivesWay ContactEvaluation::gives_way(Index j, const Vec3& lambda) const {
+    const double area = soft_area(j);
+    const contact::Overclosure::Point at = pair_->options().overclosure->at(lambda.dot(points_[j].normal) / area);
+    return {at.overclosure, at.compliance / area};
 }
 
-contact::Coulomb ContactEvaluation::law(Index j) const {
+double ContactEvaluation::stiffness(Index j, const Vec3& lambda) const {
+    if (!overclosure_start_.empty()) return law_of_means(j).parameter();
+    const double c = pair_->slaves().stiffness[j] + inertia_[j];
+    return pair_->options().overclosure ? std::min(c, most_yield / gives_way(j, lambda).compliance) : c;
+}
+
+contact::Coulomb ContactEvaluation::law(Index j, const Vec3& lambda) const {
+    if (!overclosure_start_.empty()) return law_of_means(j);
     const ContactOptions& options = pair_->options();
-    const double c = stiffness(j), friction = options.friction;
-    const bool yields = this->yields(j), soft = options.stiffness > 0, slips = options.stick_stiffness > 0;
+    const double c = stiffness(j, lambda), friction = options.friction;
+    const bool yields = this->yields(j), soft = options.overclosure.has_value(), slips = options.stick_stiffness > 0;
     if (!yields && !soft && !slips && held_[j] == 0) return {friction, c};
     const bool sticks_exactly = soft && !slips && held_[j] == 0;
     const double spring = slips ? options.stick_stiffness * soft_area(j) : held_stick_stiffness * c;
     contact::Coulomb law = sticks_exactly ? contact::Coulomb(friction, c)
                                           : contact::Coulomb::elastic(friction, c, spring, lambda_start_[j]);
-    if (yields)
+    if (yields) {
         law.yield(shared_yield);
-    else if (soft)
-        law.yield(c / (options.stiffness * soft_area(j))); // lambda . n = -stiffness area g
+    } else if (soft) {
+        const GivesWay gives = this->gives_way(j, lambda);
+        law.yield(c * gives.compliance, gives.overclosure - gives.compliance * lambda.dot(points_[j].normal));
+    }
     return law;
+}
+
+void ContactEvaluation::take_means(const std::vector<Vec3>& x, const MeanOfStep& step, Timings& timings, int threads,
+                                   const std::vector<Vec3>& tails) {
+    if (!pair_->options().overclosure) return;
+    evaluate(x, timings, threads, tails);
+    for (Index j = 0; j < pair_->size(); ++j) // what comes from beside the master begins to touch where it is seen
+        overclosure_start_.push_back(points_[j].found ? -states_[j].gap : pair_->options().overclosure->first());
+    mean_ = step;
+    forget_path();
+}
+
+contact::Overclosure::Mean ContactEvaluation::mean_force(Index j) const {
+    const contact::Overclosure& law = *pair_->options().overclosure;
+    const double start = overclosure_start_[j], end = -states_[j].gap, first = law.first(), area = soft_area(j);
+    contact::Overclosure::Mean mean = law.mean(start, end);
+    const double late = mean_.weight - 0.5, rate = pair_->options().damping / mean_.dt;
+    mean.pressure +=
+        late * (law.pressure(end) - law.pressure(start)) + rate * (std::max(end, first) - std::max(start, first));
+    if (end > first) mean.slope += late / law.at(law.pressure(end)).compliance + rate;
+    if (!(mean.pressure > 0)) return {}; // no tension
+    return {area * mean.pressure, area * mean.slope};
+}
+
+contact::Coulomb ContactEvaluation::law_of_means(Index j) const {
+    constexpr double least_slope = 1e-6; // of that where contact begins: the mean of a step begins with none
+    const contact::Overclosure& law = *pair_->options().overclosure;
+    const double first_slope = soft_area(j) / law.at(0).compliance;
+    const contact::Overclosure::Mean mean = mean_force(j);
+    const double slope = mean.pressure > 0 ? std::max(mean.slope, least_slope * first_slope) : first_slope,
+                 from = mean.pressure > 0 ? -states_[j].gap - mean.pressure / slope : law.first(),
+                 friction = pair_->options().friction;
+    contact::Coulomb result =
+        held_[j] == 0 ? contact::Coulomb(friction, slope)
+                      : contact::Coulomb::elastic(friction, slope, held_stick_stiffness * slope, lambda_start_[j]);
+    result.yield(1, from); // lambda . n = -slope (g + from), the tangent of the mean force
+    return result;
+}
+
+double ContactEvaluation::stored(Index j) const {
+    const auto& law = pair_->options().overclosure;
+    return law && points_[j].found ? soft_area(j) * law->energy(-states_[j].gap) : 0;
+}
+
+Taken ContactEvaluation::taken(Index j, const Vec3& lambda) const {
+    if (overclosure_start_.empty() || !points_[j].found) return {};
+    const contact::Overclosure& law = *pair_->options().overclosure;
+    const double start = overclosure_start_[j], end = -states_[j].gap, force = lambda.dot(points_[j].normal),
+                 late = force > 0 ? mean_.weight - 0.5 : 0;
+    Taken taken;
+    taken.algorithmic = soft_area(j) * late * (law.pressure(end) - law.pressure(start)) * (end - start);
+    taken.damping = force * (end - start) - soft_area(j) * (law.energy(end) - law.energy(start)) - taken.algorithmic;
+    return taken;
 }
 
 std::vector<Index> ContactEvaluation::patch_nodes(Index facet) const {

@@ -234,7 +234,7 @@ void ContactEvaluation::keep_depths(double part, const std::vector<Vec3>& x, Tim
         // edges that cross beyond their ends may come to cross within them, as deep as their lines are
         if (!point.found && !slaves.edges) continue;
         const Vec3& lambda = lambda_start_[j];
-        depth[j] = part * std::min(0.0, states_[j].gap + law(j).normal_compliance() * lambda.dot(point.normal));
+        depth[j] = part * std::min(0.0, distance(j, lambda));
     }
     depth_ = std::move(depth);
     kept_part_ = part;

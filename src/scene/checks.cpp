@@ -1,6 +1,5 @@
 #include "scene/checks.hpp"
 
-#include "osculate/scene/nearest.hpp"
 #include "osculate/scene/units.hpp"
 #include "scene/describe_parts.hpp"
 #include "scene/rules.hpp"
@@ -21,111 +20,6 @@ public:
         const auto* box = std::get_if<SelectBox>(&set.select);
         if (box && (box->min.array() > box->max.array()).any())
             fault({"sets", name, "box"}, "min at most max in every component", "min above max");
-    }
-
-    void check_pair(const std::string& name, const Pair& pair) {
-        check_sides(name, pair);
-        if (const auto* rpim = std::get_if<RpimSurface>(&pair.master.surface)) check_basis(name, "rpim", *rpim);
-        if (const auto* blend = std::get_if<BlendSurface>(&pair.master.surface)) check_basis(name, "blend", *blend);
-    }
-
-    /// Slave and master, or two sides without roles.
-    void check_sides(const std::string& name, const Pair& pair) {
-        const auto written = [&](std::vector<std::string> path) {
-            path.insert(path.begin(), {"contact", name});
-            return has(path);
-        };
-        const bool slave = written({"slave"}), exact = written({"master", "rigid_surface"}),
-                   master = written({"master", "set"}) || exact;
-        if (exact && written({"master", "set"}))
-            fault({"contact", name, "master", "set"}, "set or rigid_surface", "both");
-        if (exact && pair.discretisation && *pair.discretisation != Discretisation::node)
-            fault({"contact", name, "discretisation"},
-                  "node: gaps to a rigid surface are exact at the slave nodes, and its pressure needs no averaging",
-                  "another one");
-        if (written({"between"})) {
-            if (slave) fault({"contact", name, "slave"}, "between, or slave and master", "both");
-            if (master)
-                fault({"contact", name, "master", exact ? "rigid_surface" : "set"}, "between, or slave and master",
-                      "both");
-            if (!pair.between[0].empty() && pair.between[0] == pair.between[1])
-                fault({"contact", name, "between"}, "two sets", "'" + pair.between[0] + "' twice");
-            return;
-        }
-        if (!slave) fault({"contact", name, "slave"}, "the name of a set, or between with two", "nothing");
-        if (!master) fault({"contact", name, "master", "set"}, "the name of a set, or between with two", "nothing");
-        if (!pair.slave.empty() && pair.slave == pair.master.set)
-            fault({"contact", name, "slave"}, "another set than the master's", "'" + pair.slave + "' for both");
-    }
-
-    void check_general(const GeneralContact& general, const Named<Body>& bodies) {
-        Words known;
-        for (const auto& [name, body] : bodies) {
-            known.push_back(name);
-            if (!body.finish.empty()) known.push_back(body.finish);
-        }
-        for (const auto& [name, rule] : general.pairs)
-            for (const std::string& side : rule.between)
-                if (!side.empty() && std::ranges::count(known, side) == 0) {
-                    fault({"contact", "general", "pairs", name, "between"}, "bodies or finishes", "'" + side + "'");
-                    faults_.back().nearest = nearest(side, known);
-                }
-        for (std::size_t a = 0; a < bodies.size(); ++a)
-            for (std::size_t b = a + 1; b < bodies.size(); ++b)
-                if (bodies[a].second.rigid && bodies[b].second.rigid && !bodies[a].second.rigid_surface &&
-                    !bodies[b].second.rigid_surface && may_meet(general, bodies[a], bodies[b]))
-                    fault({"contact", "general"},
-                          "a rule of contact.general.pairs with `contact: false` for every two rigid bodies: they have "
-                          "no "
-                          "contact pressure of their own",
-                          "none for '" + bodies[a].first + "' and '" + bodies[b].first + "'");
-    }
-
-    [[nodiscard]] static bool may_meet(const GeneralContact& general, const Named<Body>::value_type& one,
-                                       const Named<Body>::value_type& other) {
-        const auto is = [](const std::string& side, const Named<Body>::value_type& body) {
-            return side == body.first || side == body.second.finish;
-        };
-        bool meet = true;
-        for (const auto& [name, rule] : general.pairs)
-            if ((is(rule.between[0], one) && is(rule.between[1], other)) ||
-                (is(rule.between[0], other) && is(rule.between[1], one)))
-                meet = rule.contact;
-        return meet;
-    }
-
-    template <class Surface> void check_basis(const std::string& name, const char* tag, const Surface& surface) {
-        const auto key = [&](const char* last) {
-            return std::vector<std::string>{"contact", name, "master", "surface", tag, last};
-        };
-        const auto q = key("q");
-        if (surface.basis == RadialBasis::r3 || surface.basis == RadialBasis::r5) {
-            const Surface defaults;
-            if (surface.R != defaults.R) fault(key("R"), "basis multiquadric with R", "another basis");
-            if (surface.q != defaults.q) fault(q, "basis multiquadric with q", "another basis");
-            if (surface.basis == RadialBasis::r5 && surface.m < 6) fault(key("m"), "6 with basis r5", "3");
-            return;
-        }
-        // (r^2 + R^2)^q is conditionally definite of order ceil(q); the basis must hold all polynomials of lower degree.
-        if (surface.q > 2 && surface.m < 6) fault(q, "at most 2 with m = 3", number_text(surface.q));
-        if (surface.R == 0 && surface.q < 1) fault(q, "more than 1 with R = 0", number_text(surface.q));
-    }
-
-    /// The energy of what gives way, in pressure or in stick, is in no ledger.
-    void check_overclosure(const Scene& scene) {
-        const auto dynamic = std::ranges::find_if(scene.stages, [](const auto& stage) {
-            return std::holds_alternative<DynamicAnalysis>(stage.second.analysis);
-        });
-        for (const auto& [name, pair] : scene.contact) {
-            if (dynamic != scene.stages.end() && std::holds_alternative<LinearOverclosure>(pair.pressure_overclosure))
-                fault({"contact", name, "pressure_overclosure"}, "exact where a stage is dynamic",
-                      "linear, with the dynamic stage " + dynamic->first);
-            if (dynamic != scene.stages.end() && pair.stick_stiffness)
-                fault({"contact", name, "stick_stiffness"}, "none where a stage is dynamic",
-                      "one, with the dynamic stage " + dynamic->first);
-            if (pair.stick_stiffness && !(pair.friction > 0))
-                fault({"contact", name, "stick_stiffness"}, "friction above 0 beside it", "no friction");
-        }
     }
 
     /// Masses are made once for all dynamic stages.
@@ -297,24 +191,6 @@ public:
         }
     }
 
-    /// Masters that are exact surfaces.
-    void check_exact_masters(const Scene& scene) {
-        for (const auto& [name, pair] : scene.contact) {
-            if (pair.master.rigid_surface.empty()) continue;
-            const Body* body = find(scene.bodies, pair.master.rigid_surface);
-            if (body != nullptr && !body->rigid_surface)
-                fault({"contact", name, "master", "rigid_surface"}, "a body with a rigid_surface",
-                      "'" + pair.master.rigid_surface + "', which has a mesh: name a set of it as master.set");
-        }
-        for (const auto& [name, set] : scene.sets)
-            if (const Body* body = find(scene.bodies, set.body); body != nullptr && body->rigid_surface)
-                fault({"sets", name, "body"},
-                      "a body with a mesh: contact.<pair>.master.rigid_surface names the whole "
-                      "surface of '" +
-                          set.body + "'",
-                      "a body with a rigid_surface");
-    }
-
     void check_stage(const std::string& name, const Stage& stage, const Named<Support>& supports) {
         if (stage.control.error_tolerance && std::holds_alternative<StaticAnalysis>(stage.analysis))
             fault({"stages", name, "control", "error_tolerance"}, "a dynamic stage", "a static one");
@@ -406,7 +282,6 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     rules.check_cyclic(scene);
     rules.check_equations(scene);
     rules.check_held(scene);
-    rules.check_exact_masters(scene);
     for (const auto& [name, stage] : scene.stages) rules.check_motion(name, stage, scene);
     for (const auto& [name, set] : scene.sets) rules.check_set(name, set);
     for (const auto& [stage_name, stage] : scene.stages)
@@ -416,9 +291,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
             break;
         }
     rules.check_contact_mass(scene.stages);
-    rules.check_overclosure(scene);
-    for (const auto& [name, pair] : scene.contact) rules.check_pair(name, pair);
-    if (scene.general) rules.check_general(*scene.general, scene.bodies);
+    check_contact(scene, tree, faults);
     for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);
     if (scene.expect) rules.check_expectation(*scene.expect);
 }

@@ -10,34 +10,49 @@ std::string with_courses(const std::string& expected) {
     return expected + ", or a map with table or expression";
 }
 
+std::string rows_of(const Key& key, const Key& first) {
+    return "two or more rows [" + first.name + " (" + unit_of(first.unit) + "), " + expected_number(key) + "]";
+}
+
 } // namespace
 
 std::optional<Table> TreeReader::read_table(const Key& key) {
-    Key time{.name = "table", .unit = dimension::time, .range = range::not_negative};
-    Key value{.name = "table", .unit = key.unit, .range = key.range};
-    const std::string expected = "two or more rows [time (s), " + expected_number(key) + "]";
-    const Tree* tree = take(time, expected);
+    const Key time{.name = "time", .unit = dimension::time, .range = range::not_negative};
+    const Key value{.name = "table", .unit = key.unit, .range = key.range};
+    const Tree* tree = take(value, rows_of(value, time));
     if (!tree) return {};
+    return read_rows(*tree, value, time);
+}
+
+std::optional<Table> TreeReader::read_rows(const Tree& tree, const Key& key, const Key& first) {
+    const std::string expected = rows_of(key, first);
     Table table;
     const auto reject = [&](const Tree& at, const std::string& what, const std::string& found = {}) {
-        fault(at, time, what, found);
+        fault(at, key, what, found);
         return std::nullopt;
     };
-    if (tree->kind != Tree::Kind::list || tree->children.size() < 2) return reject(*tree, expected);
+    if (tree.kind != Tree::Kind::list || tree.children.size() < 2) return reject(tree, expected);
+    Key column = first;
+    column.name = key.name;
     bool complete = true;
-    for (const Tree& row : tree->children) {
+    for (const Tree& row : tree.children) {
         if (row.kind != Tree::Kind::list || row.children.size() != 2) return reject(row, expected);
-        const auto t = read_number(row.children[0], time, expected_number(time));
-        const auto y = read_number(row.children[1], value, expected_number(value));
+        const auto t = read_number(row.children[0], column, expected_number(first));
+        const auto y = read_number(row.children[1], key, expected_number(key));
         complete = complete && t && y;
         if (!complete) continue;
         if (!table.rows.empty() && *t <= table.rows.back()[0])
-            return reject(row.children[0],
-                          "times that ascend, here more than " + number_text(table.rows.back()[0]) + " s");
+            return reject(row.children[0], first.name + "s that ascend, here more than " +
+                                               number_text(table.rows.back()[0]) + " " + unit_of(first.unit));
         table.rows.push_back({*t, *y});
     }
     if (!complete) return {};
     return table;
+}
+
+void TreeReader::table(const Key& key, const Key& first, Table& value) {
+    if (const Tree* tree = take(key, rows_of(key, first)))
+        if (auto read = read_rows(*tree, key, first)) value = std::move(*read);
 }
 
 std::optional<Expression> TreeReader::read_expression(const Key& key) {

@@ -94,7 +94,43 @@ void describe(Visitor& v, LinearOverclosure& law) {
              law.stiffness);
 }
 
+void describe(Visitor& v, ExponentialOverclosure& law) {
+    v.number({.name = "pressure",
+              .meaning = "Contact pressure where the surfaces just touch.",
+              .unit = dimension::pressure,
+              .range = range::positive,
+              .required = true},
+             law.pressure);
+    v.number({.name = "clearance",
+              .meaning = "Gap at which the pressure is a hundredth of that; a little farther apart there is none.",
+              .unit = dimension::length,
+              .range = range::positive,
+              .required = true},
+             law.clearance);
+}
+
+void describe(Visitor& v, TabularOverclosure& law) {
+    v.table({.name = "table",
+             .meaning =
+                 "Contact pressure over overclosure, a gap where it is negative: linear in between and beyond the "
+                 "last row; the first row has no pressure, and pressures grow.",
+             .unit = dimension::pressure,
+             .range = range::not_negative,
+             .required = true},
+            {.name = "overclosure", .unit = dimension::length}, law.table);
+}
+
 } // namespace
+
+void describe_overclosure(Visitor& v, const Key& key, PressureOverclosure& law) {
+    v.group(key, [&] {
+        static const Words tags{"exact", "linear", "exponential", "tabular"};
+        one_of(v, tags,
+               {"They touch and do not overlap.", "As springs would.",
+                "By a pressure that grows a hundredfold over the clearance.", "By a table."},
+               true, law, [&v](auto& alternative) { describe(v, alternative); });
+    });
+}
 
 void describe(Visitor& v, Pair& pair) {
     v.text({.name = "slave",
@@ -123,14 +159,18 @@ void describe(Visitor& v, Pair& pair) {
            discretisations, index);
     pair.discretisation = index == 0 ? std::nullopt : std::optional(static_cast<Discretisation>(index - 1));
     v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
-    v.group({.name = "pressure_overclosure",
-             .meaning = "How deep the surfaces give way under pressure.",
-             .bare_word = true},
-            [&] {
-                static const Words tags{"exact", "linear"};
-                one_of(v, tags, {"They touch and do not overlap.", "As springs would, in statics."}, true,
-                       pair.pressure_overclosure, [&v](auto& alternative) { describe(v, alternative); });
-            });
+    describe_overclosure(v,
+                         {.name = "pressure_overclosure",
+                          .meaning = "How deep the surfaces give way under pressure.",
+                          .bare_word = true},
+                         pair.pressure_overclosure);
+    v.number({.name = "damping",
+              .meaning =
+                  "Contact pressure over the speed at which the surfaces close, of a pair that gives way; in dynamics. "
+                  "There is no tension where they part.",
+              .unit = dimension::pressure_per_velocity,
+              .range = range::not_negative},
+             pair.damping);
     v.optional_number({.name = "stick_stiffness",
                        .meaning = "Friction over elastic slip before it reaches Coulomb's bound, in statics; without "
                                   "it nodes stick exactly.",

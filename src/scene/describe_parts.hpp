@@ -59,6 +59,7 @@ void one_of(Visitor& v, const Words& tags, const std::vector<const char*>& meani
              }});
 }
 
+void describe_overclosure(Visitor& v, const Key& key, PressureOverclosure& law);
 void describe(Visitor& v, Body& body);
 void describe(Visitor& v, Material& material);
 void describe(Visitor& v, Section& section);

@@ -221,6 +221,16 @@ void describe(Visitor& v, Stage& stage) {
                 value);
         });
     named(v,
+          {.name = "pressure_overclosure",
+           .meaning = "Law of contact pairs from this stage on, instead of contact.<pair>.pressure_overclosure.",
+           .names = Names::pair,
+           .item = "pair"},
+          stage.pressure_overclosure, [&](const std::string& pair, PressureOverclosure& value) {
+              describe_overclosure(
+                  v, {.name = pair, .meaning = "How deep its surfaces give way under pressure.", .bare_word = true},
+                  value);
+          });
+    named(v,
           {.name = "pairs",
            .meaning = "Whether contact pairs are in force, from this stage on.",
            .names = Names::pair,

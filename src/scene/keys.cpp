@@ -36,6 +36,9 @@ public:
     void courses(const Key& key, std::array<Course, 3>& /*value*/) override {
         list(key, "[x, y, z] " + unit(key), "[0, 0, 0]", std::string("each ") + over_time);
     }
+    void table(const Key& key, const Key& first, Table& /*value*/) override {
+        list(key, "rows [" + first.name + " (" + unit_of(first.unit) + "), " + unit(key) + "]", "none");
+    }
     void integer(const Key& key, int& value) override { list(key, "whole number", std::to_string(value)); }
     void divisions(const Key& key, std::array<int, 3>& value) override {
         list(key, "three whole numbers",

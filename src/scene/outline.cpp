@@ -47,6 +47,12 @@ public:
             return add(key, components(key, {value[0].value(), value[1].value(), value[2].value()}));
         add(key, "(" + in_words(value[0], key) + ", " + in_words(value[1], key) + ", " + in_words(value[2], key) + ")");
     }
+    void table(const Key& key, const Key& first, Table& value) override {
+        const auto& [x0, y0] = value.rows.front();
+        const auto& [x1, y1] = value.rows.back();
+        add(key, std::to_string(value.rows.size()) + " rows from " + quantity(x0, first) + ", " + quantity(y0, key) +
+                     " to " + quantity(x1, first) + ", " + quantity(y1, key));
+    }
     void integer(const Key& key, int& value) override { add(key, std::to_string(value)); }
     void divisions(const Key& key, std::array<int, 3>& value) override {
         add(key, std::to_string(value[0]) + " × " + std::to_string(value[1]) + " × " + std::to_string(value[2]));

@@ -41,5 +41,7 @@ protected:
 
 /// Rules of bodies: of their meshes, materials and rigid bodies.
 void check_bodies(const Scene& scene, const Tree& tree, std::vector<Fault>& faults);
+/// Rules of contact pairs and general contact.
+void check_contact(const Scene& scene, const Tree& tree, std::vector<Fault>& faults);
 
 } // namespace osculate::scene

@@ -262,6 +262,12 @@ void SchemaVisitor::courses(const Key& key, std::array<Course, 3>& /*value*/) {
     add(key, list_of(course_of(key), 3), "[x, y, z], each a " + in_words(key) + over_time, nullptr);
 }
 
+void SchemaVisitor::table(const Key& key, const Key& first, Table& /*value*/) {
+    Json row = {{"type", "array"}, {"items", {quantity(first), quantity(key)}}, {"minItems", 2}, {"maxItems", 2}};
+    add(key, {{"type", "array"}, {"items", row}, {"minItems", 2}},
+        "rows [" + first.name + " (" + unit_of(first.unit) + "), " + in_words(key) + "]", nullptr);
+}
+
 void SchemaVisitor::integer(const Key& key, int& value) {
     Json schema{{"type", "integer"}};
     schema.update(bounds(key.range));

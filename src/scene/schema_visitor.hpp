@@ -25,6 +25,7 @@ public:
     void course(const Key& key, Course& value) override;
     void optional_course(const Key& key, std::optional<Course>& value) override;
     void courses(const Key& key, std::array<Course, 3>& value) override;
+    void table(const Key& key, const Key& first, Table& value) override;
     void integer(const Key& key, int& value) override;
     void divisions(const Key& key, std::array<int, 3>& value) override;
     void integers(const Key& key, std::vector<int>& value) override;

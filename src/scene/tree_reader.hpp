@@ -36,6 +36,7 @@ public:
     void course(const Key& key, Course& value) override;
     void optional_course(const Key& key, std::optional<Course>& value) override;
     void courses(const Key& key, std::array<Course, 3>& value) override;
+    void table(const Key& key, const Key& first, Table& value) override;
     void integer(const Key& key, int& value) override;
     void divisions(const Key& key, std::array<int, 3>& value) override;
     void integers(const Key& key, std::vector<int>& value) override;
@@ -68,8 +69,10 @@ private:
     std::optional<int> read_integer(const Tree& tree, const Key& key, const std::string& expected);
     std::optional<Vec3> read_vector(const Tree& tree, const Key& key);
     std::optional<Course> read_course(const Tree& tree, const Key& key, const std::string& expected);
-    /// Of the current map.
+    /// Of the current map, over time.
     std::optional<Table> read_table(const Key& key);
+    /// @param key    of the second column  @param first  of the first
+    std::optional<Table> read_rows(const Tree& tree, const Key& key, const Key& first);
     std::optional<Expression> read_expression(const Key& key);
     bool check_name(const Tree& at, const Place& place, const Key& key, const std::string& name, Names names);
 

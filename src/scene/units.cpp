@@ -33,6 +33,7 @@ constexpr std::array named_dimensions{
     NamedDimension{dimension::density, "density", "kg/m^3"},
     NamedDimension{dimension::acceleration, "acceleration", "m/s^2"},
     NamedDimension{dimension::force_per_volume, "force per volume", "N/m^3"},
+    NamedDimension{dimension::pressure_per_velocity, "pressure per velocity", "Pa s/m"},
     NamedDimension{{0, 1, 0, 0}, "mass", "kg"},
     NamedDimension{{2, 0, 0, 0}, "area", "m^2"},
     NamedDimension{{3, 0, 0, 0}, "volume", "m^3"},

@@ -94,6 +94,8 @@ public:
     virtual void course(const Key& key, Course& value) = 0;
     virtual void optional_course(const Key& key, std::optional<Course>& value) = 0;
     virtual void courses(const Key& key, std::array<Course, 3>& value) = 0; ///< components of a vector
+    /// Rows [first, value], with an ascending first.
+    virtual void table(const Key& key, const Key& first, Table& value) = 0;
     virtual void integer(const Key& key, int& value) = 0;
     virtual void divisions(const Key& key, std::array<int, 3>& value) = 0;
     virtual void integers(const Key& key, std::vector<int>& value) = 0; ///< one or more

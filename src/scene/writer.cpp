@@ -65,6 +65,7 @@ public:
         line(key,
              "[" + inline_course(value[0]) + ", " + inline_course(value[1]) + ", " + inline_course(value[2]) + "]");
     }
+    void table(const Key& key, const Key& /*first*/, Table& value) override { line(key, inline_table(value)); }
     void integer(const Key& key, int& value) override { line(key, std::to_string(value)); }
     void divisions(const Key& key, std::array<int, 3>& value) override {
         line(key,
@@ -105,10 +106,13 @@ private:
         if (course.is_value()) return decimal(course.value());
         if (const auto* expression = std::get_if<Expression>(&course.form))
             return "{expression: " + in_quotes(expression->text) + ", unit: " + in_quotes(expression->unit) + "}";
+        return "{table: " + inline_table(std::get<Table>(course.form)) + "}";
+    }
+    static std::string inline_table(const Table& table) {
         std::string rows;
-        for (const auto& [t, y] : std::get<Table>(course.form).rows)
+        for (const auto& [t, y] : table.rows)
             rows += (rows.empty() ? "[" : ", [") + decimal(t) + ", " + decimal(y) + "]";
-        return "{table: [" + rows + "]}";
+        return "[" + rows + "]";
     }
     static std::string list(const Vec3& v) {
         return "[" + decimal(v.x()) + ", " + decimal(v.y()) + ", " + decimal(v.z()) + "]";

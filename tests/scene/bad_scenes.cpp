@@ -31,7 +31,7 @@ TEST(BadScene, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(faults[0].key, "contact.joint.frcition");
     EXPECT_EQ(faults[0].expected,
               "one of the keys slave, master, between, discretisation, friction, pressure_overclosure, "
-              "stick_stiffness, adjust, closing_tolerance, "
+              "damping, stick_stiffness, adjust, closing_tolerance, "
               "initial_overlap_limit, stiffness_scale");
     EXPECT_EQ(faults[0].found, "unknown key 'frcition'");
     EXPECT_EQ(faults[0].nearest, "friction");
@@ -222,7 +222,8 @@ TEST(BadScene, AllFaultsAtOnceInOrder) {
             "bad.yaml:17:12: contact.joint.slave: expected another set than the master's, found 'ground' "
             "for both",
             "bad.yaml:22:5: stages.load.stpes: expected one of the keys analysis, duration, steps, control, ramp, "
-            "displacement, pressure, follower_pressure, body_force, release, friction, pairs, temperature, "
+            "displacement, pressure, follower_pressure, body_force, release, friction, pressure_overclosure, pairs, "
+            "temperature, "
             "centrifugal, "
             "nodal_force, motion, "
             "force, moment, "
@@ -249,7 +250,7 @@ TEST(BadScene, FaultInAnOverride) {
     expect_override_fault({"contact.joint.ring", "1"},
                           "--set: contact.joint.ring: expected one of the keys slave, master, between, discretisation, "
                           "friction, pressure_overclosure, "
-                          "stick_stiffness, adjust, closing_tolerance, "
+                          "damping, stick_stiffness, adjust, closing_tolerance, "
                           "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
 }
 
@@ -292,10 +293,26 @@ TEST(BadScene, InterfacesThatCannotBe) {
     const std::string soft =
         replaced(small_scene, "friction: 0.3", "pressure_overclosure: {linear: {stiffness: 1e9 N/m^3}}");
     EXPECT_THAT(messages(faults_of(soft)), IsEmpty());
-    EXPECT_THAT(messages(faults_of(soft, {{"stages.load.analysis", "dynamic"}})),
-                Contains(HasSubstr(
-                    "contact.joint.pressure_overclosure: expected exact where a stage is dynamic, found linear, with "
-                    "the dynamic stage load")));
+    const auto table = [](const std::string& rows) {
+        return replaced(small_scene, "friction: 0.3", "pressure_overclosure: {tabular: {table: " + rows + "}}");
+    };
+    EXPECT_THAT(messages(faults_of(table("[[-1 mm, 0 Pa], [0 mm, 1 MPa]]"))), IsEmpty());
+    EXPECT_THAT(
+        messages(faults_of(table("[[0 mm, 1 Pa], [1 mm, 1 MPa], [2 mm, 1 MPa]]"))),
+        ElementsAre(HasSubstr("tabular.table: expected a first row without pressure, where it begins, found 1 Pa"),
+                    HasSubstr("expected pressures that grow from row to row, found one of 1e+06 Pa that does not")));
+    EXPECT_THAT(messages(faults_of(table("[[0 s, 0 Pa], [1 mm, 1 MPa]]"))), ElementsAre(HasSubstr("a length (m)")));
+    EXPECT_THAT(messages(faults_of(table("[[0 mm, 0 Pa]]"))),
+                ElementsAre(HasSubstr("two or more rows [overclosure (m), a pressure (Pa) >= 0]")));
+    EXPECT_THAT(messages(faults_of(table("[[1 mm, 0 Pa], [0 mm, 1 MPa]]"))),
+                ElementsAre(HasSubstr("overclosures that ascend, here more than 0.001 m")));
+    EXPECT_THAT(messages(faults_of(soft, {{"stages.load.pressure_overclosure", "{joint: exact}"}})),
+                ElementsAre(HasSubstr("expected a law that gives way, as that of the pair, found exact")));
+    EXPECT_THAT(
+        messages(faults_of(soft, {{"contact.joint.damping", "1 Pa s/m"}})),
+        ElementsAre(HasSubstr("contact.joint.damping: expected none where no stage is dynamic, found 1 Pa s/m")));
+    EXPECT_THAT(messages(faults_of(small_scene, {{"contact.joint.damping", "1 Pa s/m"}})),
+                Contains(HasSubstr("expected a pressure_overclosure beside it that gives way, found exact contact")));
     const std::string slips = replaced(small_scene, "friction: 0.3", "friction: 0.3\n    stick_stiffness: 1e9 N/m^3");
     EXPECT_THAT(messages(faults_of(slips)), IsEmpty());
     EXPECT_THAT(messages(faults_of(slips, {{"stages.load.analysis", "dynamic"}})),

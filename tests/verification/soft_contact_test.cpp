@@ -75,6 +75,41 @@ TEST_P(SoftContact, GivesWayByPressureOverStiffness) {
     EXPECT_LT(worst, tolerance * depth) << "a uniform pressure";
 }
 
+const std::string press =
+    "stages:\n  press: {displacement: {top: {x: 0 m, y: 0 m}}, pressure: {top: 1 MPa}, steps: 2}\n";
+
+TEST_P(SoftContact, FollowsAnExponential) {
+    // p = p0 100^(h/c0) is 1 MPa for p0 = 0.1 MPa at h = c0/2
+    const auto run = solved(
+        plates(4, pair("    pressure_overclosure: {exponential: {pressure: 0.1 MPa, clearance: 50 um}}\n"), press));
+    const double depth = 25e-6, shorter = p / E * h;
+    EXPECT_NEAR(mean_displacement(run, "base").z(), -shorter - depth, 1e-6 * depth);
+}
+
+TEST_P(SoftContact, CarriesAcrossAGapWithinItsClearance) {
+    // 1 MPa is a tenth of p0: h = -c0/2
+    const auto run = solved(
+        plates(4, pair("    pressure_overclosure: {exponential: {pressure: 10 MPa, clearance: 50 um}}\n"), press));
+    const double gap = 25e-6, shorter = p / E * h;
+    EXPECT_NEAR(mean_displacement(run, "base").z(), -shorter + gap, 1e-6 * gap);
+}
+
+TEST_P(SoftContact, FollowsATable) {
+    const auto run = solved(plates(
+        4, pair("    pressure_overclosure: {tabular: {table: [[-10 um, 0 Pa], [0 um, 0.5 MPa], [20 um, 1.5 MPa]]}}\n"),
+        press));
+    const double depth = 10e-6, shorter = p / E * h;
+    EXPECT_NEAR(mean_displacement(run, "base").z(), -shorter - depth, 1e-6 * depth);
+}
+
+TEST_P(SoftContact, HasTheLawOfItsStage) {
+    const auto run = solved(plates(4, pair(linear),
+                                   press + "  harder: {pressure_overclosure: {joint: {exponential: {pressure: 0.1 MPa, "
+                                           "clearance: 50 um}}}, steps: 2}\n"));
+    const double depth = 25e-6, shorter = p / E * h;
+    EXPECT_NEAR(mean_displacement(run, "base").z(), -shorter - depth, 1e-6 * depth);
+}
+
 TEST_P(SoftContact, IsExactWithoutALaw) {
     const auto run =
         solved(plates(4, pair("    pressure_overclosure: exact\n"),

@@ -34,8 +34,9 @@ struct ContactResidual {
 ///     stick  |L_T| <= mu L_N       R = lambda - L_N n - L_T
 ///     slip   otherwise             R = lambda - L_N n - mu L_N L_T / |L_T|
 ///     glide  mu = 0                R = lambda - L_N n
-/// A contact that yields has the gap g + (yield/c) lambda . n in place of g: L_N = (1 - yield) lambda . n - c g. So contacts
-/// that ask for the same motion share its force.
+/// A contact that yields has the gap g + from + (yield/c) lambda . n in place of g: L_N = (1 - yield) lambda . n - c (g + from).
+/// So contacts that ask for the same motion share its force, and interfaces give way: a law h(p) by its tangent at lambda,
+/// so that value and derivatives there are its own.
 /// Exact: v = lambda - c d, so that stick means c (g n + T d) = 0. Then R = 0 is exactly p_N >= 0, g >= 0, p_N g = 0
 /// and Coulomb's law; c > 0 (N/m) scales the rows, but does not change the solution.
 /// Elastic: v = lambda_start - k d: a soft spring k makes stick elastic. For slave nodes that are held or driven along
@@ -57,10 +58,19 @@ public:
     /// Compliance of stick, m/N, and the contact force at which it is not strained, N; zeros for the exact law.
     [[nodiscard]] double compliance() const { return follow_ == 0 ? 1 / spring_ : 0; }
     [[nodiscard]] const Vec3& anchor() const { return anchor_; }
-    /// Makes the contact yield. @param part  of what c alone would yield, within [0, 1)
-    void yield(double part) { yield_ = part; }
-    /// Compliance along the normal, m/N.
+    /// Makes the contact yield. @param part  of what c alone would yield, within [0, 1]  @param from  m
+    void yield(double part, double from = 0) {
+        yield_ = part;
+        from_ = from;
+    }
+    /// Compliance along the normal, m/N, and what the gap is more without a force, m.
     [[nodiscard]] double normal_compliance() const { return yield_ / c_; }
+    [[nodiscard]] double from() const { return from_; }
+    [[nodiscard]] double parameter() const { return c_; } ///< c, N/m
+    /// What is zero in contact: the gap, and how far the contact has yielded, m.
+    [[nodiscard]] double distance(double gap, double normal_force) const {
+        return gap + from_ + yield_ / c_ * normal_force;
+    }
 
     [[nodiscard]] Status status(const ContactState& state) const;
     /// Value and derivatives of the branch `status`, even if status() returns another one.
@@ -72,7 +82,7 @@ private:
         return follow_ * state.lambda + anchor_ - spring_ * state.drift;
     }
 
-    double mu_, c_, follow_, spring_, yield_ = 0;
+    double mu_, c_, follow_, spring_, yield_ = 0, from_ = 0;
     Vec3 anchor_;
 };
 

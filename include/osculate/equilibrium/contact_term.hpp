@@ -3,6 +3,7 @@
 
 #include "osculate/core/timing.hpp"
 #include "osculate/equilibrium/contact_tangent.hpp"
+#include "osculate/equilibrium/dynamics.hpp"
 #include "osculate/equilibrium/term.hpp"
 #include "osculate/linear/dependence.hpp"
 #include "osculate/model/contact_evaluation.hpp"
@@ -55,8 +56,8 @@ public:
     [[nodiscard]] Statuses natural_statuses() const;
     /// Sets the inertia of the slave nodes from the bodies' stiffness, see ContactEvaluation::set_inertia.
     void set_inertia(const BodyForces& bodies);
-    /// See Dynamics::recovery_time.
-    void set_recovery_time(double time) { recovery_time_ = time; }
+    /// Steps are dynamic.
+    void set_dynamics(const Dynamics& dynamics) { dynamics_ = &dynamics; }
     [[nodiscard]] const model::ContactEvaluations& evaluations() const { return evaluations_; }
     [[nodiscard]] model::ContactEvaluations& evaluations() { return evaluations_; }
     /// Smallest gap, m; infinite if no slave node faces a master.
@@ -117,7 +118,7 @@ private:
     const linear::Unknowns& unknowns_;
     Timings& timings_;
     int threads_;
-    double recovery_time_ = 0;                       ///< s
+    const Dynamics* dynamics_ = nullptr;             ///< null: steps are static
     const linear::Dependence* dependence_ = nullptr; ///< null: no node depends on others
     model::ContactEvaluations evaluations_;          ///< of the attempt
     std::vector<Index> first_;                       ///< (pairs + 1) couplings

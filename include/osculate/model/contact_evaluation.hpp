@@ -11,6 +11,17 @@
 
 namespace osculate::model {
 
+/// Of a dynamic step.
+struct MeanOfStep {
+    double dt = 0;     ///< s
+    double weight = 0; ///< of forces at the end, 1 - alpha_f of the integrator
+};
+/// Energy that an interface takes in a step, J.
+struct Taken {
+    double damping = 0;     ///< by its damping, and where it would pull
+    double algorithmic = 0; ///< where forces at the end weigh more than those at the start
+};
+
 class ContactEvaluation {
 public:
     explicit ContactEvaluation(const ContactPair& pair); ///< must outlive this object
@@ -75,6 +86,14 @@ public:
     /// contacts yield, contact keeps this part of the depth.
     void keep_depths(double part, const std::vector<Vec3>& x, Timings& timings, int threads,
                      const std::vector<Vec3>& tails = {});
+    /// Of an interface that gives way, in dynamics, once after begin_step() with the positions there: contact has the mean
+    /// pressure of the step, whose work is the change of the interface's energy.
+    void take_means(const std::vector<Vec3>& x, const MeanOfStep& step, Timings& timings, int threads,
+                    const std::vector<Vec3>& tails = {});
+    /// Energy of the interface at slave j, J; 0 if it does not give way.
+    [[nodiscard]] double stored(Index j) const;
+    /// What the law takes of the energy in a step with this contact force, J; zeros if it does not give way.
+    [[nodiscard]] Taken taken(Index j, const Vec3& lambda) const;
     /// Input of the contact law, from differences of displacements and of reference positions, so that the distance of
     /// the bodies from the origin has no effect. The drift is computed only with friction.
     [[nodiscard]] contact::ContactState state(Index j, const Vec3& lambda) const {
@@ -83,13 +102,18 @@ public:
         return state;
     }
     /// c of the complementarity function of slave j, N/m: its stiffness and, in dynamics, its inertia.
-    [[nodiscard]] double stiffness(Index j) const;
+    [[nodiscard]] double stiffness(Index j, const Vec3& lambda) const;
     /// Sets the inertia of the slave nodes, N/m: about mass over the square of the time step.
     void set_inertia(std::vector<double> inertia) { inertia_ = std::move(inertia); }
     /// Declares which slave nodes are held or driven along some direction: their stick is elastic, see
     /// contact::Coulomb.
     void hold(std::vector<char> held) { held_ = std::move(held); }
-    [[nodiscard]] contact::Coulomb law(Index j) const;
+    /// The law at a contact force, which it depends on where an interface gives way.
+    [[nodiscard]] contact::Coulomb law(Index j, const Vec3& lambda) const;
+    /// What is zero where slave j is in contact, m: its gap, and by how much it gives way.
+    [[nodiscard]] double distance(Index j, const Vec3& lambda) const {
+        return law(j, lambda).distance(states_[j].gap, lambda.dot(points_[j].normal));
+    }
     /// Prepares calls of vary() for the slave nodes that are `wanted`.
     void prepare_variations(std::span<const char> wanted, int threads);
     /// Computes the variations of contact point j.
@@ -185,6 +209,15 @@ private:
     [[nodiscard]] contact::FacetSearch::Choice choice(Index j) const;
     /// area() of a pair that gives way, m^2, > 0.
     [[nodiscard]] double soft_area(Index j) const;
+    /// How far the interface gives way at slave j: overclosure, m, and compliance, m/N, at a contact force.
+    struct GivesWay {
+        double overclosure = 0, compliance = 0;
+    };
+    [[nodiscard]] GivesWay gives_way(Index j, const Vec3& lambda) const;
+    /// Mean contact force of the step at slave j along the normal, N, >= 0, and minus its derivative by the gap, N/m.
+    [[nodiscard]] contact::Overclosure::Mean mean_force(Index j) const;
+    /// The law of a mean contact force, from mean_force().
+    [[nodiscard]] contact::Coulomb law_of_means(Index j) const;
     /// Gap that contact keeps in this attempt, m, <= 0, see keep_depths().
     [[nodiscard]] double kept_depth(Index j) const;
     /// state() of slave j without the force.
@@ -223,6 +256,8 @@ private:
     std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along
     std::vector<double> depth_;   ///< (slaves) see kept_depth(), NaN for nodes that had no partner then; empty: none
     double kept_part_ = 0;
+    std::vector<double> overclosure_start_; ///< (slaves) see take_means(), m; empty: the force at the end counts
+    MeanOfStep mean_;
     std::vector<Vec3> vertices_start_; ///< of the master surface at the start of the attempt, of general contact
     bool passes_over_ = false;         ///< see pass_over_far_nodes()
     /// (slaves) How far the node and the master may move in the attempt, together, before they could touch, m; negative if they

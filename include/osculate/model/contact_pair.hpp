@@ -5,6 +5,7 @@
 #include "osculate/contact/coulomb.hpp"
 #include "osculate/contact/discretisation.hpp"
 #include "osculate/contact/edge_crossing.hpp"
+#include "osculate/contact/overclosure.hpp"
 #include "osculate/core/choices.hpp"
 #include "osculate/model/master_side.hpp"
 
@@ -71,8 +72,9 @@ struct SlaveNodes {
 };
 
 struct ContactOptions {
-    double friction = 0;        ///< Coulomb's mu
-    double stiffness = 0;       ///< pressure over overclosure, Pa/m; 0: contact is exact
+    double friction = 0;                               ///< Coulomb's mu
+    std::optional<contact::Overclosure> overclosure{}; ///< law of the pressure; none: contact is exact
+    double damping = 0; ///< pressure over the speed at which surfaces close, in dynamics, Pa s/m; with an overclosure
     double stick_stiffness = 0; ///< friction over elastic slip, Pa/m; 0: stick is exact
     double hysteresis = 0.03;   ///< of the facet size, see contact::FacetSearch::track
     int changes_before_latch =
@@ -80,6 +82,7 @@ struct ContactOptions {
     double closing_tolerance = 0.02; ///< of the facet size: largest distance that counts as touching before any contact
     Discretisation discretisation = Discretisation::node;
     bool in_force = true; ///< false: no slave finds a facet
+    bool operator==(const ContactOptions&) const = default;
 };
 
 class ContactPair {
@@ -96,7 +99,7 @@ public:
                 std::unique_ptr<mesh::HalfEdgeSurface> surface, MasterNodes master_nodes,
                 std::shared_ptr<const contact::MasterSurface> master, const ContactOptions& options,
                 const contact::SmoothSlave* smooth = nullptr);
-    /// Another pair but for what the law of contact takes from the options: friction, and whether it is in force.
+    /// Another pair but for what the law of contact takes from the options: friction, overclosure, and whether it is in force.
     ContactPair(const ContactPair& other, const ContactOptions& options);
 
     [[nodiscard]] const std::string& name() const { return name_; }

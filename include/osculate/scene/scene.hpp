@@ -117,6 +117,16 @@ struct LinearOverclosure {
     double stiffness = 0; ///< Pa/m
     bool operator==(const LinearOverclosure&) const = default;
 };
+/// See contact::Overclosure.
+struct ExponentialOverclosure {
+    double pressure = 0, clearance = 0; ///< Pa, m
+    bool operator==(const ExponentialOverclosure&) const = default;
+};
+struct TabularOverclosure {
+    Table table; ///< overclosure, m; pressure, Pa
+    bool operator==(const TabularOverclosure&) const = default;
+};
+using PressureOverclosure = std::variant<ExactContact, LinearOverclosure, ExponentialOverclosure, TabularOverclosure>;
 
 struct Pair {
     std::string slave; ///< set
@@ -124,7 +134,8 @@ struct Pair {
     std::array<std::string, 2> between{};         ///< sets, in place of slave and master.set; empty: not given
     std::optional<Discretisation> discretisation; ///< none: automatic
     double friction = 0;                          ///< Coulomb's coefficient mu
-    std::variant<ExactContact, LinearOverclosure> pressure_overclosure;
+    PressureOverclosure pressure_overclosure;
+    double damping = 0;                    ///< of an interface that gives way, in dynamics, Pa s/m
     std::optional<double> stick_stiffness; ///< Pa/m; none: nodes stick exactly
     std::optional<double> adjust;          ///< slave nodes as near as this are moved onto the master at the start, m
     double closing_tolerance = 0.02;       ///< of the facet size: the first solve closes nodes with a smaller gap
@@ -236,12 +247,13 @@ struct Stage {
         release;                     ///< set -> components that neither its support nor an earlier stage holds any more
     Named<Course> follower_pressure; ///< set -> pressure on the current area, along the current normal, Pa
     Named<Course> pressure;          ///< set -> dead pressure on the reference area, Pa, > 0 pushes into the body
-    Named<std::array<Course, 3>> body_force;  ///< body -> N/m^3
-    Named<Centrifugal> centrifugal;           ///< body ->
-    Named<std::array<Course, 3>> nodal_force; ///< set -> on each of its nodes, N
-    Named<double> friction;                   ///< pair -> coefficient from this stage on
-    Named<bool> pairs;                        ///< pair -> whether it is in force from this stage on
-    Named<Course> temperature;                ///< body or set -> above that at which it has no thermal strain, K
+    Named<std::array<Course, 3>> body_force;         ///< body -> N/m^3
+    Named<Centrifugal> centrifugal;                  ///< body ->
+    Named<std::array<Course, 3>> nodal_force;        ///< set -> on each of its nodes, N
+    Named<double> friction;                          ///< pair -> coefficient from this stage on
+    Named<PressureOverclosure> pressure_overclosure; ///< pair -> its law from this stage on
+    Named<bool> pairs;                               ///< pair -> whether it is in force from this stage on
+    Named<Course> temperature;                       ///< body or set -> above that at which it has no thermal strain, K
     Named<std::array<std::optional<Course>, 6>>
         motion; ///< rigid body or coupling -> displacement and rotation components, m, rad
     Named<std::array<Course, 3>> force, moment; ///< rigid body or coupling -> at its reference point, N, N m

@@ -26,6 +26,7 @@ inline constexpr Dimension spin{0, 0, -1, 1};
 inline constexpr Dimension rate{0, 0, -1, 0};
 inline constexpr Dimension acceleration{1, 0, -2, 0};
 inline constexpr Dimension force_per_volume{-2, 1, -2, 0};
+inline constexpr Dimension pressure_per_velocity{-2, 1, -1, 0};
 inline constexpr Dimension mass{0, 1, 0, 0};
 inline constexpr Dimension inertia{2, 1, 0, 0};
 inline constexpr Dimension moment{2, 1, -2, 0};

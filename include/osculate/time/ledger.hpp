@@ -12,13 +12,16 @@ namespace osculate::time {
 /// The contribution of each step to a member is the work of one term of the discrete equations of motion over the
 /// step's displacement Du, so that `balance` is the work of the solver's residual, Du . F.
 struct Ledger {
-    double kinetic = 0, strain = 0;
-    double external = 0; ///< loads, supports and driven motions
-    double friction = 0; ///< dissipated, >= 0
-    double damping = 0;  ///< dissipated, by damping, by inelastic impacts and by plastic flow
+    double kinetic = 0, strain = 0; ///< strain energy also of interfaces that give way ...
+    double interface = 0;           ///< ... which is this part of it
+    double external = 0;            ///< loads, supports and driven motions
+    double friction = 0;            ///< dissipated, >= 0
+    double damping = 0;             ///< dissipated, by damping, by inelastic impacts and by plastic flow
     double algorithmic =
-        0;              ///< dissipated by the integrator: work of inertia and stiffness beyond their energies' change
-    double contact = 0; ///< work of normal contact forces; 0 while bodies stay in contact, > 0 is spurious energy
+        0; ///< dissipated by the integrator: work of inertia and stiffness beyond their energies' change
+    /// Work of normal contact forces beyond what interfaces store, and what the integrator takes of the energy where nodes of
+    /// such interfaces come into contact; 0 while bodies stay in contact, > 0 is spurious energy.
+    double contact = 0;
     double balance = 0;
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero(); ///< momenta, angular about the origin in current positions
 };

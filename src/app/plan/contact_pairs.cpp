@@ -226,6 +226,21 @@ double mean_size(const std::vector<mesh::Facet>& facets, const std::vector<Vec3>
 
 } // namespace
 
+std::optional<contact::Overclosure> law_of(const scene::PressureOverclosure& law) {
+    return std::visit(Overloaded{[](const scene::ExactContact&) -> std::optional<contact::Overclosure> { return {}; },
+                                 [](const scene::LinearOverclosure& given) {
+                                     return std::optional(contact::Overclosure::linear(given.stiffness));
+                                 },
+                                 [](const scene::ExponentialOverclosure& given) {
+                                     return std::optional(
+                                         contact::Overclosure::exponential(given.pressure, given.clearance));
+                                 },
+                                 [](const scene::TabularOverclosure& given) {
+                                     return std::optional(contact::Overclosure::table(given.table.rows));
+                                 }},
+                      law);
+}
+
 std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& scene, const std::string& name,
                                                             const scene::Pair& spec, const model::Model& model,
                                                             const model::Set& slave, const model::Set& master,
@@ -235,8 +250,8 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     model::ContactOptions options;
     options.discretisation = spec.discretisation.value();
     options.friction = spec.friction;
-    if (const auto* law = std::get_if<scene::LinearOverclosure>(&spec.pressure_overclosure))
-        options.stiffness = law->stiffness;
+    options.overclosure = law_of(spec.pressure_overclosure);
+    options.damping = spec.damping;
     options.stick_stiffness = spec.stick_stiffness.value_or(0);
     options.closing_tolerance = spec.closing_tolerance;
     const contact::ExactShape* shape = shape_of(model, master);
@@ -285,7 +300,7 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
         slaves.stiffness.push_back(spec.stiffness_scale * E * values.first / values.second);
     }
 
-    if (options.stiffness == 0)
+    if (!options.overclosure)
         for (const model::CyclicSymmetry& ring : model.cyclic)
             for (const model::LikeNode& one : ring.nodes) { // both ends of the sector hold the same place
                 const auto slave_of = [&](Index host) {

@@ -6,9 +6,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace osculate::app {
+
+/// None: contact is exact.
+[[nodiscard]] std::optional<contact::Overclosure> law_of(const scene::PressureOverclosure& law);
 
 /// @param model          bodies' positions and all sets
 /// @param slave, master  sets with facets; the slave may have loose nodes alone

@@ -13,7 +13,7 @@ namespace osculate::app {
 
 namespace {
 
-/// Nodes without mass of their own: slave nodes, where the scene asks for it.
+/// Nodes without mass of their own: slave nodes whose contact is exact, where the scene asks for it.
 std::vector<char> massless_nodes(const Draft& draft) {
     std::vector<char> massless;
     const auto mark = [&](Index node) {
@@ -24,7 +24,8 @@ std::vector<char> massless_nodes(const Draft& draft) {
         if (dynamic == nullptr || dynamic->contact_mass == scene::ContactMass::kept) continue;
         massless.assign(draft.plan.model.X.size(), 0);
         for (const auto& pair : draft.plan.model.pairs)
-            for (const Index node : pair->slaves().node) mark(node);
+            if (!pair->options().overclosure) // an interface that gives way stores what its nodes bring
+                for (const Index node : pair->slaves().node) mark(node);
         if (draft.plan.model.general)
             for (const Index node : draft.plan.model.general->possible_slaves()) mark(node);
         for (Index b = 0; b < static_cast<Index>(draft.plan.model.bodies.size()); ++b)

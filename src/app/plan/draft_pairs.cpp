@@ -53,7 +53,9 @@ void add_changes_of_pairs(Draft& draft) {
             model::ContactOptions options = pair->options();
             if (const double* friction = scene::find(spec.friction, pair->name())) options.friction = *friction;
             if (const bool* in_force = scene::find(spec.pairs, pair->name())) options.in_force = *in_force;
-            if (options.friction == pair->options().friction && options.in_force == pair->options().in_force) continue;
+            if (const auto* law = scene::find(spec.pressure_overclosure, pair->name()))
+                options.overclosure = law_of(*law);
+            if (options == pair->options()) continue;
             pair = std::make_shared<const model::ContactPair>(*pair, options);
             changed = true;
         }

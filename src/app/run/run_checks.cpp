@@ -65,8 +65,8 @@ void RunChecks::add_penetration(const time::AcceptedStep& step) {
             // what has no partner and only seems to be behind a surface is for the audit to judge
             const bool seen = point.found || (point.behind && step.audit == nullptr);
             double gap = seen ? point.gap : evaluation.unseen_gap(j);
-            if (point.found && pair.options().stiffness > 0) // beyond what the pair gives way
-                gap += evaluation.law(j).normal_compliance() * lambda[static_cast<std::size_t>(j)].dot(point.normal);
+            if (point.found && pair.options().overclosure) // beyond what the pair gives way
+                gap = evaluation.distance(j, lambda[static_cast<std::size_t>(j)]);
             const Index facet = seen ? point.facet : evaluation.facets()[j];
             if (facet < 0 || !(gap < 0)) continue;
             const double size = pair.surface().facet_size(facet), depth = -gap / size;

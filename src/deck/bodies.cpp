@@ -89,6 +89,16 @@ void make_mesh_of(DeckModel& model, mesh::MeshFileOptions options, DeckBody& bod
 }
 } // namespace
 
+namespace {
+/// That of its instance, or else of its section.
+std::string wanted_name(const DeckModel& model, const DeckBody& body) {
+    const mesh::RawMesh& raw = model.mesh.raw;
+    if (const mesh::Instance* instance = raw.instances.of(raw.cells[static_cast<std::size_t>(body.cells.front())].id))
+        return instance->name;
+    return body.section != nullptr ? body.section->elements : "body";
+}
+} // namespace
+
 std::vector<DeckBody> make_bodies(DeckModel& model) {
     const mesh::RawMesh& raw = model.mesh.raw;
     std::vector<Index> all(raw.cells.size());
@@ -102,20 +112,19 @@ std::vector<DeckBody> make_bodies(DeckModel& model) {
     std::vector<DeckBody> bodies(static_cast<std::size_t>(pieces));
     for (std::size_t c = 0; c < piece.size(); ++c)
         bodies[static_cast<std::size_t>(piece[c] - 1)].cells.push_back(static_cast<Index>(c));
-    std::map<const DeckSection*, int> pieces_of_section;
+    std::map<std::string, int> pieces_of_name, seen;
     for (DeckBody& body : bodies) {
         find_sections(model, section, body);
-        ++pieces_of_section[body.section];
+        ++pieces_of_name[wanted_name(model, body)];
     }
     std::set<std::string> taken;
-    std::map<const DeckSection*, int> seen;
     mesh::MeshFileOptions options;
     options.repairs.wanted[static_cast<std::size_t>(mesh::Repair::dangling_nodes)] = true;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         DeckBody& body = bodies[b];
-        const std::string wanted = body.section != nullptr ? body.section->elements : "body";
-        body.name = fresh_name(
-            pieces_of_section[body.section] > 1 ? wanted + "_" + std::to_string(++seen[body.section]) : wanted, taken);
+        const std::string wanted = wanted_name(model, body);
+        body.name =
+            fresh_name(pieces_of_name[wanted] > 1 ? wanted + "_" + std::to_string(++seen[wanted]) : wanted, taken);
         body.piece = pieces > 1 ? static_cast<int>(b) + 1 : 0;
         body.formulation = formulation_of(model, body.cells);
         body.slice = slice_of(model, body);

@@ -45,7 +45,7 @@ protected:
         std::vector<double> values(std::max(least, fields_.size()), 0.0);
         for (std::size_t f = 0; f < fields_.size(); ++f)
             if (!fields_[f].empty() && !to_number(fields_[f], values[f]))
-                lose(deck_.place(line), std::string(line.text.substr(0, 60)), "no number");
+                lose(deck_.place(line), std::string(line.source.substr(0, 60)), "no number");
         return values;
     }
 

@@ -20,7 +20,7 @@ bool EquationCards::take(const DeckCard& card, const std::string& word, bool in_
         split_fields(head.text, fields_);
         long long count = 0;
         if (fields_.size() != 1 || !to_integer(fields_[0], count) || count < 1) {
-            lose(deck_.place(head), std::string(head.text.substr(0, 60)), "a number of terms was expected");
+            lose(deck_.place(head), std::string(head.source.substr(0, 60)), "a number of terms was expected");
             return true;
         }
         std::vector<Term> terms;
@@ -42,7 +42,7 @@ bool EquationCards::terms_of(const DeckCard& card, std::size_t& line, std::size_
             term.points = points_of(fields_[f]);
             if (term.points.empty() || !to_integer(fields_[f + 1], component) || component < 1 || component > 3 ||
                 !to_number(fields_[f + 2], term.factor)) {
-                lose(deck_.place(text), std::string(text.text.substr(0, 60)),
+                lose(deck_.place(text), std::string(text.source.substr(0, 60)),
                      "a node or node set, a component from 1 to 3 and a factor were expected");
                 return false;
             }

@@ -1,7 +1,9 @@
 #include "deck/material_cards.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <numbers>
 
 namespace osculate::deck {
 
@@ -108,10 +110,26 @@ void MaterialCards::orthotropic(const DeckCard& card, bool constants, DeckMateri
 void MaterialCards::orientation(const DeckCard& card) {
     const std::string system = capitals_of(card, "SYSTEM");
     if (!system.empty() && system != "RECTANGULAR") return lose(card, "only rectangular axes have a counterpart");
-    if (card.last - card.first != 1) return lose(card, "only two points have a counterpart");
-    const std::vector<double> v = numbers(*deck_.begin(card), 6);
-    const std::array<Vec3, 2> axes{Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
+    const std::string definition = capitals_of(card, "DEFINITION");
+    if (!definition.empty() && definition != "COORDINATES")
+        return lose(card, "only axes through points have a counterpart");
+    const std::size_t lines = card.last - card.first;
+    if (lines < 1 || lines > 2) return lose(card, "two or three points, and an angle, have a counterpart");
+    const std::vector<double> v = numbers(*deck_.begin(card), 9);
+    const Vec3 origin(v[6], v[7], v[8]);
+    std::array<Vec3, 2> axes{Vec3(v[0], v[1], v[2]) - origin, Vec3(v[3], v[4], v[5]) - origin};
     if (!(axes[0].cross(axes[1]).norm() > 0)) return lose(card, "its points are on one line");
+    if (lines == 2) { // about one of these axes
+        const std::vector<double> turn = numbers(*(deck_.begin(card) + 1), 2);
+        const Vec3 x = axes[0].normalized(), z = axes[0].cross(axes[1]).normalized(), y = z.cross(x);
+        const double about = turn[0] == 0 ? 1 : turn[0]; // an empty field is the first axis
+        if ((about != 1 && about != 2 && about != 3) || turn.size() > 2)
+            return lose(card, "an axis from 1 to 3 and an angle are expected in its second line");
+        if (turn[1] != 0) {
+            const Eigen::AngleAxisd rotation(turn[1] * std::numbers::pi / 180, about == 1 ? x : about == 2 ? y : z);
+            axes = {rotation * x, rotation * y};
+        }
+    }
     model_.orientations[capitals_of(card, "NAME")] = axes;
 }
 

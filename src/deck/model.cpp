@@ -148,7 +148,7 @@ private:
             split_fields(line->text, fields_);
             DeckTemperature t;
             t.place = deck_.place(*line);
-            const std::string shown(line->text.substr(0, 60));
+            const std::string shown(line->source.substr(0, 60));
             t.points = points_of(fields_[0]);
             for (std::size_t i = 0, n = t.points.size(); i < n; ++i) // through the layer of plane elements
                 if (const auto above = model_.mesh.above.find(t.points[i]); above != model_.mesh.above.end())
@@ -256,7 +256,7 @@ private:
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             split_fields(line->text, fields_);
             values.place = deck_.place(*line);
-            const std::string shown(line->text.substr(0, 60));
+            const std::string shown(line->source.substr(0, 60));
             values.points = fields_.empty() ? std::vector<Index>{} : points_of(fields_[0]);
             if (values.points.empty()) {
                 lose(values.place, shown, "no node or node set of that name");
@@ -297,7 +297,7 @@ private:
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             split_fields(line->text, fields_);
             values.place = deck_.place(*line);
-            const std::string shown(line->text.substr(0, 60));
+            const std::string shown(line->source.substr(0, 60));
             long long component = 0;
             if (fields_.size() < 3 || !to_integer(fields_[1], component) || !to_number(fields_[2], values.value)) {
                 lose(values.place, shown, "not understood");
@@ -321,7 +321,7 @@ private:
         if (!amplitude_of(card, amplitude)) return;
         for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
             split_fields(line->text, fields_);
-            const std::string place = deck_.place(*line), shown(line->text.substr(0, 60));
+            const std::string place = deck_.place(*line), shown(line->source.substr(0, 60));
             const std::string label = fields_.size() > 1 ? in_capitals(fields_[1]) : "";
             if (label == "GRAV" && fields_.size() >= 6) {
                 gravity(place, shown, amplitude);

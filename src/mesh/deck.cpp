@@ -1,5 +1,6 @@
 #include "osculate/mesh/deck.hpp"
 
+#include "mesh/deck_assembly.hpp"
 #include "osculate/core/file_content.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 
@@ -12,7 +13,7 @@ namespace osculate::mesh {
 namespace {
 
 constexpr int deepest = 10;
-constexpr std::uintmax_t largest = 4'000'000'000; // of all files of a deck together
+constexpr std::uintmax_t most_bytes = 4'000'000'000; // of all files of a deck together
 constexpr std::size_t most_parameters = 100;
 
 bool is_blank(char c) {
@@ -23,9 +24,19 @@ char capital(char c) {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-std::string without_quotes(std::string_view text) {
-    if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-    return std::string(text);
+/// Without the quotes around it, where there are just these.
+std::string_view within_quotes(std::string_view text) {
+    const bool quoted = text.size() >= 2 && text.front() == '"' && text.find('"', 1) == text.size() - 1;
+    return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+std::size_t comma_outside_quotes(std::string_view text) {
+    bool inside = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '"') inside = !inside;
+        if (text[i] == ',' && !inside) return i;
+    }
+    return std::string_view::npos;
 }
 
 class Parser {
@@ -40,7 +51,7 @@ public:
         if (!std::filesystem::is_regular_file(path, error)) fail("no such file");
         const std::uintmax_t size = std::filesystem::file_size(path, error);
         if (error) fail("cannot be read");
-        if ((total_ += size) > largest) fail("decks of more than 4 GB are not read");
+        if ((total_ += size) > most_bytes) fail("decks of more than 4 GB are not read");
         if (depth > deepest) fail("*INCLUDE nested deeper than 10");
         auto content = std::make_shared<const std::string>(file_content(path, error));
         if (error) fail("cannot be read");
@@ -66,7 +77,7 @@ public:
             if (one.empty() || one.starts_with("**")) continue;
             if (one.front() != '*') {
                 if (deck.cards.empty()) throw MeshError(deck.place(number, line), "data before any keyword");
-                deck.lines.push_back({one, line, number});
+                deck.lines.push_back({one, line, number, one});
                 deck.cards.back().last = deck.lines.size();
                 continue;
             }
@@ -113,9 +124,10 @@ private:
             const std::size_t equals = fields[f].find('=');
             std::string name = in_capitals(fields[f].substr(0, equals));
             std::erase_if(name, is_blank);
-            card.parameters.emplace_back(std::move(name), equals == std::string_view::npos
-                                                              ? ""
-                                                              : without_quotes(trimmed(fields[f].substr(equals + 1))));
+            card.parameters.emplace_back(std::move(name),
+                                         equals == std::string_view::npos
+                                             ? ""
+                                             : std::string(within_quotes(trimmed(fields[f].substr(equals + 1)))));
         }
         return card;
     }
@@ -146,9 +158,11 @@ std::string in_capitals(std::string_view text) {
 
 void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
     fields.clear();
+    const bool quotes = line.find('"') != std::string_view::npos;
     while (!line.empty()) {
-        const std::size_t comma = line.find(',');
+        const std::size_t comma = quotes ? comma_outside_quotes(line) : line.find(',');
         fields.push_back(trimmed(line.substr(0, comma)));
+        if (quotes) fields.back() = within_quotes(fields.back());
         line = comma == std::string_view::npos ? std::string_view() : line.substr(comma + 1);
         if (trimmed(line).empty()) break;
     }
@@ -174,13 +188,13 @@ bool to_integer(std::string_view text, long long& value) {
 Deck read_deck(const std::filesystem::path& path) {
     Parser parser(true);
     parser.file(path, "", 0);
-    return std::move(parser.deck);
+    return without_parts(std::move(parser.deck));
 }
 
 Deck parse_deck(std::string text, const std::string& name) {
     Parser parser(false);
     parser.text(std::make_shared<const std::string>(std::move(text)), name, {}, 0);
-    return std::move(parser.deck);
+    return without_parts(std::move(parser.deck));
 }
 
 } // namespace osculate::mesh

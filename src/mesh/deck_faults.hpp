@@ -1,6 +1,8 @@
 #pragma once
 /// What is wrong with a deck.
 
+#include "osculate/mesh/deck.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +19,14 @@ public:
 private:
     std::vector<std::string> first_;
     std::size_t count_ = 0;
+};
+
+/// Where a fault is to be reported.
+struct DeckPlace {
+    const Deck& deck;
+    int file = 0, line = 0;
+    DeckFaults& faults;
+    void fault(const std::string& what) const { faults.add(deck.place(file, line), what); }
 };
 
 /// Text of a deck for a message, cut off after 60 characters.

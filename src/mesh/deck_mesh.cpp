@@ -24,13 +24,14 @@ public:
     explicit Reader(const Deck& deck) : deck_(deck), reading_{deck} {}
 
     DeckMesh read() {
+        mesh_.raw.instances = deck_.instances;
         mesh_.raw.file = deck_.files.empty() ? "" : deck_.files.front();
         read_all_nodes();
-        points_.index(mesh_.raw.file, reading_.faults);
+        points_.index(reading_);
         for (const DeckCard& card : deck_.cards)
             if (card.keyword == "ELEMENT") read_elements(card);
         mesh_.raw.elsewhere.assign(mesh_.raw.points.size(), 0);
-        cells_.index(mesh_.raw.file, reading_.faults);
+        cells_.index(reading_);
         read_sets_and_surfaces();
         reading_.faults.throw_if_any();
         mesh_.raw.node_sets = node_sets_.take_sets();
@@ -45,12 +46,6 @@ public:
 private:
     void read_all_nodes() {
         for (const DeckCard& card : deck_.cards) {
-            if (card.keyword == "PART" || card.keyword == "INSTANCE" || card.keyword == "ASSEMBLY") {
-                reading_.fault(card, "*" + card.keyword +
-                                         ": parts and assemblies are not read; write the deck flat, without them "
-                                         "(Abaqus/CAE: noPartsInputFile=ON of the model)");
-                break;
-            }
             if (card.keyword == "SYSTEM") reading_.fault(card, "*SYSTEM: nodes in other axes are not read");
             if (card.keyword == "NODE") read_nodes(card);
         }
@@ -67,7 +62,7 @@ private:
             for (std::size_t d = 0; d < 3 && d + 1 < fields_.size(); ++d)
                 good = good && (fields_[d + 1].empty() || to_number(fields_[d + 1], x[static_cast<Index>(d)]));
             if (!good) {
-                reading_.fault(*line, "a node is its number and its coordinates, found '" + shown(line->text) + "'");
+                reading_.fault(*line, "a node is its number and its coordinates, found '" + shown(line->source) + "'");
                 continue;
             }
             points_.add(id, static_cast<Index>(mesh_.raw.points.size()));
@@ -113,7 +108,7 @@ private:
             if (name == "C3D8I" && numbers.size() > count + 1) numbers.resize(count + 1); // nodes of its modes
             if (!good || numbers.size() != count + 1 || numbers[0] <= 0 || numbers[0] > DeckNumbers::largest)
                 reading_.fault(first, "an element of type " + name + " is its number and " + std::to_string(count) +
-                                          " nodes, found '" + shown(first.text) + "'");
+                                          " nodes, found '" + shown(first.source) + "'");
             else if (plane ? add_layer(first, *plane, thickness, numbers) : add_cell(first, *type, numbers))
                 mesh_.type.push_back(kind_number);
         }
@@ -128,7 +123,7 @@ private:
             const long long id = numbers[static_cast<std::size_t>(type.from_deck[i]) + 1];
             cell.nodes[i] = points_.look_up(id);
             if (cell.nodes[i] >= 0) continue;
-            reading_.fault(line, "element " + std::to_string(cell.id) + " has node " + std::to_string(id) +
+            reading_.fault(line, "element " + deck_.instances.shown(cell.id) + " has node " + std::to_string(own(id)) +
                                      ", which does not exist");
             return false;
         }
@@ -144,8 +139,13 @@ private:
         for (std::size_t i = 1; i < numbers.size(); ++i) {
             points.push_back(points_.look_up(numbers[i]));
             if (points.back() >= 0) continue;
-            reading_.fault(line, "element " + std::to_string(numbers[0]) + " has node " + std::to_string(numbers[i]) +
-                                     ", which does not exist");
+            reading_.fault(line, "element " + deck_.instances.shown(numbers[0]) + " has node " +
+                                     std::to_string(own(numbers[i])) + ", which does not exist");
+            return false;
+        }
+        if (!planes_->lie_in_plane(points)) {
+            reading_.fault(line, "plane element " + deck_.instances.shown(numbers[0]) +
+                                     " is turned out of the plane of x and y, where plane elements stay");
             return false;
         }
         RawCell cell = planes_->layer(type, points, thickness);
@@ -154,6 +154,12 @@ private:
         mesh_.raw.cells.push_back(cell);
         mesh_.slices.push_back(type.slice);
         return true;
+    }
+
+    /// A number as its part has it.
+    [[nodiscard]] long long own(long long id) const {
+        const Instance* instance = deck_.instances.of(id);
+        return instance == nullptr ? id : id - instance->before;
     }
 
     void read_sets_and_surfaces() {
@@ -165,12 +171,31 @@ private:
                 const int nodes = plane ? plane->nodes : type == nullptr ? 0 : type->nodes;
                 element_sets_.read_defined(card, static_cast<std::size_t>(nodes) + 1);
             }
-            if (card.keyword == "NSET") node_sets_.read(card);
+            if (card.keyword == "NSET" && card.parameter("ELSET") != nullptr)
+                read_nodes_of(card, *card.parameter("ELSET"));
+            else if (card.keyword == "NSET")
+                node_sets_.read(card);
             if (card.keyword == "ELSET") element_sets_.read(card);
         }
         DeckSurfaces surfaces(reading_, mesh_, node_sets_, element_sets_);
         for (const DeckCard& card : deck_.cards)
             if (card.keyword == "SURFACE") surfaces.read(card);
+    }
+
+    /// A set of the nodes of all elements of a set.
+    void read_nodes_of(const DeckCard& card, const std::string& elements) {
+        const std::string* name = card.parameter("NSET");
+        const std::vector<Index>* cells = element_sets_.find(elements);
+        if (name == nullptr || name->empty() || cells == nullptr)
+            return reading_.fault(card, "*NSET without NSET=name, or no element set '" + shown(elements) +
+                                            "' before this line");
+        if (!reading_.generate(most_nodes_per_cell * cells->size()))
+            return reading_.fault(card, "sets with too many members");
+        std::vector<Index>& nodes = node_sets_.named(*name);
+        for (const Index c : *cells) {
+            const RawCell& cell = mesh_.raw.cells[static_cast<std::size_t>(c)];
+            nodes.insert(nodes.end(), cell.begin(), cell.end());
+        }
     }
 
     const Deck& deck_;

@@ -1,7 +1,7 @@
 #pragma once
 /// From the numbers of a deck's nodes or elements to ours.
 
-#include "mesh/deck_faults.hpp"
+#include "mesh/deck_reading.hpp"
 #include "osculate/core/types.hpp"
 
 #include <string>
@@ -28,7 +28,7 @@ public:
     void add(long long id, Index number) { order_.emplace_back(id, number); }
 
     /// Sorts by number, so that a number that comes twice shows; and a table for numbers that are nearly without gaps.
-    void index(const std::string& file, DeckFaults& faults);
+    void index(DeckReading& reading);
 
     /// Ours, -1 where there is none; after index().
     [[nodiscard]] Index look_up(long long id) const {

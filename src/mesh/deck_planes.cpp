@@ -89,6 +89,13 @@ void DeckPlanes::leave_axis(const std::vector<Index>& points) {
         }
 }
 
+bool DeckPlanes::lie_in_plane(const std::vector<Index>& points) const {
+    Eigen::AlignedBox3d box;
+    for (const Index point : points) box.extend(mesh_.raw.points[static_cast<std::size_t>(point)]);
+    constexpr double small = 1e-6; // of the element: rounded coordinates
+    return box.sizes()[2] <= small * box.diagonal().norm();
+}
+
 RawCell DeckPlanes::layer(const PlaneType& type, const std::vector<Index>& points, double thickness) {
     if (type.slice == DeckSlice::axisymmetric) leave_axis(points);
     const std::size_t corners = points.size() > 4 ? points.size() / 2 : points.size();

@@ -26,6 +26,7 @@ public:
 
     /// Thickness of the elements of a card; 0, and a fault, where sections do not tell.
     double thickness(const DeckCard& card);
+    [[nodiscard]] bool lie_in_plane(const std::vector<Index>& points) const;
     /// A solid element of an element in the plane, whose points are in the order of the deck.
     RawCell layer(const PlaneType& type, const std::vector<Index>& points, double thickness);
 

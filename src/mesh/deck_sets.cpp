@@ -72,7 +72,7 @@ bool DeckSets::add_members(const DeckLine& line, std::vector<Index>& members) {
             if (number >= 0)
                 members.push_back(number);
             else if (!reading_.refused)
-                reading_.fault(line, numbers_.word() + " " + std::to_string(id) + " does not exist");
+                reading_.fault(line, numbers_.word() + " " + reading_.deck.instances.shown(id) + " does not exist");
             continue;
         }
         const std::vector<Index>* found = find(field);
@@ -94,7 +94,7 @@ void DeckSets::add_range(const DeckLine& line, std::vector<Index>& members) {
     if (fields_.size() < 2 || fields_.size() > 3 || !to_integer(fields_[0], first) || !to_integer(fields_[1], last) ||
         (fields_.size() == 3 && !fields_[2].empty() && !to_integer(fields_[2], by)) || by <= 0 || first <= 0 ||
         last < first || last > DeckNumbers::largest)
-        return reading_.fault(line, "GENERATE takes first, last, step, found '" + shown(line.text) + "'");
+        return reading_.fault(line, "GENERATE takes first, last, step, found '" + shown(line.source) + "'");
     const DeckOrder& order = numbers_.order();
     if ((last - first) / by > static_cast<long long>(order.size())) { // mostly gaps: over those that exist
         if (!reading_.generate(order.size())) return reading_.fault(line, "sets with too many members");

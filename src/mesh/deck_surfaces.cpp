@@ -63,7 +63,7 @@ void DeckSurfaces::add_face(const DeckLine& line, const std::vector<Index>& cell
         if (one.count > 0)
             faces.push_back(one);
         else
-            reading_.fault(line, "element " + std::to_string(mesh_.raw.cells[c].id) + " has no face '" +
+            reading_.fault(line, "element " + reading_.deck.instances.shown(mesh_.raw.cells[c].id) + " has no face '" +
                                      shown(fields_[1]) + "'");
     }
 }

@@ -44,11 +44,11 @@ std::string mends(Repair r) {
 }
 
 std::string name_of(const RawMesh& raw, const RawCell& cell) {
-    return raw.cell_word + (" " + std::to_string(cell.id));
+    return raw.cell_word + (" " + raw.instances.shown(cell.id));
 }
 
 std::string name_of(const RawMesh& raw, Index point) {
-    return raw.point_word + (" " + std::to_string(raw.point_ids[point]));
+    return raw.point_word + (" " + raw.instances.shown(raw.point_ids[point]));
 }
 
 /// Ids of what a note is about, the first few.
@@ -131,7 +131,7 @@ void merge_coincident(RawMesh& raw, bool wanted, MeshFaults& all) {
     for (std::size_t p = 0; p < first.size(); ++p)
         if (first[p] != static_cast<Index>(p)) {
             any = true;
-            noted.add(std::to_string(raw.point_ids[p]) + " at " + std::to_string(raw.point_ids[first[p]]));
+            noted.add(raw.instances.shown(raw.point_ids[p]) + " at " + raw.instances.shown(raw.point_ids[first[p]]));
         }
     noted.finish(all, raw,
                  std::string(raw.point_word) + (wanted ? "s merged with another at the same place"
@@ -167,14 +167,14 @@ void check_shapes(RawMesh& raw, const Repairs& repairs, MeshFaults& all) {
         const double length = extent(raw, cell);
         bool twice = has_node_twice(cell);
         if (twice && repairs[Repair::degenerate] && becomes_wedge(cell)) {
-            wedges.add(std::to_string(cell.id));
+            wedges.add(raw.instances.shown(cell.id));
             twice = false;
             volume = cell_volume(cell.type, nodes_of(cell), raw.points);
         }
         const bool flat = !(std::abs(volume) > no_volume * length * length * length);
         if (twice || flat) {
             if (repairs[Repair::degenerate] && flat) {
-                dropped.add(std::to_string(cell.id));
+                dropped.add(raw.instances.shown(cell.id));
                 continue;
             }
             degenerate.add(name_of(raw, cell) +
@@ -189,7 +189,7 @@ void check_shapes(RawMesh& raw, const Repairs& repairs, MeshFaults& all) {
         }
         if (volume < 0 && repairs[Repair::inverted]) {
             turn_over(cell);
-            turned.add(std::to_string(cell.id));
+            turned.add(raw.instances.shown(cell.id));
             volume = -volume;
         }
         if (volume < 0)
@@ -242,7 +242,7 @@ bool check_duplicates(RawMesh& raw, bool wanted, MeshFaults& all) {
     bool left = false;
     for (std::size_t c = 0; c < raw.cells.size(); ++c) {
         if (original[c] >= 0 && wanted) {
-            dropped.add(std::to_string(raw.cells[c].id));
+            dropped.add(raw.instances.shown(raw.cells[c].id));
             continue;
         }
         if (original[c] >= 0) {
@@ -271,7 +271,7 @@ void check_dangling(RawMesh& raw, bool wanted, MeshFaults& all) {
     for (std::size_t p = 0; p < used.size(); ++p)
         if (!used[p]) {
             if (wanted)
-                dropped.add(std::to_string(raw.point_ids[p]));
+                dropped.add(raw.instances.shown(raw.point_ids[p]));
             else
                 kind.add(name_of(raw, static_cast<Index>(p)) + " belongs to nothing");
         }
@@ -308,7 +308,7 @@ void check_manifold(RawMesh& raw, bool split, bool keep, MeshFaults& all) {
     lasting.finish("such faces");
     if ((split || keep) && found.crowded_faces.empty()) {
         Noted noted;
-        for (const Index p : found.touching_points) noted.add(std::to_string(raw.point_ids[p]));
+        for (const Index p : found.touching_points) noted.add(raw.instances.shown(raw.point_ids[p]));
         if (!split)
             return noted.finish(all, raw,
                                 std::string(raw.point_word) + "s at which alone parts of the body are joined");

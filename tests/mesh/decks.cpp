@@ -127,8 +127,6 @@ TEST_F(Decks, SayWhatIsWrongAtWhichLineAllAtOnce) {
                       HasSubstr("bad.inp:12: no set is called 'missing'"), HasSubstr("bad.inp:13: *NSET without")));
     EXPECT_THAT(error_of(write("faces.inp", cubes + "*SURFACE, NAME=s\n1, S9\n7, S1\n")),
                 AllOf(HasSubstr("element 1 has no face 'S9'"), HasSubstr("no element or element set '7'")));
-    EXPECT_THAT(error_of(write("parts.inp", "*PART, NAME=a\n*NODE\n1,0,0,0\n*END PART\n")),
-                AllOf(HasSubstr("parts.inp:1: *PART"), HasSubstr("flat")));
     EXPECT_THAT(error_of(write("twice.inp", "*NODE\n1,0,0,0\n1,1,0,0\n")), HasSubstr("node 1 is defined twice"));
     EXPECT_THAT(error_of(write("data.inp", "\n1,0,0,0\n")), HasSubstr("data.inp:2: data before any keyword"));
 }

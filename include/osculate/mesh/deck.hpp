@@ -1,6 +1,8 @@
 #pragma once
 /// Input decks of Abaqus and CalculiX: keyword lines with their data lines.
 
+#include "osculate/mesh/instances.hpp"
+
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -13,8 +15,9 @@ namespace osculate::mesh {
 /// A line of data, without comments and empty lines.
 struct DeckLine {
     std::string_view text;
-    int line = 0; ///< 1-based
-    int file = 0; ///< index into Deck::files
+    int line = 0;            ///< 1-based
+    int file = 0;            ///< index into Deck::files
+    std::string_view source; ///< as the file has it, for messages; the numbers of `text` may be others
 };
 
 /// `*KEYWORD, PARAMETER=value, ...` and the data below it.
@@ -28,11 +31,13 @@ struct DeckCard {
     [[nodiscard]] const std::string* parameter(std::string_view name) const;
 };
 
+/// Never has parts: instances are written out when a deck is read, with numbers of their own and names INSTANCE.NAME.
 struct Deck {
     std::vector<std::string> files; ///< the deck and the files that it includes
     std::vector<DeckCard> cards;
     std::vector<DeckLine> lines;
-    std::vector<std::shared_ptr<const std::string>> texts; ///< the storage to which DeckLine::text refers
+    std::vector<std::shared_ptr<const std::string>> texts; ///< the storage to which lines refer
+    Instances instances;                                   ///< whose numbers the deck's are
 
     [[nodiscard]] std::string place(int file, int line) const { return files[file] + ":" + std::to_string(line); }
     [[nodiscard]] std::string place(const DeckCard& card) const { return place(card.file, card.line); }
@@ -47,13 +52,15 @@ struct Deck {
 
 /// Reads a deck and the files that it includes (*INCLUDE, INPUT=file; the path is relative to the folder of the
 /// including file).
-/// Throws MeshError: a file that cannot be read, inclusion deeper than 10, more than 4 GB, data before any keyword.
+/// Throws MeshError: a file that cannot be read, inclusion deeper than 10, more than 4 GB, data before any keyword, parts
+/// and assemblies that do not fit together.
 [[nodiscard]] Deck read_deck(const std::filesystem::path& path);
 
 /// The same for a text that includes no files. @param name  for messages
 [[nodiscard]] Deck parse_deck(std::string text, const std::string& name);
 
-/// Splits a data line at its commas into trimmed fields. A comma at the very end adds no field.
+/// Splits a data line at its commas, but not those in quotes, into trimmed fields; quotes around a field are left out. A
+/// comma at the very end adds no field.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);

@@ -1,6 +1,7 @@
 #pragma once
 /// Content of a mesh file, with the numbers used in the file, before a body is made of it.
 
+#include "osculate/mesh/instances.hpp"
 #include "osculate/mesh/mesh.hpp"
 
 #include <cstdint>
@@ -45,6 +46,7 @@ struct RawMesh {
     std::map<std::string, std::vector<RawFace>> surfaces;
     std::map<std::string, std::vector<Index>> parts; ///< named sets of cells
     bool sets_are_surfaces = false; ///< the exterior facets of a node set are the surface with its name
+    Instances instances;            ///< whose numbers those of points and cells are
     const char* cell_word = "element";
     const char* point_word = "node";
 };

@@ -58,6 +58,8 @@ void ContactCards::friction(const DeckCard& card) {
     if (v[0] < 0) return lose(card, "a negative coefficient");
     for (const char* name : {"ROUGH", "TAUMAX"})
         if (card.parameter(name) != nullptr) lose(card, std::string(name) + " has no counterpart");
+    if (card.last - card.first > 1)
+        lose(card, "friction that depends on anything has no counterpart: that of its first line is used");
     model_.interactions[interaction_].friction = v[0];
     if (v.size() > 1 && v[1] > 0) model_.interactions[interaction_].stick = v[1];
 }

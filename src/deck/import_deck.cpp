@@ -3,6 +3,7 @@
 #include "deck/bodies.hpp"
 #include "deck/body_writer.hpp"
 #include "deck/equations.hpp"
+#include "deck/general_contact.hpp"
 #include "deck/loads.hpp"
 #include "deck/supports.hpp"
 #include "deck/words.hpp"
@@ -109,7 +110,7 @@ private:
     }
 
     std::string write_contact() {
-        std::string text;
+        std::string text = write_general_contact(model_, bodies_);
         std::set<std::string> taken;
         for (const DeckPair& pair : model_.pairs) {
             if (is_tied(pair)) continue;
@@ -129,16 +130,23 @@ private:
                     // nodes of a deck meet the facets of the mesh; averages over facets are the default in statics
                     const std::string name = fresh_name(slave + "_on_" + master, taken);
                     change_pair(pair, name);
-                    const bool coarse = mortar && largest_turn(b, pair.master) > most_turn;
+                    const double turn = std::max(mortar ? largest_turn(b, pair.master) : 0,
+                                                 pair.either ? largest_turn(a, pair.slave) : 0);
+                    const bool coarse = turn > most_turn;
                     if (coarse)
                         model_.note(pair.place,
                                     "facets of " + pair.master + " that turn by " +
-                                        number(std::round(largest_turn(b, pair.master) * 180 / std::numbers::pi)) +
+                                        number(std::round(turn * 180 / std::numbers::pi)) +
                                         " degrees from one to the next",
                                     "as coarse as that, a smooth surface through their nodes is another one: contact "
                                     "takes the facets, as the deck's own program does");
-                    text += "  " + name + ":\n    slave: " + slave + "\n    master: {set: " + master +
-                            (mortar && !coarse ? "" : ", surface: facets") + "}\n";
+                    text += "  " + name + ":\n";
+                    if (pair.either)
+                        text +=
+                            "    between: [" + slave + ", " + master + "]\n" + (coarse ? "    surface: facets\n" : "");
+                    else
+                        text += "    slave: " + slave + "\n    master: {set: " + master +
+                                (mortar && !coarse ? "" : ", surface: facets") + "}\n";
                     if (!mortar) text += "    discretisation: node  # node to surface\n";
                     if (pair.adjust > 0) text += "    adjust: " + number(units_.length * pair.adjust) + "\n";
                     text += law_of(pair);

@@ -2,6 +2,7 @@
 
 #include "deck/contact_cards.hpp"
 #include "deck/equations.hpp"
+#include "deck/general_contact.hpp"
 #include "deck/material_cards.hpp"
 
 #include <algorithm>
@@ -66,7 +67,8 @@ const std::map<std::string, Reason> reasons{
 class Reader : CardReader {
 public:
     Reader(const mesh::Deck& deck, DeckModel& model)
-        : CardReader(deck, model), materials_(deck, model), contact_(deck, model), equations_(deck, model) {}
+        : CardReader(deck, model), materials_(deck, model), contact_(deck, model), general_(deck, model),
+          equations_(deck, model) {}
 
     void read() {
         for (const DeckCard& card : deck_.cards) take(card);
@@ -92,7 +94,7 @@ private:
             return;
         }
         if (materials_.take(card, word, step_ != nullptr) || contact_.take(card, word, step_) ||
-            equations_.take(card, word, step_ != nullptr))
+            general_.take(card, word, step_) || equations_.take(card, word, step_ != nullptr))
             return;
         if (word == "TEMPERATURE" && step_ != nullptr) return temperatures(card, step_->temperatures);
         if (word == "INITIALCONDITIONS" && capitals_of(card, "TYPE") == "TEMPERATURE")
@@ -445,6 +447,7 @@ private:
 
     MaterialCards materials_;
     ContactCards contact_;
+    GeneralContactCards general_;
     EquationCards equations_;
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
@@ -486,6 +489,7 @@ DeckModel read_deck_model(const mesh::Deck& deck) {
     DeckModel model;
     model.mesh = mesh::read_deck_mesh(deck);
     Reader(deck, model).read();
+    add_pairs_of_general_contact(model);
     return model;
 }
 

@@ -82,9 +82,22 @@ struct DeckPair {
     std::string slave, master, interaction; ///< in capitals
     bool mortar = false;                    ///< surface to surface, and mortar
     bool tied = false;
+    bool either = false;  ///< may be the slave
     double tolerance = 0; ///< of a tie's positions; 0: not given
     double adjust = 0;    ///< distance up to which slave nodes are moved onto the master; 0: none is
     std::string place;
+};
+
+/// Contact of all surfaces, or of pairs of them.
+struct DeckGeneralContact {
+    struct Sides {
+        std::string first, second; ///< surfaces, in capitals; empty: all, or the first itself
+        std::string interaction;   ///< of a law, in capitals
+        std::string place;
+    };
+    std::string place; ///< of *CONTACT, empty where there is none
+    bool all = false;  ///< all surfaces may meet
+    std::vector<Sides> included, excluded, laws;
 };
 
 /// Axes of points that are not those of the deck.
@@ -170,6 +183,7 @@ struct DeckModel {
     std::map<std::string, std::array<Vec3, 2>> orientations; ///< by names in capitals: first axis, and one of its plane
     std::map<std::string, DeckInteraction> interactions;     ///< by names in capitals
     std::vector<DeckPair> pairs, ties;
+    DeckGeneralContact general;
     std::vector<DeckRing> rings;
     std::vector<DeckEquation> equations;
     std::vector<DeckTransform> transforms;

@@ -104,7 +104,7 @@ private:
             return std::nullopt;
         }
         if (at->second.tied) model_.lose(law.place, law.interaction + ", which ties", "general contact ties nothing");
-        if (at->second.stiffness > 0 || at->second.stick > 0)
+        if (at->second.overclosure.gives_way() || at->second.stick > 0)
             model_.note(law.place, "overclosure and stick slope of " + law.interaction,
                         "general contact and its stick are exact");
         return at->second.friction;

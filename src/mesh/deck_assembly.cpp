@@ -18,24 +18,24 @@ const std::set<std::string> of_model{
     "MODELCHANGE", "INITIALCONDITIONS", "CONTACT", "MATERIAL", "AMPLITUDE", "SURFACEINTERACTION"};
 /// Whose lines name sets, surfaces, nodes or elements.
 const std::set<std::string> with_names{"NSET",
-                                   "ELSET",
-                                   "SURFACE",
-                                   "BOUNDARY",
-                                   "CLOAD",
-                                   "DLOAD",
-                                   "DSLOAD",
-                                   "TEMPERATURE",
-                                   "TIE",
-                                   "CONTACTPAIR",
-                                   "TIE",
-                                   "MODELCHANGE",
-                                   "INITIALCONDITIONS",
-                                   "EQUATION",
-                                   "CONTACTINCLUSIONS",
-                                   "MPC",
-                                   "CYCLICSYMMETRYMODEL",
-                                   "CONTACTEXCLUSIONS",
-                                   "CONTACTPROPERTYASSIGNMENT"};
+                                       "ELSET",
+                                       "SURFACE",
+                                       "BOUNDARY",
+                                       "CLOAD",
+                                       "DLOAD",
+                                       "DSLOAD",
+                                       "TEMPERATURE",
+                                       "TIE",
+                                       "CONTACTPAIR",
+                                       "TIE",
+                                       "MODELCHANGE",
+                                       "INITIALCONDITIONS",
+                                       "EQUATION",
+                                       "CONTACTINCLUSIONS",
+                                       "MPC",
+                                       "CYCLICSYMMETRYMODEL",
+                                       "CONTACTEXCLUSIONS",
+                                       "CONTACTPROPERTYASSIGNMENT"};
 
 class Assembly {
 public:

@@ -48,7 +48,7 @@ public:
         ImportedScene scene;
         std::string text =
             fmt::format("# From {}, numbers in {}; everything here is in SI.\n", harmless(path_), units_.words);
-        text += "# A body per connected piece of the mesh, named after its solid section.\n";
+        text += "# A body per connected piece of the mesh, named after its instance or its solid section.\n";
         for (const LeftOut& one : model_.left_out) {
             scene.left_out.push_back(harmless(one.place + ": " + one.what + ": " + one.why));
             if (one.lost)

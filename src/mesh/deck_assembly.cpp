@@ -14,7 +14,7 @@ namespace {
 
 /// What only the model as a whole has, and not a part of it.
 const std::set<std::string> of_model{
-    "STEP",        "BOUNDARY",          "CLOAD",   "DLOAD",    "DSLOAD",    "TEMPERATURE",       "TIE", "CONTACTPAIR",
+    "STEP",        "BOUNDARY",          "CLOAD",   "DLOAD",    "DSLOAD",    "TEMPERATURE",       "CONTACTPAIR",
     "MODELCHANGE", "INITIALCONDITIONS", "CONTACT", "MATERIAL", "AMPLITUDE", "SURFACEINTERACTION"};
 /// Whose lines name sets, surfaces, nodes or elements.
 const std::set<std::string> with_names{"NSET",
@@ -27,7 +27,6 @@ const std::set<std::string> with_names{"NSET",
                                        "TEMPERATURE",
                                        "TIE",
                                        "CONTACTPAIR",
-                                       "TIE",
                                        "MODELCHANGE",
                                        "INITIALCONDITIONS",
                                        "EQUATION",

@@ -13,9 +13,9 @@ enum class Fields : char { other, nodes, numbers, members, first_member, terms, 
 
 Fields fields_of(const DeckCard& card) {
     static const std::map<std::string, Fields> known{
-        {"NODE", Fields::nodes},           {"ELEMENT", Fields::numbers},       {"NSET", Fields::members},
-        {"ELSET", Fields::members},        {"SURFACE", Fields::first_member},  {"EQUATION", Fields::terms},
-        {"TRANSFORM", Fields::directions}, {"ORIENTATION", Fields::directions}};
+        {"NODE", Fields::nodes},     {"ELEMENT", Fields::numbers},      {"NSET", Fields::members},
+        {"ELSET", Fields::members},  {"TIE", Fields::members},          {"SURFACE", Fields::first_member},
+        {"EQUATION", Fields::terms}, {"TRANSFORM", Fields::directions}, {"ORIENTATION", Fields::directions}};
     const auto at = known.find(keyword_of(card));
     if (at == known.end()) return Fields::other;
     const std::string* axes = card.parameter(at->first == "TRANSFORM" ? "TYPE" : "SYSTEM");

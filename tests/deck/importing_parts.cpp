@@ -88,6 +88,24 @@ TEST_F(ImportingParts, RunsAsTheSameModelWrittenFlat) {
     }
 }
 
+TEST_F(ImportingParts, TheAssemblyTiesSurfacesOfItsInstances) {
+    std::string deck = parts;
+    deck.insert(deck.find("*End Assembly"),
+                "** Constraint: Constraint-1\n*Tie, name=Constraint-1, adjust=yes\nSmall-1.Under, Over\n");
+    const ImportedScene imported = import("", DeckUnits::mm, deck);
+    EXPECT_THAT(imported.lost, IsEmpty());
+    ASSERT_THAT(checked(imported).ties, SizeIs(1));
+    EXPECT_EQ(checked(imported).ties[0].second.master, "Over");
+}
+
+TEST_F(ImportingParts, EquationsNameNodesOfInstances) {
+    std::string deck = parts;
+    deck.insert(deck.find("*End Assembly"), "*Equation\n2\nSmall-1.6, 1, 1.\nLarge-1.7, 1, -1.\n");
+    const ImportedScene imported = import("", DeckUnits::mm, deck);
+    EXPECT_THAT(imported.lost, IsEmpty());
+    EXPECT_THAT(scene::parse_scene(imported.text, "imported.yaml").equations, SizeIs(1));
+}
+
 TEST_F(ImportingParts, BodiesAreNamedAfterInstances) {
     const scene::Scene scene = checked(import("", DeckUnits::mm, parts));
     ASSERT_EQ(scene.bodies.size(), 2u);

@@ -1,6 +1,7 @@
 /// Decks as Abaqus/CAE writes them: parts, instances, an assembly.
 
 #include "deck/imported.hpp"
+#include "osculate/mesh/mesh_error.hpp"
 #include "support/diary.hpp"
 
 #include <gmock/gmock.h>

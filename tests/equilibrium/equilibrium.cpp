@@ -79,7 +79,7 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
     std::vector<double> by_step;
     for (const double dt : {1e-3, 5e-4}) {
         equilibrium.begin_attempt(state, {state.u, state.u, {}}, dt);
-        const double c = equilibrium.contact()[0].stiffness(0);
+        const double c = equilibrium.contact()[0].stiffness(0, Vec3::Zero());
         by_step.push_back(c - pair.slaves().stiffness[0]);
         EXPECT_DOUBLE_EQ(c, pair.slaves().stiffness[0] + equilibrium.bodies().inertia(pair.slaves().node[0]));
     }

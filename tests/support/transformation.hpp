@@ -80,6 +80,12 @@ public:
     void courses(const scene::Key& key, std::array<scene::Course, 3>& value) override {
         for (scene::Course& component : value) course(key, component);
     }
+    void table(const scene::Key& key, const scene::Key& first, scene::Table& value) override {
+        for (auto& row : value.rows) {
+            row[0] *= by_.factor(first.unit);
+            row[1] *= by_.factor(key.unit);
+        }
+    }
     void integer(const scene::Key& /*key*/, int& /*value*/) override {}
     void divisions(const scene::Key& /*key*/, std::array<int, 3>& /*value*/) override {}
     void integers(const scene::Key& /*key*/, std::vector<int>& /*value*/) override {}

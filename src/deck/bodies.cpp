@@ -40,6 +40,24 @@ void find_sections(DeckModel& model, const std::vector<int>& section, DeckBody& 
     }
 }
 
+/// @param rigid  number of the rigid body of every cell, -1: none
+void find_rigid(DeckModel& model, const std::vector<int>& rigid, DeckBody& body) {
+    std::set<int> all;
+    bool shells = false;
+    for (const Index c : body.cells) {
+        all.insert(rigid[static_cast<std::size_t>(c)]);
+        shells = shells || model.mesh.is_shell(c);
+    }
+    if (all == std::set<int>{-1} && shells)
+        model.lose(model.mesh.raw.file, "R3D3 and R3D4 without a *RIGID BODY", "they become a thin layer that deforms");
+    if (all == std::set<int>{-1}) return;
+    const DeckRigid& one = model.rigid[static_cast<std::size_t>(*all.rbegin())];
+    if (all.size() > 1)
+        return model.lose(one.place, "*RIGID BODY of part of a connected piece",
+                          "a body is rigid as a whole: it deforms");
+    body.rigid = &one;
+}
+
 std::string formulation_of(const DeckModel& model, const std::vector<Index>& cells) {
     std::map<std::string, std::size_t> count;
     for (const Index c : cells)
@@ -113,7 +131,11 @@ std::vector<DeckBody> make_bodies(DeckModel& model) {
     for (std::size_t c = 0; c < piece.size(); ++c)
         bodies[static_cast<std::size_t>(piece[c] - 1)].cells.push_back(static_cast<Index>(c));
     std::map<std::string, int> pieces_of_name, seen;
+    std::vector<int> rigid(raw.cells.size(), -1);
+    for (std::size_t r = 0; r < model.rigid.size(); ++r)
+        for (const Index c : model.rigid[r].cells) rigid[static_cast<std::size_t>(c)] = static_cast<int>(r);
     for (DeckBody& body : bodies) {
+        find_rigid(model, rigid, body);
         find_sections(model, section, body);
         ++pieces_of_name[wanted_name(model, body)];
     }

@@ -18,6 +18,7 @@ struct DeckBody {
     mesh::Mesh mesh;
     std::vector<Index> points; ///< of the deck, of every node
     std::vector<mesh::Facet> exterior;
+    const DeckRigid* rigid = nullptr;               ///< that it is, or a piece of
     const DeckSection* section = nullptr;           ///< the one that most of its elements have
     std::vector<const DeckSection*> other_sections; ///< of its other elements; of several that have one the last counts
     bool joined_at_nodes = false;                   ///< mesh::Repair::keep_non_manifold
@@ -43,6 +44,9 @@ public:
     std::string of_surface(std::size_t body, const std::string& in_capitals);
 
     [[nodiscard]] int body_of(Index point) const { return body_of_[static_cast<std::size_t>(point)]; }
+    [[nodiscard]] bool is_rigid(Index point) const {
+        return body_of(point) >= 0 && bodies_[static_cast<std::size_t>(body_of(point))].rigid != nullptr;
+    }
     [[nodiscard]] Index node_of(Index point) const { return node_of_[static_cast<std::size_t>(point)]; }
     [[nodiscard]] const std::string& yaml() const { return yaml_; } ///< the entries of `sets`
 

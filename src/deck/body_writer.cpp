@@ -31,6 +31,10 @@ std::string BodyWriter::write() {
                                 body.joined_at_nodes ? "keep_non_manifold" : "");
         text += "}";
         if (units_.length != 1) text += ", scale: " + number(units_.length);
+        if (body.rigid != nullptr) {
+            text += "}\n    rigid: " + rigid_.of(body) + "\n";
+            continue;
+        }
         const std::string material = material_of(body, body.section);
         text += "}\n    material: " + material + "\n";
         bool small_strain = is_small_strain(material);

@@ -3,6 +3,7 @@
 
 #include "deck/bodies.hpp"
 #include "deck/loads.hpp"
+#include "deck/rigid_bodies.hpp"
 
 #include <string>
 #include <vector>
@@ -13,8 +14,9 @@ class BodyWriter {
 public:
     /// @param path    of the deck, as the scene names it
     /// @param nlgeom  whether a step is at finite strain: bodies have one law for all steps
-    BodyWriter(DeckModel& model, const std::vector<DeckBody>& bodies, const Units& units, std::string path, bool nlgeom)
-        : model_(model), bodies_(bodies), units_(units), path_(std::move(path)), nlgeom_(nlgeom) {}
+    BodyWriter(DeckModel& model, const std::vector<DeckBody>& bodies, const DeckRigidBodies& rigid, const Units& units,
+               std::string path, bool nlgeom)
+        : model_(model), bodies_(bodies), rigid_(rigid), units_(units), path_(std::move(path)), nlgeom_(nlgeom) {}
 
     /// The entries of `bodies`. Adds to what the model leaves out.
     [[nodiscard]] std::string write();
@@ -29,6 +31,7 @@ private:
 
     DeckModel& model_;
     const std::vector<DeckBody>& bodies_;
+    const DeckRigidBodies& rigid_;
     const Units& units_;
     std::string path_;
     bool nlgeom_;

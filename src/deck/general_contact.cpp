@@ -89,6 +89,13 @@ public:
         for (const Sides& law : general.laws)
             if (&law != all && !(law.first.empty() && law.second.empty())) add_law(law);
         for (const Sides& sides : general.excluded) exclude(sides);
+        for (std::size_t a = 0; a < bodies_.size(); ++a)
+            for (std::size_t b = a + 1; b < bodies_.size(); ++b)
+                if (bodies_[a].rigid != nullptr && bodies_[b].rigid != nullptr) {
+                    model_.note(general.place, "contact of " + bodies_[a].name + " and " + bodies_[b].name,
+                                "two rigid bodies do not meet");
+                    rule(a, b, "contact: false");
+                }
         std::string text = "  general:\n    friction: " + number(friction_) + "\n";
         if (!rules_.empty()) text += "    pairs:\n" + rules_;
         return text;
@@ -139,11 +146,15 @@ private:
         for (const std::size_t a : first)
             for (const std::size_t b : second) {
                 if (!done.insert(std::minmax(a, b)).second) continue;
-                rules_ += fmt::format("      {}: {{between: [{}, {}], {}}}\n",
-                                      fresh_name(bodies_[a].name + "_and_" + bodies_[b].name, taken_), bodies_[a].name,
-                                      bodies_[b].name, what);
+                rule(a, b, what);
             }
         return true;
+    }
+
+    void rule(std::size_t a, std::size_t b, const std::string& what) {
+        rules_ += fmt::format("      {}: {{between: [{}, {}], {}}}\n",
+                              fresh_name(bodies_[a].name + "_and_" + bodies_[b].name, taken_), bodies_[a].name,
+                              bodies_[b].name, what);
     }
 
     void add_law(const Sides& law) {

@@ -5,6 +5,7 @@
 #include "deck/equations.hpp"
 #include "deck/general_contact.hpp"
 #include "deck/loads.hpp"
+#include "deck/rigid_bodies.hpp"
 #include "deck/supports.hpp"
 #include "deck/words.hpp"
 #include "osculate/mesh/mesh_error.hpp"
@@ -38,7 +39,8 @@ public:
             throw mesh::MeshError(model_.mesh.raw.file,
                                   "no *STEP with *STATIC or *DYNAMIC, which alone have counterparts");
         stages_.resize(model_.steps.size());
-        const std::string bodies = BodyWriter(model_, bodies_, units_, path_, nlgeom_).write(),
+        const DeckRigidBodies rigid(model_, bodies_, units_, stages_);
+        const std::string bodies = BodyWriter(model_, bodies_, rigid, units_, path_, nlgeom_).write(),
                           supports = DeckSupports(model_, sets_, units_.length, stages_).write(),
                           contact = write_contact(), ties = write_ties(), rings = write_rings(),
                           equations = write_equations(model_, sets_);
@@ -122,6 +124,11 @@ private:
                                       master = sets_.of_surface(b, pair.master);
                     if (slave.empty() || master.empty()) continue;
                     any = true;
+                    if (bodies_[a].rigid != nullptr && bodies_[b].rigid != nullptr) {
+                        model_.lose(pair.place, "*CONTACT PAIR of " + pair.slave + " and " + pair.master,
+                                    "two rigid bodies do not meet");
+                        continue;
+                    }
                     const bool mortar = pair.mortar && bodies_[a].mesh.surfaces.contains(surface_name(pair.slave));
                     if (pair.mortar && !mortar)
                         model_.note(
@@ -380,6 +387,9 @@ private:
         map("nodal_force", stages_[s].nodal_force, false);
         map("temperature", stages_[s].temperature, false);
         for (auto& [set, components] : stages_[s].release) components = "[" + components + "]";
+        map("motion", stages_[s].motion, true);
+        map("force", stages_[s].force, false);
+        map("moment", stages_[s].moment, false);
         map("release", stages_[s].release, false);
         map("friction", stages_[s].friction, false);
         map("pressure_overclosure", stages_[s].overclosure, false);

@@ -17,7 +17,8 @@ const char* const on_elements = "DLOAD";
 const char* const on_surfaces = "DSLOAD";
 const char* const on_nodes = "CLOAD";
 
-/// Components as a list, empty where none of them has a load in the step.
+} // namespace
+
 std::string end_components(std::array<LoadHistory, 3>& components, const DeckStep& step) {
     std::array<std::string, 3> courses;
     bool any = false;
@@ -28,8 +29,6 @@ std::string end_components(std::array<LoadHistory, 3>& components, const DeckSte
     }
     return any ? fmt::format("[{}]", fmt::join(courses, ", ")) : "";
 }
-
-} // namespace
 
 DeckLoads::DeckLoads(DeckModel& model, const std::vector<DeckBody>& bodies, DeckSets& sets, const Units& units,
                      bool follow)
@@ -130,9 +129,14 @@ void DeckLoads::add_pressures(const DeckStep& step) {
 void DeckLoads::add_forces(const DeckStep& step) {
     for (const DeckValues& f : step.forces) {
         std::size_t without = 0;
+        std::size_t of_rigid = 0;
         for (const Index p : f.points) {
             if (sets_.body_of(p) < 0) {
                 ++without;
+                continue;
+            }
+            if (sets_.is_rigid(p)) {
+                ++of_rigid;
                 continue;
             }
             NodeForce& force = forces_[p];
@@ -155,6 +159,9 @@ void DeckLoads::add_forces(const DeckStep& step) {
                                                                       units_.force() * part * share * f.value,
                                                                       model_.amplitude(f.amplitude));
         }
+        if (of_rigid > 0 && f.value != 0)
+            model_.lose(f.place, fmt::format("*CLOAD on {} nodes of rigid bodies", of_rigid),
+                        "forces act at the reference point");
         if (without > 0 && f.value != 0)
             model_.lose(f.place, fmt::format("*CLOAD on {} nodes", without), "no element has them");
     }

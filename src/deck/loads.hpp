@@ -25,8 +25,11 @@ struct Units {
 /// Entries of a stage: name of a set or a body -> value as a scene has it.
 struct StageLoads {
     std::map<std::string, std::string> displacement, pressure, follower_pressure, body_force, nodal_force, temperature,
-        release, friction, overclosure, pairs, centrifugal;
+        release, friction, overclosure, pairs, centrifugal, motion, force, moment;
 };
+
+/// Three components as a list at the end of a step, empty where none of them has a load in it.
+[[nodiscard]] std::string end_components(std::array<LoadHistory, 3>& components, const DeckStep& step);
 
 /// Pressures are kept face by face and gravity body by body over all steps, so that what a step changes on some faces stays on
 /// the others; faces with the same history become a set.

@@ -4,6 +4,7 @@
 #include "deck/equations.hpp"
 #include "deck/general_contact.hpp"
 #include "deck/material_cards.hpp"
+#include "deck/rigid_cards.hpp"
 
 #include <algorithm>
 #include <set>
@@ -14,7 +15,8 @@ namespace {
 constexpr int components = 3;
 
 /// What these say is in the mesh, or has nothing to say.
-const std::set<std::string> read_elsewhere{"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "HEADING", "PREPRINT"};
+const std::set<std::string> read_elsewhere{"NODE",    "ELEMENT", "NSET",     "ELSET",
+                                           "SURFACE", "HEADING", "PREPRINT", "RIGIDBODY"};
 
 /// Why a keyword has no counterpart, and whether bodies would move otherwise with it.
 struct Reason {
@@ -51,7 +53,6 @@ const std::map<std::string, Reason> reasons{
     {"SOLVERCONTROLS", settings},
     {"MPC", nonlinear},
     {"TIE", {"only surfaces that move as one, or the ends of a sector, have a counterpart", true}},
-    {"RIGIDBODY", elastic_only},
     {"PLASTIC", elastic_only},
     {"CYCLICHARDENING", elastic_only},
     {"CREEP", elastic_only},
@@ -68,7 +69,7 @@ class Reader : CardReader {
 public:
     Reader(const mesh::Deck& deck, DeckModel& model)
         : CardReader(deck, model), materials_(deck, model), contact_(deck, model), general_(deck, model),
-          equations_(deck, model) {}
+          equations_(deck, model), rigid_(deck, model) {}
 
     void read() {
         for (const DeckCard& card : deck_.cards) take(card);
@@ -266,12 +267,18 @@ private:
             }
             values.value = 0;
             long long first = 0, last = 0;
-            static const std::map<std::string, std::array<int, 2>> words{
-                {"ENCASTRE", {1, 3}}, {"PINNED", {1, 3}}, {"XSYMM", {1, 1}}, {"YSYMM", {2, 2}}, {"ZSYMM", {3, 3}}};
+            static const std::map<std::string, std::vector<int>> words{{"ENCASTRE", {1, 2, 3, 4, 5, 6}},
+                                                                       {"PINNED", {1, 2, 3}},
+                                                                       {"XSYMM", {1, 5, 6}},
+                                                                       {"YSYMM", {2, 4, 6}},
+                                                                       {"ZSYMM", {3, 4, 5}},
+                                                                       {"XASYMM", {2, 3, 4}},
+                                                                       {"YASYMM", {1, 3, 5}},
+                                                                       {"ZASYMM", {1, 2, 6}}};
+            std::vector<int> all;
             const auto word = fields_.size() > 1 ? words.find(in_capitals(fields_[1])) : words.end();
             if (word != words.end()) {
-                first = word->second[0];
-                last = word->second[1];
+                all = word->second;
             } else {
                 const bool good = fields_.size() > 1 && to_integer(fields_[1], first) &&
                                   (fields_.size() < 3 || fields_[2].empty() || to_integer(fields_[2], last)) &&
@@ -281,14 +288,19 @@ private:
                     lose(values.place, shown, "not understood");
                     continue;
                 }
+                for (long long c = first; c <= std::min<long long>(last, 2 * components); ++c)
+                    all.push_back(static_cast<int>(c));
             }
-            if (first > components) {
+            rigid_.hold(values, all, step_);
+            if (values.points.empty()) continue;
+            if (all.empty() || all.front() > components) {
                 model_.note(values.place, shown, "nodes have three displacements");
                 continue;
             }
-            values.first = static_cast<int>(first) - 1;
-            values.last = static_cast<int>(std::min<long long>(last, components)) - 1;
-            held.push_back(values);
+            for (const int c : all) {
+                values.first = values.last = c - 1;
+                if (c <= components) held.push_back(values);
+            }
         }
     }
 
@@ -306,6 +318,10 @@ private:
                 continue;
             }
             values.points = points_of(fields_[0]);
+            if (!values.points.empty() && component >= 1 && component <= 2 * components) {
+                rigid_.load(values, static_cast<int>(component), step_);
+                if (values.points.empty()) continue;
+            }
             if (values.points.empty() || component < 1 || component > components) {
                 lose(values.place, shown,
                      values.points.empty() ? "no node or node set of that name" : "nodes have forces alone");
@@ -449,6 +465,7 @@ private:
     ContactCards contact_;
     GeneralContactCards general_;
     EquationCards equations_;
+    RigidCards rigid_;
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
     bool step_taken_ = false, passing_over_ = false;

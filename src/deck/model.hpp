@@ -131,6 +131,22 @@ struct DeckValues {
     std::string place;
 };
 
+/// Elements that move as one.
+struct DeckRigid {
+    std::vector<Index> cells;
+    Index reference = -1; ///< point
+    std::string place;
+};
+
+/// A component of a reference node that is held at a value, or a force or moment along it.
+struct DeckRigidValue {
+    std::size_t rigid = 0; ///< of DeckModel
+    int component = 0;     ///< 0 to 5, rotations last
+    double value = 0;
+    std::string amplitude; ///< in capitals
+    std::string place;
+};
+
 struct DeckPressure {
     std::vector<mesh::RawFace> faces;
     std::string name;    ///< what the deck calls them
@@ -162,6 +178,7 @@ struct DeckStep {
     double alpha = -0.05;       ///< of Hilber, Hughes and Taylor; CalculiX's default
     double increment = 1, duration = 1;
     std::vector<DeckValues> held, forces;
+    std::vector<DeckRigidValue> rigid_held, rigid_forces;
     std::vector<DeckPressure> pressures;
     std::vector<DeckGravity> gravity;
     std::vector<DeckCentrifugal> centrifugal;
@@ -189,6 +206,9 @@ struct DeckModel {
     std::vector<DeckTransform> transforms;
     std::map<Index, std::size_t> transform_of; ///< number of the last transform of a point
     std::vector<DeckValues> held;              ///< in all steps
+    std::vector<DeckRigid> rigid;
+    std::map<Index, std::size_t> rigid_of;  ///< number of the rigid body of a reference node
+    std::vector<DeckRigidValue> rigid_held; ///< in all steps
     std::vector<DeckTemperature> initial_temperatures;
     std::map<std::string, Amplitude> amplitudes;
     std::vector<DeckStep> steps;

@@ -15,10 +15,14 @@ std::string DeckSupports::write() {
     std::map<Index, Holdings> by_point;
     std::set<std::pair<Index, std::size_t>> given; // points and components, by the step under way
     const auto add = [&](const DeckValues& values, int step) {
-        std::size_t without = 0;
+        std::size_t without = 0, of_rigid = 0;
         for (const Index p : values.points) {
             if (sets_.body_of(p) < 0) {
                 ++without;
+                continue;
+            }
+            if (sets_.is_rigid(p)) {
+                ++of_rigid;
                 continue;
             }
             for (int d = values.first; d <= values.last; ++d) {
@@ -28,6 +32,9 @@ std::string DeckSupports::write() {
                 given.insert({p, static_cast<std::size_t>(d)});
             }
         }
+        if (of_rigid > 0)
+            model_.lose(values.place, fmt::format("*BOUNDARY on {} nodes of rigid bodies", of_rigid),
+                        "rigid bodies are held and moved at their reference points");
         if (without > 0)
             model_.left_out.push_back({values.place, fmt::format("*BOUNDARY on {} nodes", without),
                                        "no element has them", values.value != 0});

@@ -15,7 +15,7 @@ std::string deck_element_names() {
     for (const CellInfo& info : cell_types())
         for (const std::string_view name : info.deck)
             if (!name.empty()) names += (names.empty() ? "" : ", ") + std::string(name);
-    return names + ", CPE3, CPE4, CPE6, CPE8, CPS3, CPS4, CPS6, CPS8, CAX3, CAX4, CAX6, CAX8";
+    return names + ", CPE3, CPE4, CPE6, CPE8, CPS3, CPS4, CPS6, CPS8, CAX3, CAX4, CAX6, CAX8, R3D3, R3D4";
 }
 
 RawFace deck_face(const RawCell& cell, int face) {

@@ -5,6 +5,7 @@
 #include "mesh/deck_planes.hpp"
 #include "mesh/deck_reading.hpp"
 #include "mesh/deck_sets.hpp"
+#include "mesh/deck_shells.hpp"
 #include "mesh/deck_surfaces.hpp"
 
 #include <algorithm>
@@ -75,7 +76,8 @@ private:
         const std::string name = type_name(card);
         const CellInfo* type = deck_element_type(name);
         const std::optional<PlaneType> plane = deck_plane_type(name);
-        if (type == nullptr && !plane) {
+        const int shell = DeckShells::nodes_of(name);
+        if (type == nullptr && !plane && shell == 0) {
             reading_.fault(card, "*ELEMENT of type '" + name + "'; only " + deck_element_names() + " are read");
             reading_.refused = true;
             return;
@@ -83,7 +85,7 @@ private:
         auto kind = std::find(mesh_.types.begin(), mesh_.types.end(), name);
         if (kind == mesh_.types.end()) kind = mesh_.types.insert(kind, name);
         const auto kind_number = static_cast<char>(kind - mesh_.types.begin());
-        const auto count = static_cast<std::size_t>(plane ? plane->nodes : type->nodes);
+        const auto count = static_cast<std::size_t>(nodes_of(name));
         double thickness = 0;
         if (plane) {
             if (!planes_) planes_.emplace(reading_, mesh_);
@@ -109,7 +111,9 @@ private:
             if (!good || numbers.size() != count + 1 || numbers[0] <= 0 || numbers[0] > DeckNumbers::largest)
                 reading_.fault(first, "an element of type " + name + " is its number and " + std::to_string(count) +
                                           " nodes, found '" + shown(first.source) + "'");
-            else if (plane ? add_layer(first, *plane, thickness, numbers) : add_cell(first, *type, numbers))
+            else if (plane       ? add_layer(first, *plane, thickness, numbers)
+                     : shell > 0 ? add_shell(first, numbers)
+                                 : add_cell(first, *type, numbers))
                 mesh_.type.push_back(kind_number);
         }
     }
@@ -132,17 +136,35 @@ private:
         return true;
     }
 
-    /// The same for an element in a plane.
-    bool add_layer(const DeckLine& line, const PlaneType& type, double thickness,
-                   const std::vector<long long>& numbers) {
+    /// Points of the nodes of an element; empty, and a fault, where one does not exist.
+    /// @param numbers  the element's and its nodes'
+    std::vector<Index> points_of(const DeckLine& line, const std::vector<long long>& numbers) {
         std::vector<Index> points;
         for (std::size_t i = 1; i < numbers.size(); ++i) {
             points.push_back(points_.look_up(numbers[i]));
             if (points.back() >= 0) continue;
             reading_.fault(line, "element " + deck_.instances.shown(numbers[0]) + " has node " +
                                      std::to_string(own(numbers[i])) + ", which does not exist");
-            return false;
+            return {};
         }
+        return points;
+    }
+
+    bool add_shell(const DeckLine& line, const std::vector<long long>& numbers) {
+        const std::vector<Index> points = points_of(line, numbers);
+        if (points.empty()) return false;
+        RawCell cell = shells_.begin(line, points);
+        cell.id = numbers[0];
+        cells_.add(cell.id, static_cast<Index>(mesh_.raw.cells.size()));
+        mesh_.raw.cells.push_back(cell);
+        return true;
+    }
+
+    /// The same for an element in a plane.
+    bool add_layer(const DeckLine& line, const PlaneType& type, double thickness,
+                   const std::vector<long long>& numbers) {
+        const std::vector<Index> points = points_of(line, numbers);
+        if (points.empty()) return false;
         if (!planes_->lie_in_plane(points)) {
             reading_.fault(line, "plane element " + deck_.instances.shown(numbers[0]) +
                                      " is turned out of the plane of x and y, where plane elements stay");
@@ -156,6 +178,13 @@ private:
         return true;
     }
 
+    /// Of an element of a type, 0 for one that is not read.
+    static int nodes_of(const std::string& name) {
+        if (const std::optional<PlaneType> plane = deck_plane_type(name)) return plane->nodes;
+        const CellInfo* type = deck_element_type(name);
+        return type == nullptr ? DeckShells::nodes_of(name) : type->nodes;
+    }
+
     /// A number as its part has it.
     [[nodiscard]] long long own(long long id) const {
         const Instance* instance = deck_.instances.of(id);
@@ -166,9 +195,7 @@ private:
         for (const DeckCard& card : deck_.cards) {
             if (card.keyword == "NODE") node_sets_.read_defined(card, 1);
             if (card.keyword == "ELEMENT") {
-                const CellInfo* type = deck_element_type(type_name(card));
-                const std::optional<PlaneType> plane = deck_plane_type(type_name(card));
-                const int nodes = plane ? plane->nodes : type == nullptr ? 0 : type->nodes;
+                const int nodes = nodes_of(type_name(card));
                 element_sets_.read_defined(card, static_cast<std::size_t>(nodes) + 1);
             }
             if (card.keyword == "NSET" && card.parameter("ELSET") != nullptr)
@@ -177,6 +204,7 @@ private:
                 node_sets_.read(card);
             if (card.keyword == "ELSET") element_sets_.read(card);
         }
+        shells_.finish(element_sets_);
         DeckSurfaces surfaces(reading_, mesh_, node_sets_, element_sets_);
         for (const DeckCard& card : deck_.cards)
             if (card.keyword == "SURFACE") surfaces.read(card);
@@ -204,6 +232,7 @@ private:
     DeckNumbers points_{"node"}, cells_{"element"};
     DeckSets node_sets_{reading_, points_, "NSET"}, element_sets_{reading_, cells_, "ELSET"};
     std::optional<DeckPlanes> planes_;
+    DeckShells shells_{reading_, mesh_};
     std::vector<std::string_view> fields_; ///< of the line that is read
 };
 
@@ -221,7 +250,12 @@ RawFace DeckMesh::face_of(Index cell, int face) const {
     const auto c = static_cast<std::size_t>(cell);
     const bool plane = c < slices.size() && slices[c] != DeckSlice::none;
     constexpr int sides = 2; // faces of the layer before those of its sides
-    return plane && face < 0 ? RawFace{} : deck_face(raw.cells[c], plane ? face + sides : face);
+    return (plane && face < 0) || is_shell(cell) ? RawFace{} : deck_face(raw.cells[c], plane ? face + sides : face);
+}
+
+RawFace DeckMesh::front_of(Index cell) const {
+    constexpr int upper = 1; // S2
+    return is_shell(cell) ? deck_face(raw.cells[static_cast<std::size_t>(cell)], upper) : RawFace{};
 }
 
 DeckMesh read_deck_mesh(const Deck& deck) {

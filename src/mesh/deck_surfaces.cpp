@@ -33,7 +33,10 @@ void DeckSurfaces::read_faces(const DeckCard& card, const std::string& name) {
             if (!reading_.refused) reading_.fault(*line, "no element or element set '" + shown(fields_[0]) + "'");
             continue;
         }
-        if (fields_.size() == 1 || fields_[1].empty())
+        if ((fields_.size() == 1 || fields_[1].empty()) &&
+            std::ranges::any_of(cells, [&](Index c) { return mesh_.is_shell(c); }))
+            reading_.fault(*line, "SPOS or SNEG, the side of rigid elements, is expected");
+        else if (fields_.size() == 1 || fields_[1].empty())
             add_outside(cells, faces);
         else
             add_face(*line, cells, faces);
@@ -59,7 +62,9 @@ void DeckSurfaces::add_face(const DeckLine& line, const std::vector<Index>& cell
     const std::string label = in_capitals(fields_[1]);
     const int face = label.size() == 2 && label[0] == 'S' ? label[1] - '1' : -1;
     for (const Index c : cells) {
-        const RawFace one = face < 0 ? RawFace{} : mesh_.face_of(c, face);
+        const RawFace one = label == "SPOS" || label == "SNEG" ? mesh_.front_of(c)
+                            : face < 0                         ? RawFace{}
+                                                               : mesh_.face_of(c, face);
         if (one.count > 0)
             faces.push_back(one);
         else

@@ -34,15 +34,23 @@ struct DeckMesh {
     static constexpr double bore = 1e-3;
     Index bored = 0; ///< points that were moved so
 
-    /// Face of a cell, as deck_face() but for plane elements.
+    /// Per cell, whether it is the layer behind a rigid facet; empty where none is.
+    std::vector<char> shells;
+    [[nodiscard]] bool is_shell(Index cell) const {
+        return static_cast<std::size_t>(cell) < shells.size() && shells[static_cast<std::size_t>(cell)] != 0;
+    }
+
+    /// Face of a cell, as deck_face() but for plane elements; rigid facets have none of these numbers.
     [[nodiscard]] RawFace face_of(Index cell, int face) const;
+    /// The side of a rigid facet that bodies may touch.
+    [[nodiscard]] RawFace front_of(Index cell) const;
     /// Cell or point with a given number in the deck, -1 if there is none.
     [[nodiscard]] Index cell(long long id) const;
     [[nodiscard]] Index point(long long id) const;
     std::vector<std::pair<long long, Index>> cell_order, point_order; ///< ascending
 };
 
-/// Reads *NODE, *ELEMENT of types C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D20, C3D20R, and of CPE, CPS and CAX with 3, 4, 6
+/// Reads *NODE, *ELEMENT of types R3D3, R3D4 (rigid facets, which get a layer of solid elements behind them), C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D20, C3D20R, and of CPE, CPS and CAX with 3, 4, 6
 /// or 8 nodes, *NSET, *ELSET (GENERATE; a set may name
 /// others) and *SURFACE of faces S1 to S6, of whole element sets (their exterior faces) and of nodes. Ignores other
 /// keywords. Element sets become parts, surfaces of nodes become node sets. Throws MeshError with all faults, each with

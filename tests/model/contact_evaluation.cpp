@@ -255,7 +255,8 @@ TEST_P(FlatPair, LetsHeldSlavesStickElastically) {
     const Vec3 exact = evaluation->law(0, lambda_start).residual(moved, contact::Status::stick).value;
     const Vec3 spring = evaluation->law(1, lambda_start).residual(moved, contact::Status::stick).value;
     EXPECT_LT((exact - evaluation->stiffness(0, lambda_start) * drift).norm(), round_off) << "no drift at all";
-    EXPECT_LT((spring - 100 * evaluation->stiffness(1, lambda_start) * drift).norm(), round_off) << "from the force at the start";
+    EXPECT_LT((spring - 100 * evaluation->stiffness(1, lambda_start) * drift).norm(), round_off)
+        << "from the force at the start";
     const contact::ContactState loaded{Vec3(1, 1, 2), 0, Vec3::UnitZ(), Vec3::Zero()};
     EXPECT_LT(evaluation->law(0, lambda_start).residual(loaded, contact::Status::stick).value.norm(), round_off)
         << "whatever its force";

@@ -306,7 +306,6 @@ contact::Overclosure::Mean ContactEvaluation::mean_force(Index j) const {
     mean.pressure +=
         late * (law.pressure(end) - law.pressure(start)) + rate * (std::max(end, first) - std::max(start, first));
     if (end > first) mean.slope += late / law.at(law.pressure(end)).compliance + rate;
-    if (!(mean.pressure > 0)) return {}; // no tension
     return {area * mean.pressure, area * mean.slope};
 }
 
@@ -315,13 +314,14 @@ contact::Coulomb ContactEvaluation::law_of_means(Index j) const {
     const contact::Overclosure& law = *pair_->options().overclosure;
     const double first_slope = soft_area(j) / law.at(0).compliance;
     const contact::Overclosure::Mean mean = mean_force(j);
-    const double slope = mean.pressure > 0 ? std::max(mean.slope, least_slope * first_slope) : first_slope,
-                 from = mean.pressure > 0 ? -states_[j].gap - mean.pressure / slope : law.first(),
+    const bool apart = !(mean.pressure > 0) && -states_[j].gap <= law.first();
+    const double slope = apart ? first_slope : std::max(mean.slope, least_slope * first_slope),
+                 from = apart ? law.first() : -states_[j].gap - mean.pressure / slope,
                  friction = pair_->options().friction;
     contact::Coulomb result =
         held_[j] == 0 ? contact::Coulomb(friction, slope)
                       : contact::Coulomb::elastic(friction, slope, held_stick_stiffness * slope, lambda_start_[j]);
-    result.yield(1, from); // lambda . n = -slope (g + from), the tangent of the mean force
+    result.yield(1, from); // lambda . n = -slope (g + from), the tangent of the mean force; open where that would pull
     return result;
 }
 

@@ -311,6 +311,10 @@ void OutputFolder::remove_all_but(const std::set<std::string>& kept) {
         old.push_back(stays ? part_of(file) : file);
         if (!stays) old.push_back(part_of(file));
     }
+    std::error_code unread;
+    for (const auto& entry :
+         fs::directory_iterator(directory_, unread)) // whose processes are gone: the folder is locked
+        if (const std::string name = entry.path().filename(); is_part_of_manifest(name)) old.push_back(name);
     for (const std::string& file : old)
         if (const fs::path link = link_before(directory_, file); !link.empty() && is_there(directory_ / file))
             refuse(link, "a folder, as the files in it are to be removed", "a symbolic link");

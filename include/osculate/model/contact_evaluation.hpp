@@ -214,7 +214,8 @@ private:
         double overclosure = 0, compliance = 0;
     };
     [[nodiscard]] GivesWay gives_way(Index j, const Vec3& lambda) const;
-    /// Mean contact force of the step at slave j along the normal, N, >= 0, and minus its derivative by the gap, N/m.
+    /// Mean contact force of the step at slave j along the normal, N, < 0 where damping would pull, and minus its derivative by the
+    /// gap, N/m.
     [[nodiscard]] contact::Overclosure::Mean mean_force(Index j) const;
     /// The law of a mean contact force, from mean_force().
     [[nodiscard]] contact::Coulomb law_of_means(Index j) const;

@@ -108,11 +108,12 @@ void make_mesh_of(DeckModel& model, mesh::MeshFileOptions options, DeckBody& bod
 } // namespace
 
 namespace {
-/// That of its instance, or else of its section.
+/// That of its instance, or else of its rigid elements or its section.
 std::string wanted_name(const DeckModel& model, const DeckBody& body) {
     const mesh::RawMesh& raw = model.mesh.raw;
     if (const mesh::Instance* instance = raw.instances.of(raw.cells[static_cast<std::size_t>(body.cells.front())].id))
         return instance->name;
+    if (body.rigid != nullptr) return body.rigid->elements;
     return body.section != nullptr ? body.section->elements : "body";
 }
 } // namespace

@@ -134,6 +134,7 @@ struct DeckValues {
 /// Elements that move as one.
 struct DeckRigid {
     std::vector<Index> cells;
+    std::string elements; ///< their name
     Index reference = -1; ///< point
     std::string place;
 };

@@ -20,6 +20,7 @@ void RigidCards::read(const DeckCard& card) {
     DeckRigid rigid;
     rigid.place = deck_.place(card);
     rigid.cells = cells_of(*elements);
+    rigid.elements = *elements;
     const std::vector<Index> points = points_of(*reference);
     if (rigid.cells.empty()) return lose(card, "no element set '" + *elements + "'");
     if (points.size() != 1) return lose(card, "REF NODE=" + *reference + " is not one node");

@@ -248,6 +248,11 @@ private:
                     if (a == b || sets_.of_surface(a, tie.slave).empty() || sets_.of_surface(b, tie.master).empty())
                         continue;
                     any = true;
+                    if (bodies_[a].rigid != nullptr || bodies_[b].rigid != nullptr) {
+                        model_.lose(tie.place, "tie of " + tie.slave + " and " + tie.master,
+                                    "nodes are held to a rigid body by contact or couplings alone");
+                        continue;
+                    }
                     if (facets_of(a, tie.slave).empty() || facets_of(b, tie.master).empty()) {
                         model_.lose(tie.place, "tie of " + tie.slave + " and " + tie.master,
                                     "nodes that cover no facet of their body cannot be tied");

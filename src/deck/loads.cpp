@@ -195,6 +195,10 @@ void DeckLoads::add_gravity(const DeckStep& step) {
             std::set_intersection(sorted.begin(), sorted.end(), body.cells.begin(), body.cells.end(),
                                   std::back_inserter(in));
             if (in.empty()) continue;
+            if (!(density(body) > 0) && body.rigid != nullptr) {
+                model_.note(g.place, "GRAV on rigid body " + body.name, "it has no mass");
+                continue;
+            }
             if (!(density(body) > 0)) {
                 model_.lose(g.place, "GRAV on body " + body.name, "it has no density");
             } else if (std::ranges::any_of(materials(body),

@@ -4,9 +4,11 @@
 #include "deck/equations.hpp"
 #include "deck/general_contact.hpp"
 #include "deck/material_cards.hpp"
+#include "deck/no_counterpart.hpp"
 #include "deck/rigid_cards.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace osculate::deck {
@@ -17,53 +19,6 @@ constexpr int components = 3;
 /// What these say is in the mesh, or has nothing to say.
 const std::set<std::string> read_elsewhere{"NODE",    "ELEMENT", "NSET",     "ELSET",
                                            "SURFACE", "HEADING", "PREPRINT", "RIGIDBODY"};
-
-/// Why a keyword has no counterpart, and whether bodies would move otherwise with it.
-struct Reason {
-    const char* why;
-    bool lost;
-};
-
-constexpr Reason output{"what is written is chosen under output", false},
-    settings{"the solver has settings of its own", false}, nonlinear{"only linear equations have a counterpart", true},
-    elastic_only{"all bodies are elastic", true}, heat{"there are no temperatures", false};
-
-/// By keywords without blanks.
-const std::map<std::string, Reason> reasons{
-    {"NODEPRINT", output},
-    {"ELPRINT", output},
-    {"NODEFILE", output},
-    {"ELFILE", output},
-    {"ELEMENTFILE", output},
-    {"NODEOUTPUT", output},
-    {"ELEMENTOUTPUT", output},
-    {"CONTACTFILE", output},
-    {"CONTACTOUTPUT", output},
-    {"CONTACTPRINT", output},
-    {"ENERGYFILE", output},
-    {"ENERGYOUTPUT", output},
-    {"ENERGYPRINT", output},
-    {"SECTIONPRINT", output},
-    {"OUTPUT", output},
-    {"PRINT", output},
-    {"MONITOR", output},
-    {"FILEFORMAT", output},
-    {"CONTROLS", settings},
-    {"CONTACTCONTROLS", settings},
-    {"SOLVERCONTROLS", settings},
-    {"MPC", nonlinear},
-    {"TIE", {"only surfaces that move as one, or the ends of a sector, have a counterpart", true}},
-    {"PLASTIC", elastic_only},
-    {"CYCLICHARDENING", elastic_only},
-    {"CREEP", elastic_only},
-    {"CONDUCTIVITY", heat},
-    {"SPECIFICHEAT", heat},
-    {"GAPCONDUCTANCE", heat},
-    {"PHYSICALCONSTANTS", heat},
-    {"TEMPERATURE", {"there are no temperatures", true}},
-    {"TIMEPOINTS", {"frames are chosen under output", false}},
-    {"RESTART", {"runs begin at the beginning", false}},
-};
 
 class Reader : CardReader {
 public:
@@ -109,8 +64,7 @@ private:
         if ((word == "STATIC" || word == "DYNAMIC") && step_ != nullptr) return analysis(card);
         if (step_ != nullptr && !step_taken_ && is_analysis(word))
             return drop_step("*" + card.keyword + " has no counterpart: statics and implicit dynamics do");
-        const auto known = reasons.find(word);
-        const Reason reason = known != reasons.end() ? known->second : Reason{"it has no counterpart", true};
+        const NoCounterpart reason = no_counterpart(word);
         model_.left_out.push_back({deck_.place(card), "*" + card.keyword, reason.why, reason.lost});
     }
 
@@ -380,13 +334,21 @@ private:
         }
     }
 
+    /// Of the first field of a line of *DLOAD; all for an empty one.
+    [[nodiscard]] std::vector<Index> loaded_cells() const {
+        if (!fields_[0].empty()) return cells_of(fields_[0]);
+        std::vector<Index> all(model_.mesh.raw.cells.size());
+        std::iota(all.begin(), all.end(), 0);
+        return all;
+    }
+
     void gravity(const std::string& place, const std::string& shown, const std::string& amplitude) {
         DeckGravity g;
         double size = 0;
         Vec3 direction;
         bool good = to_number(fields_[2], size);
         for (int d = 0; d < 3; ++d) good = good && to_number(fields_[3 + static_cast<std::size_t>(d)], direction[d]);
-        g.cells = cells_of(fields_[0]);
+        g.cells = loaded_cells();
         g.elements = in_capitals(fields_[0]);
         if (!good || g.cells.empty() || !(direction.norm() > 0)) return lose(place, shown, "not understood");
         g.acceleration = size * direction.normalized();
@@ -401,7 +363,7 @@ private:
         for (std::size_t d = 0; d < 3; ++d)
             good = good && to_number(fields_[3 + d], c.point[static_cast<Index>(d)]) &&
                    to_number(fields_[6 + d], c.axis[static_cast<Index>(d)]);
-        c.cells = cells_of(fields_[0]);
+        c.cells = loaded_cells();
         if (!good || c.cells.empty() || !(c.axis.norm() > 0)) return lose(place, shown, "not understood");
         c.place = place;
         step_->centrifugal.push_back(std::move(c));

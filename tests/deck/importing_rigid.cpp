@@ -182,6 +182,20 @@ TEST_F(ImportingRigidBodies, WhatHasNoCounterpartIsLost) {
                 Contains(HasSubstr("two rigid bodies do not meet")));
 }
 
+TEST_F(ImportingRigidBodies, HaveNoWeightWithoutADensityAndAreNotTied) {
+    std::string heavy = cube;
+    heavy.insert(heavy.find("*ELASTIC"), "*DENSITY\n1E-9\n");
+    const ImportedScene imported =
+        import(pressed("*DLOAD\n,GRAV,9810.,0.,0.,-1.\n"), DeckUnits::mm, heavy + plate + pair);
+    EXPECT_THAT(imported.lost, IsEmpty());
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("GRAV on rigid body Plate")));
+    const auto gravity = checked(imported).stages.at(0).second.body_force;
+    ASSERT_THAT(gravity, SizeIs(1)) << "the cube's, in a load on all elements";
+    EXPECT_EQ(gravity[0].first, "Cube");
+    EXPECT_THAT(with(plate, pressed(), pair + "*TIE, NAME=T\nUp,Tool\n").lost,
+                Contains(HasSubstr("tie of UP and TOOL")));
+}
+
 TEST_F(ImportingRigidBodies, FacetsHaveOneOutside) {
     EXPECT_THROW(with(plate + "*SURFACE, NAME=Other\nPlate,SPOS\n"), mesh::MeshError);
     EXPECT_THROW(with(plate + "*SURFACE, NAME=Other\nPlate\n"), mesh::MeshError);

@@ -239,6 +239,8 @@ std::optional<DeckOverclosure> ContactCards::overclosure_of(const DeckCard& card
     of.form = law == "LINEAR" ? DeckOverclosure::Form::linear : DeckOverclosure::Form::exponential;
     of.rows = {{v[0], v[1]}};
     if (law == "EXPONENTIAL" && !(v[1] > 0)) return refuse("a pressure at no gap that is not positive");
+    if (law == "EXPONENTIAL")
+        note(card, "the exponential is CalculiX's; Abaqus's has the same pressure at no gap and grows more slowly");
     return of;
 }
 

@@ -94,7 +94,7 @@ void DeckRigidBodies::hold(std::size_t rigid, std::size_t component, Motion& mot
     const double unit = component < 3 ? units_.length : 1;
     for (const auto& [step, value] : all)
         motion.motions[step] += (motion.motions[step].empty() ? "" : ", ") + std::string(component_words[component]) +
-                                ": " + course(unit * value->value, value->amplitude);
+                                ": " + course(unit * value->value, model_.amplitude(value->amplitude));
 }
 
 void DeckRigidBodies::load(std::size_t rigid, Motion& motion) {
@@ -113,15 +113,6 @@ void DeckRigidBodies::load(std::size_t rigid, Motion& motion) {
         motion.forces[s] = end_components(forces, step);
         motion.moments[s] = end_components(moments, step);
     }
-}
-
-std::string DeckRigidBodies::course(double value, const std::string& amplitude) const {
-    const Amplitude* factors = model_.amplitude(amplitude);
-    if (factors == nullptr) return number(value);
-    std::string rows;
-    for (const auto& [t, factor] : *factors)
-        rows += (rows.empty() ? "[" : ", [") + number(t) + ", " + number(factor * value) + "]";
-    return "{table: [" + rows + "]}";
 }
 
 } // namespace osculate::deck

@@ -30,7 +30,6 @@ private:
     void hold(std::size_t rigid, std::size_t component, Motion& motion);
     void load(std::size_t rigid, Motion& motion);
     [[nodiscard]] double density(const DeckBody& body) const;
-    [[nodiscard]] std::string course(double value, const std::string& amplitude) const;
 
     DeckModel& model_;
     const Units& units_;

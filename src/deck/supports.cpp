@@ -131,7 +131,8 @@ std::string DeckSupports::write_support(const std::string& set, const Holdings& 
                 continue;
             }
             stages_[s].displacement[set] += (stages_[s].displacement[set].empty() ? "" : ", ") +
-                                            std::string(1, "xyz"[d]) + ": " + course(length_ * h.value, h.amplitude);
+                                            std::string(1, "xyz"[d]) + ": " +
+                                            course(length_ * h.value, model_.amplitude(h.amplitude));
         }
     }
     if (fixed.empty() && axes.empty()) return "";
@@ -142,15 +143,6 @@ std::string DeckSupports::write_support(const std::string& set, const Holdings& 
 void DeckSupports::release(const std::string& set, const Holding& holding, std::size_t d) {
     std::string& components = stages_[static_cast<std::size_t>(holding.step)].release[set];
     components += (components.empty() ? "" : ", ") + std::string(1, "xyz"[d]);
-}
-
-std::string DeckSupports::course(double value, const std::string& amplitude) const {
-    const Amplitude* factors = model_.amplitude(amplitude);
-    if (factors == nullptr) return number(value);
-    std::string rows;
-    for (const auto& [t, factor] : *factors)
-        rows += (rows.empty() ? "[" : ", [") + number(t) + ", " + number(factor * value) + "]";
-    return "{table: [" + rows + "]}";
 }
 
 } // namespace osculate::deck

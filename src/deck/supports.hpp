@@ -39,7 +39,6 @@ private:
     /// Components held at zero from the start are supports, others driven by stages.
     std::string write_support(const std::string& set, const Holdings& holdings, const std::string& axes);
     void release(const std::string& set, const Holding& holding, std::size_t d);
-    std::string course(double value, const std::string& amplitude) const;
 
     DeckModel& model_;
     DeckSets& sets_;

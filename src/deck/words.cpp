@@ -42,6 +42,14 @@ std::string number(double value) {
     return fmt::format("{:.12g}", value);
 }
 
+std::string course(double value, const Amplitude* factors) {
+    if (factors == nullptr) return number(value);
+    std::string rows;
+    for (const auto& [t, factor] : *factors)
+        rows += (rows.empty() ? "[" : ", [") + number(t) + ", " + number(factor * value) + "]";
+    return "{table: [" + rows + "]}";
+}
+
 std::string harmless(const std::string& text) {
     std::string result = text;
     for (char& c : result)

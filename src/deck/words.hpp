@@ -1,6 +1,8 @@
 #pragma once
 /// Texts of a scene that is written from a deck.
 
+#include "deck/model.hpp"
+
 #include <set>
 #include <string>
 
@@ -17,6 +19,9 @@ namespace osculate::deck {
 
 /// To 12 digits.
 [[nodiscard]] std::string number(double value);
+
+/// A value of a stage: itself, or a table of it times its amplitude. @param factors  null: none
+[[nodiscard]] std::string course(double value, const Amplitude* factors);
 
 /// Text of a deck for a comment.
 [[nodiscard]] std::string harmless(const std::string& text);

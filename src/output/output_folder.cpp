@@ -312,8 +312,8 @@ void OutputFolder::remove_all_but(const std::set<std::string>& kept) {
         if (!stays) old.push_back(part_of(file));
     }
     std::error_code unread;
-    for (const auto& entry :
-         fs::directory_iterator(directory_, unread)) // whose processes are gone: the folder is locked
+    // their processes are gone: the folder is locked
+    for (const auto& entry : fs::directory_iterator(directory_, unread))
         if (const std::string name = entry.path().filename(); is_part_of_manifest(name)) old.push_back(name);
     for (const std::string& file : old)
         if (const fs::path link = link_before(directory_, file); !link.empty() && is_there(directory_ / file))

@@ -77,6 +77,13 @@ Ledger opened(const model::Model& model, const equilibrium::Dynamics& dynamics, 
     return ledger;
 }
 
+void revalue_interfaces(Ledger& ledger, const model::Model& model, const model::State& state) {
+    const double now = of_interfaces(model, state), change = now - ledger.interface;
+    ledger.interface = now;
+    ledger.strain += change;
+    ledger.external += change;
+}
+
 Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibrium::Dynamics& dynamics,
                 const equilibrium::Equilibrium& equilibrium, const model::State& from, const model::State& to,
                 const Field& force, bool impact) {

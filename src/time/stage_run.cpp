@@ -79,6 +79,8 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
     if (dynamics_ && progress_.state.v.empty())
         start_motion(context_, stage, constraints_,
                      load_at(model, stage, constraints_, progress_.displacement_start, 0), progress_);
+    else if (dynamics_ && from == nullptr)
+        revalue_interfaces(progress_.ledger, model, progress_.state);
     if (dynamics_) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);
     targets_ = times_to_hit(stage, progress_.stage_start);
     if (context.model.general && !progress_.state.scope) {

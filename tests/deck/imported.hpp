@@ -29,6 +29,8 @@ inline const std::string properties =
     "*FRICTION\n.25,1E6\n"
     "*CONTACT PAIR, INTERACTION=i, TYPE=SURFACE TO SURFACE\nunder,over\n"
     "*BOUNDARY\nFloor,1,3\nLid,1,2\n";
+inline const std::string pressed =
+    "*STEP\n*STATIC, DIRECT\n.25,1.\n*DSLOAD\nTop,P,5.\n*NODE PRINT, NSET=All\nU\n*END STEP\n";
 
 class Imports : public ::testing::Test {
 protected:

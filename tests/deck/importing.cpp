@@ -20,8 +20,6 @@ using ::testing::UnorderedElementsAre;
 
 class Importing : public Imports {};
 
-const std::string pressed = "*STEP\n*STATIC, DIRECT\n.25,1.\n*DSLOAD\nTop,P,5.\n*NODE PRINT, NSET=All\nU\n*END STEP\n";
-
 /// The properties with more of their material.
 std::string before_elastic(const std::string& more) {
     std::string text = properties;
@@ -70,51 +68,6 @@ TEST_F(Importing, ForcesOnNodesKeepTheirNodes) {
     const scene::Scene all = checked(import("*STEP\n*STATIC\n*CLOAD\nLid,3,-200\n*END STEP\n"));
     ASSERT_EQ(all.stages.at(0).second.nodal_force.size(), 1u);
     EXPECT_EQ(all.stages[0].second.nodal_force[0].first, "Lid");
-}
-
-TEST_F(Importing, LinearOverclosureAndStickSlopeAreThoseOfTheDeck) {
-    const scene::Scene scene = checked(import(pressed));
-    const scene::Pair& pair = scene.contact.at(0).second;
-    ASSERT_TRUE(std::holds_alternative<scene::LinearOverclosure>(pair.pressure_overclosure));
-    EXPECT_DOUBLE_EQ(std::get<scene::LinearOverclosure>(pair.pressure_overclosure).stiffness, 1e7 * 1e9) << "N/mm^3";
-    ASSERT_TRUE(pair.stick_stiffness);
-}
-
-TEST_F(Importing, OtherLawsOfOverclosureAreThoseOfTheDeckToo) {
-    const auto law_of = [&](const std::string& cards) {
-        return checked(import("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=" + cards + pressed)).contact.at(0).second;
-    };
-    EXPECT_EQ(law_of("EXPONENTIAL\n.01,2.\n").pressure_overclosure,
-              scene::PressureOverclosure(scene::ExponentialOverclosure{2e6, 0.01e-3}));
-    const scene::Pair table = law_of("TABULAR\n0.,-.5\n1.,0.\n4.,.5\n");
-    ASSERT_TRUE(std::holds_alternative<scene::TabularOverclosure>(table.pressure_overclosure));
-    const auto& rows = std::get<scene::TabularOverclosure>(table.pressure_overclosure).table.rows;
-    EXPECT_EQ(rows, (std::vector<std::array<double, 2>>{{-0.5e-3, 0}, {0, 1e6}, {0.5e-3, 4e6}}));
-    for (const char* bad : {"TABULAR\n1.,0.\n4.,.5\n", "TABULAR\n0.,0.\n4.,-.5\n", "TABULAR\n0.,0.\n",
-                            "EXPONENTIAL\n.01\n", "LINEAR\n-1.\n"})
-        EXPECT_EQ(import(std::string("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=") + bad + pressed).lost.size(), 1u)
-            << bad;
-}
-
-TEST_F(Importing, StepsChangeTheLawOfOverclosure) {
-    const std::string change = "*STEP\n*STATIC\n*CHANGE SURFACE BEHAVIOR, INTERACTION=I\n"
-                               "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=EXPONENTIAL\n.01,2.\n*END STEP\n";
-    const scene::Scene scene = checked(import(pressed + change));
-    ASSERT_EQ(scene.stages.size(), 2u);
-    ASSERT_EQ(scene.stages[1].second.pressure_overclosure.size(), 1u);
-    EXPECT_EQ(scene.stages[1].second.pressure_overclosure[0].first, scene.contact.at(0).first);
-    EXPECT_THAT(import(pressed + "*STEP\n*STATIC\n*CHANGE SURFACE BEHAVIOR, INTERACTION=None\n"
-                                 "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1.\n*END STEP\n")
-                    .lost,
-                ElementsAre(HasSubstr("no *SURFACE INTERACTION is called NONE")));
-}
-
-TEST_F(Importing, DampingOfContactActsInDynamics) {
-    const std::string damped = "*CONTACT DAMPING\n3.\n",
-                      dynamic = "*STEP\n*DYNAMIC\n.1,1.\n*DSLOAD\nTop,P,5.\n*END STEP\n";
-    EXPECT_EQ(checked(import(damped + pressed)).contact.at(0).second.damping, 0);
-    EXPECT_THAT(import(damped + dynamic).text, HasSubstr("damping: 3000000000"));
-    EXPECT_EQ(import("*CONTACT DAMPING, TANGENT FRACTION=.5\n3.\n" + pressed).lost.size(), 1u);
 }
 
 TEST_F(Importing, DelaysShiftAmplitudes) {

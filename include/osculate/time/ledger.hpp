@@ -14,7 +14,7 @@ namespace osculate::time {
 struct Ledger {
     double kinetic = 0, strain = 0; ///< strain energy also of interfaces that give way ...
     double interface = 0;           ///< ... which is this part of it
-    double external = 0;            ///< loads, supports and driven motions
+    double external = 0;            ///< loads, supports, driven motions and changes of laws
     double friction = 0;            ///< dissipated, >= 0
     double damping = 0;             ///< dissipated, by damping, by inelastic impacts and by plastic flow
     double algorithmic =
@@ -29,6 +29,9 @@ struct Ledger {
 /// The ledger of the initial state.
 [[nodiscard]] Ledger opened(const model::Model& model, const equilibrium::Dynamics& dynamics,
                             const model::State& state);
+
+/// At the start of a stage that may change pairs and their laws: what that does to the energy of interfaces is external work.
+void revalue_interfaces(Ledger& ledger, const model::Model& model, const model::State& state);
 
 /// The ledger after a step.
 /// @param equilibrium  at its last residual, that of `to`

@@ -1,7 +1,6 @@
 #include "contact/blend_variation.hpp"
+#include "contact/placed_patch.hpp"
 #include "contact/reach.hpp"
-#include "osculate/contact/facet_patch.hpp"
-#include "osculate/contact/projection.hpp"
 #include "osculate/core/parallel.hpp"
 
 #include <algorithm>
@@ -45,10 +44,12 @@ public:
                std::unique_ptr<Placement>& placement) const override {
         if (!placement) placement = std::make_unique<Placed>();
         auto& placed = static_cast<Placed&>(*placement);
-        std::vector<PlacedPatch>& patches = placed.patches;
+        const auto count = static_cast<Index>(vertex_patches_.patches.size());
+        placed.x = x;
+        placed.patches.resize(vertex_patches_.patches.size());
+        placed.balls.assign(vertex_patches_.patches.size(), {});
         std::vector<char>& wanted = placed.wanted;
-        patches.resize(vertex_patches_.patches.size());
-        wanted.assign(patches.size(), 0);
+        wanted.assign(vertex_patches_.patches.size(), 0);
         const auto want = [&](Index facet) {
             for (const Index p : vertex_patches_.of_facet[facet]) wanted[p] = 1;
         };
@@ -57,9 +58,12 @@ public:
                 want(hit.facet);
                 for (const Neighbour& other : creases_[hit.facet]) want(other.facet);
             }
-        parallel_for(threads, static_cast<Index>(patches.size()), [&](Index begin, Index end) {
-            for (Index p = begin; p < end; ++p)
-                if (wanted[p] != 0) patches[p].place(vertex_patches_.patches[p], x);
+        parallel_for(threads, count, [&](Index begin, Index end) {
+            for (Index p = begin; p < end; ++p) {
+                if (wanted[p] == 0) continue;
+                placed.patches[p].place(vertex_patches_.patches[p], x);
+                placed.balls[p] = placed.patches[p].ball;
+            }
         });
     }
 
@@ -91,24 +95,32 @@ public:
         const double size = surface_.facet_size(hit.facet);
         if (beyond_boundary(hit, size)) return;
         const std::shared_ptr<Side> trace = own_trace(point);
+        point.trace = trace;
         Side& side = *trace;
-        side = seen_from(s, hit, x, placement);
+        look(s, hit, x, placement, side);
         for (const Index facet : across_crease(hit)) {
             FacetHit there;
             there.facet = facet;
             there.distance = hit.distance;
-            Side other = seen_from(s, there, x, placement);
+            Side other;
+            look(s, there, x, placement, other);
             // beyond a crease both sides are planes, more or less, through it: the one s is farther from faces s. For
             // a convex edge that is the larger gap, for a concave one the smaller; a tie keeps the closest facet
-            if (other.point.found &&
-                (!side.point.found || std::abs(other.point.gap) > std::abs(side.point.gap) + tie * size))
+            if (other.found && (!side.found || std::abs(other.gap) > std::abs(side.gap) + tie * size))
                 side = std::move(other);
         }
-        point = std::move(side.point);
-        point.facet = hit.facet;
+        point.found = side.found;
+        point.behind = side.behind;
+        point.gap = side.gap;
         point.side = side.hit.facet;
         if (!point.found) return;
-        point.trace = trace;
+        if (side.active.empty()) {
+            facets_->evaluate(s, side.hit, x, point, nullptr);
+            point.facet = hit.facet;
+            point.side = side.hit.facet;
+        } else {
+            blend(side.active, reach_[side.hit.facet], x, point);
+        }
         if (variation != nullptr) vary(s, hit, x, point, *variation);
     }
 
@@ -138,7 +150,9 @@ private:
 
     /// Patches where the vertices are now.
     struct Placed : Placement {
+        std::vector<Vec3> x;              ///< positions of the vertices
         std::vector<PlacedPatch> patches; ///< those of facets that were asked for
+        std::vector<Ball> balls;          ///< theirs, which most patches are passed over by
         std::vector<char> wanted;         ///< (patches)
     };
     /// A slave point seen from one smooth side of the surface.
@@ -146,8 +160,11 @@ private:
         FacetHit hit;
         std::vector<ActivePatch> active;                  ///< empty where only the facet itself is left
         std::vector<std::unique_ptr<PlacedPatch>> placed; ///< those that place() has not placed
-        ContactPoint point;
+        bool found = false, behind = false;
+        double gap = 0;
     };
+    /// What a vertex has in the blend: three numbers, and one.
+    using PressingAndWeight = Eigen::Vector4d;
     /// Another smooth side that meets a facet in one of its edges or corners.
     struct Neighbour {
         int corner; ///< the edge is the one that leaves it
@@ -163,31 +180,57 @@ private:
         return own ? own : std::make_shared<Side>();
     }
 
-    Side seen_from(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, const Placement* placement) const {
-        const std::vector<PlacedPatch>* ready =
-            placement == nullptr ? nullptr : &static_cast<const Placed*>(placement)->patches;
-        Side side;
+    /// The patches of a placement, if it is for these positions of all vertices that the patches of a facet have.
+    [[nodiscard]] const Placed* ready(const Placement* placement, Index facet, const std::vector<Vec3>& x) const {
+        if (placement == nullptr) return nullptr;
+        const Placed& placed = static_cast<const Placed&>(*placement);
+        if (placed.x.size() != x.size()) return nullptr;
+        for (const Index v : reach_[facet])
+            if (placed.x[v] != x[v]) return nullptr;
+        return &placed;
+    }
+
+    void look(const Vec3& s, const FacetHit& hit, const std::vector<Vec3>& x, const Placement* placement,
+              Side& side) const {
+        const Placed* const placed = ready(placement, hit.facet, x);
+        const double size = surface_.facet_size(hit.facet), most = hit.distance + farther * size;
         side.hit = hit;
+        side.active.clear();
+        side.placed.clear();
+        side.found = side.behind = false;
+        std::unique_ptr<PlacedPatch> own;
         for (const Index p : vertex_patches_.of_facet[hit.facet]) {
             const VertexPatch& patch = vertex_patches_.patches[p];
-            const PlacedPatch* placed = ready == nullptr ? nullptr : &(*ready)[p];
-            if (placed == nullptr || !placed->is_at(patch, x)) {
-                auto& own = side.placed.emplace_back(std::make_unique<PlacedPatch>());
+            const bool is_ready = placed != nullptr && placed->balls[p].radius >= 0;
+            if (!is_ready) {
+                if (!own) own = std::make_unique<PlacedPatch>();
                 own->place(patch, x);
-                placed = own.get();
             }
-            activate(patch, *placed, s, hit.distance + farther * surface_.facet_size(hit.facet), side.active);
+            const Ball& ball = is_ready ? placed->balls[p] : own->ball;
+            if (!ball.reaches(s, most)) continue;
+            if (!see(s, patch, is_ready ? placed->patches[p] : *own, most, side.active.emplace_back())) {
+                side.active.pop_back();
+                continue;
+            }
+            if (!is_ready) side.placed.push_back(std::move(own));
         }
         if (!side.active.empty()) {
-            blend(side.active, x, side.point);
-            double size = surface_.facet_size(hit.facet); // next to nothing where its vertices are near duplicates
-            for (const ActivePatch& a : side.active) size = std::max(size, a.patch->shape.node_distance());
-            side.point.behind = side.point.gap <= -deepest * size;
-            side.point.found = !side.point.behind;
+            double P = 0, g = 0, largest = size; // it is next to nothing where its vertices are near duplicates
+            for (const ActivePatch& a : side.active) {
+                P += a.psi;
+                g += a.psi * a.gap;
+                largest = std::max(largest, a.patch->shape.node_distance());
+            }
+            side.gap = g / P;
+            side.behind = side.gap <= -deepest * largest;
+            side.found = !side.behind;
         } else if (vertex_patches_.bare[hit.facet] != 0) {
-            facets_->evaluate(s, hit, x, side.point, nullptr);
+            ContactPoint point;
+            facets_->evaluate(s, hit, x, point, nullptr);
+            side.found = point.found;
+            side.behind = point.behind;
+            side.gap = point.gap;
         } // else s is too far off for any foot
-        return side;
     }
 
     /// Facets of the other sides when s lies beyond a crease, so that its closest point is on one.
@@ -224,111 +267,65 @@ private:
         }
     }
 
-    /// Foot of s on the osculating paraboloid of the patch at its vertex, from the vertex, or nothing where the bump surely
-    /// does not reach: the starting point of the projection.
-    static std::optional<Vec2> start(const VertexPatch& patch, const PatchPoint& p, const Vec3& s) {
-        constexpr double surely_outside = 4; // tau on the tangent plane: twice as far as the bump reaches
-        constexpr double margin = 1.1;       // of the bump's radius
-        const auto tau = [&](const Vec2& u) { return patch.kappa * u.dot(patch.metric * u); };
-        const Mat2 metric = p.X_a.transpose() * p.X_a;
-        if (!(metric.determinant() > 0)) return std::nullopt; // an iterate that ran away has its facets in one place
-        const Vec2 flat = metric.inverse() * (p.X_a.transpose() * (s - p.X));
-        if (!(tau(flat) < surely_outside)) return std::nullopt;
-        Vec2 u = flat;
-        for (int step = 0; step < 2; ++step) {
-            Matrix32 X_a;
-            X_a.col(0) = p.X_a.col(0) + u.x() * p.X_11 + u.y() * p.X_12;
-            X_a.col(1) = p.X_a.col(1) + u.x() * p.X_12 + u.y() * p.X_22;
-            const Vec3 e = s - p.X - 0.5 * (p.X_a + X_a) * u;
-            const Mat2 K = X_a.transpose() * X_a - p.curvature(e);
-            if (!(K.determinant() > 0 && K.trace() > 0)) return flat;
-            u += K.inverse() * (X_a.transpose() * e);
-        }
-        // what the paraboloid leaves out is smaller than what it changed
-        const double bend = tau(u - flat);
-        if (!(bend < 1)) return flat;
-        if (std::sqrt(tau(u)) - 2 * std::sqrt(bend) > margin) return std::nullopt;
-        return u;
-    }
-
-    /// Adds the patch to `active` when s has a foot on it within its bump, no farther from it than `most`, m.
-    static void activate(const VertexPatch& patch, const PlacedPatch& placed, const Vec3& s, double most,
-                         std::vector<ActivePatch>& active) {
-        const Vec3 from_origin = s - placed.x[0];
-        const auto begin = start(patch, placed.at_vertex, from_origin);
-        if (!begin) return;
-        const auto radius = [&](const Vec2& u) { return std::sqrt(patch.kappa * u.dot(patch.metric * u)); };
-        const auto foot =
-            project(patch.shape, placed.coefficients, from_origin, patch.origin + *begin,
-                    [&](const Vec2& u, const Vec2& step) { // what is left is less than twice the last step
-                        return radius(u - patch.origin) - 3 * radius(step) > 1;
-                    });
-        if (!foot) return;
-        ActivePatch a;
-        a.patch = &patch;
-        a.placed = &placed;
-        a.foot = *foot;
-        const Vec2 u = a.foot.u - patch.origin;
-        a.tau = patch.kappa * u.dot(patch.metric * u);
-        if (!(a.tau < 1)) return;
-        a.normal = a.foot.point.normal();
-        a.gap = a.normal.dot(from_origin - a.foot.point.X);
-        if (std::abs(a.gap) > most || !unique(a.foot.point, a.normal, a.gap)) return;
-        a.psi = (1 - a.tau) * (1 - a.tau) * (1 - a.tau);
-        first_variation(a);
-        a.foot.point.X += placed.x[0];
-        active.push_back(std::move(a));
-    }
-
-    static void first_variation(ActivePatch& a) {
-        const PatchPoint& p = a.foot.point;
-        const auto n = static_cast<Index>(a.patch->vertices.size());
-        a.phi.resize(n);
-        a.phi_a.resize(n, 2);
-        a.patch->shape.weights(a.foot.u, a.phi, a.phi_a);
-        a.K_inverse = (p.X_a.transpose() * p.X_a - a.gap * p.curvature(a.normal)).inverse();
-        const Vec2 m = a.patch->metric * (a.foot.u - a.patch->origin);
-        a.by_foot = -6 * a.patch->kappa * (1 - a.tau) * (1 - a.tau) * m;
-    }
-
     /// g = sum psi_v g_v / P;  dg = (1/P) sum [ psi_v dg_v + (g_v - g) dpsi_v ];  weights (1/P) sum psi_v Phi_i
-    static void blend(std::vector<ActivePatch>& active, const std::vector<Vec3>& x, ContactPoint& point) {
-        double P = 0, g = 0;
-        point.nodes.clear();
-        for (const ActivePatch& a : active) {
-            P += a.psi;
-            g += a.psi * a.gap;
-            point.nodes.insert(point.nodes.end(), a.patch->vertices.begin(), a.patch->vertices.end());
-        }
-        g /= P;
-        std::sort(point.nodes.begin(), point.nodes.end());
-        point.nodes.erase(std::unique(point.nodes.begin(), point.nodes.end()), point.nodes.end());
-        const auto n = static_cast<Index>(point.nodes.size());
+    /// @param reach  vertices of all patches that might be active, ascending
+    static void blend(const std::vector<ActivePatch>& active, std::span<const Index> reach, const std::vector<Vec3>& x,
+                      ContactPoint& point) {
+        static thread_local std::vector<Index> place; // of the vertices of `reach`, others are not asked for
+        static thread_local std::vector<char> taken;  // (reach) by a node of an active patch
+        static thread_local std::vector<PressingAndWeight> shares;
+        static thread_local std::vector<double> phi;
+        static thread_local BasisTable table;
+        place.resize(std::max(place.size(), x.size()));
+        taken.assign(reach.size(), 0);
+        shares.assign(reach.size(), PressingAndWeight::Zero());
+        for (std::size_t i = 0; i < reach.size(); ++i) place[reach[i]] = static_cast<Index>(i);
+        double P = 0;
+        for (const ActivePatch& a : active) P += a.psi;
+        const double g = point.gap;
         Vec3 by_s = Vec3::Zero();
-        point.pressing.setZero(n, 3);
-        point.weights = Vector::Zero(n);
-        for (ActivePatch& a : active) {
+        for (const ActivePatch& a : active) {
             const double share = a.psi / P;
             const Vec2 t = ((a.gap - g) / P) * (a.K_inverse * a.by_foot); // dpsi_v = by_foot . du, K symmetric
             const Vec3 along = share * a.normal + a.foot.point.X_a * t;   // ds, less Phi_i dx_i
             const Vec2 across = a.gap * t;                                // of n . Phi_i,b dx_i
             by_s += along;
-            for (std::size_t i = 0; i < a.patch->vertices.size(); ++i) {
-                const auto at =
-                    static_cast<Index>(std::lower_bound(point.nodes.begin(), point.nodes.end(), a.patch->vertices[i]) -
-                                       point.nodes.begin());
-                const auto k = static_cast<Index>(i);
-                a.place.push_back(at);
-                point.pressing.row(at) += (a.phi_a.row(k).dot(across) * a.normal - a.phi(k) * along).transpose();
-                point.weights(at) += share * a.phi(k);
+            // Phi_i and across_b Phi_i,b
+            const RpimPatch& shape = a.patch->shape;
+            shape.tabulate(a.foot.u, BasisTable::first, table);
+            double* const by_1 = table.row(1);
+            const double *const by_2 = table.row(2), across_1 = across.x(), across_2 = across.y();
+            for (Index k = 0; k < table.width; ++k) by_1[k] = across_1 * by_1[k] + across_2 * by_2[k];
+            const Index stride = shape.padded_size();
+            phi.resize(std::max(phi.size(), static_cast<std::size_t>(2 * stride)));
+            shape.weights(table, 2, 2, phi.data());
+            // p_i = across_b Phi_i,b n - Phi_i along,  weight Phi_i psi_v / P
+            PressingAndWeight by_phi, by_across;
+            by_phi << -along, share;
+            by_across << a.normal, 0;
+            const std::vector<Index>& vertices = a.patch->vertices;
+            const double* const phi_across = phi.data() + stride;
+            for (std::size_t i = 0; i < vertices.size(); ++i) {
+                const Index k = place[vertices[i]];
+                taken[k] = 1;
+                shares[k] += phi[i] * by_phi + phi_across[i] * by_across;
             }
         }
-        point.gap = g;
         const double slope = by_s.norm();
         point.normal = by_s / slope;
-        point.pressing /= slope;
+        point.nodes.clear();
+        for (std::size_t k = 0; k < reach.size(); ++k)
+            if (taken[k] != 0) point.nodes.push_back(reach[k]);
+        const auto n = static_cast<Index>(point.nodes.size());
+        point.weights.resize(n);
+        point.pressing.resize(n, 3);
         point.foot.setZero();
-        for (Index i = 0; i < n; ++i) point.foot += point.weights(i) * (x[point.nodes[i]] - x[point.nodes[0]]);
+        for (Index i = 0; i < n; ++i) {
+            const PressingAndWeight& node = shares[place[point.nodes[i]]];
+            point.weights(i) = node(3);
+            point.pressing.row(i) = node.head<3>().transpose() / slope;
+            point.foot += node(3) * (x[point.nodes[i]] - x[point.nodes[0]]);
+        }
         point.foot += x[point.nodes[0]];
     }
 

@@ -1,5 +1,6 @@
 #include "osculate/contact/rpim_patch.hpp"
 
+#include "contact/rpim_kernels.hpp"
 #include "osculate/core/dense_algebra.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -125,121 +126,40 @@ std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& b
     const Index n = static_cast<Index>(u.rows());
     if (n < 3) return std::nullopt;
     RpimPatch patch;
+    patch.n_ = n;
     patch.basis_ = basis;
     patch.c_ = u.colwise().mean().transpose();
     const Vector nearest = nearest_distances(u);
     patch.dc_ = nearest.mean();
     if (!(nearest.minCoeff() > same_node * patch.dc_)) return std::nullopt;
-    patch.t_ = (u.rowwise() - patch.c_.transpose()) / patch.dc_;
+    const MatrixX2 t = (u.rowwise() - patch.c_.transpose()) / patch.dc_;
 
     const Matrix& Z = polynomials;
     patch.m_ = static_cast<int>(Z.rows());
     patch.terms_ = static_cast<int>(Z.cols());
-    patch.D_ = polynomial_matrix(patch.t_, patch.m_);
-    const Matrix D = patch.D_ * Z;
+    const Matrix all = polynomial_matrix(t, patch.m_), D = all * Z;
     if (!full_rank(D)) return std::nullopt;
 
     // G = [[C, D], [D^T, 0]]                                                            [Qian 2014, eqs (13)-(14)]
     const Index terms = Z.cols();
     Matrix G = Matrix::Zero(n + terms, n + terms);
     for (Index i = 0; i < n; ++i)
-        for (Index j = 0; j < n; ++j) G(i, j) = basis((patch.t_.row(i) - patch.t_.row(j)).squaredNorm()).f;
+        for (Index j = 0; j < n; ++j) G(i, j) = basis((t.row(i) - t.row(j)).squaredNorm()).f;
     G.topRightCorner(n, terms) = D;
     G.bottomLeftCorner(terms, n) = D.transpose();
     const Matrix H = G.partialPivLu().solve(Matrix::Identity(n + terms, n));
     if (!H.allFinite()) return std::nullopt;
-    patch.H_.resize(n + Z.rows(), n);
-    patch.H_.topRows(n) = H.topRows(n);
-    patch.H_.bottomRows(Z.rows()) = Z * H.bottomRows(terms);
-    patch.fit_ = Z * D.householderQr().solve(Matrix::Identity(n, n));
+    const Index size = kernels::padded(n);
+    patch.t_.setZero(2, kernels::padded(n + patch.m_));
+    patch.t_.leftCols(n) = t.transpose();
+    patch.H_.setZero(n + patch.m_, size);
+    patch.H_.topLeftCorner(n, n) = H.topRows(n);
+    patch.H_.bottomLeftCorner(patch.m_, n) = Z * H.bottomRows(terms);
+    patch.D_.setZero(patch.m_, size);
+    patch.D_.leftCols(n) = all.transpose();
+    patch.fit_.setZero(patch.m_, size);
+    patch.fit_.leftCols(n) = Z * D.householderQr().solve(Matrix::Identity(n, n));
     return patch;
-}
-
-MatrixX3 RpimPatch::coefficients(const MatrixX3& x) const {
-    // H D = [0; 1]: what a polynomial fits passes through H unchanged but for round-off, which for the rest is smaller
-    const MatrixX3 polynomial = fit_ * x;
-    MatrixX3 result = H_ * (x - D_ * polynomial);
-    result.bottomRows(m_) += polynomial;
-    return result;
-}
-
-template <class F> void RpimPatch::for_each_basis(const Vec2& u, F&& f) const {
-    const Vec2 t = (u - c_) / dc_;
-    const double a = 1 / dc_, b = a * a; // chain rule of t(u)
-    const Index n = size();
-    for (Index i = 0; i < n; ++i) {
-        const Vec2 d = t - t_.row(i).transpose();
-        const RadialValue r = basis_(d.squaredNorm());
-        BasisRow row;
-        row.value = r.f;
-        row.first = 2 * r.df * a * d;
-        row.second = b * Vec3(2 * r.df + 4 * r.ddf * d.x() * d.x(), 4 * r.ddf * d.x() * d.y(),
-                              2 * r.df + 4 * r.ddf * d.y() * d.y());
-        f(i, row);
-    }
-    f(n, BasisRow{1, Vec2::Zero(), Vec3::Zero()});
-    f(n + 1, BasisRow{t.x(), Vec2(a, 0), Vec3::Zero()});
-    f(n + 2, BasisRow{t.y(), Vec2(0, a), Vec3::Zero()});
-    if (m_ == 6) {
-        f(n + 3, BasisRow{t.x() * t.x(), Vec2(2 * a * t.x(), 0), Vec3(2 * b, 0, 0)});
-        f(n + 4, BasisRow{t.x() * t.y(), Vec2(a * t.y(), a * t.x()), Vec3(0, b, 0)});
-        f(n + 5, BasisRow{t.y() * t.y(), Vec2(0, 2 * a * t.y()), Vec3(0, 0, 2 * b)});
-    }
-}
-
-PatchPoint RpimPatch::point(const Vec2& u, const MatrixX3& coefficients) const {
-    PatchPoint p;
-    for_each_basis(u, [&](Index k, const BasisRow& row) {
-        const Vec3 a = coefficients.row(k).transpose();
-        p.X += row.value * a;
-        p.X_a.col(0) += row.first.x() * a;
-        p.X_a.col(1) += row.first.y() * a;
-        p.X_11 += row.second.x() * a;
-        p.X_12 += row.second.y() * a;
-        p.X_22 += row.second.z() * a;
-    });
-    return p;
-}
-
-void RpimPatch::weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<MatrixX2> phi_a) const {
-    phi.setZero();
-    phi_a.setZero();
-    MatrixX3 p(m_, 3); // p, p,1, p,2
-    for_each_basis(u, [&](Index k, const BasisRow& row) {
-        phi += row.value * H_.row(k).transpose();
-        phi_a.col(0) += row.first.x() * H_.row(k).transpose();
-        phi_a.col(1) += row.first.y() * H_.row(k).transpose();
-        if (k >= size()) p.row(k - size()) << row.value, row.first.transpose();
-    });
-    // D^T Phi = p to the last digit, as in coefficients(): forces and moments then balance
-    phi += fit_.transpose() * (p.col(0) - D_.transpose() * phi);
-    phi_a += fit_.transpose() * (p.rightCols<2>() - D_.transpose() * phi_a);
-}
-
-MatrixX3 RpimPatch::second_derivatives(const Vec2& u) const {
-    MatrixX3 phi_ab = MatrixX3::Zero(size(), 3);
-    for_each_basis(u, [&](Index k, const BasisRow& row) {
-        for (Index c = 0; c < 3; ++c) phi_ab.col(c) += row.second(c) * H_.row(k).transpose();
-    });
-    return phi_ab;
-}
-
-PatchThird RpimPatch::third(const Vec2& u, const MatrixX3& coefficients) const {
-    // f,abc = 8 f''' d_a d_b d_c + 4 f'' (delta_ab d_c + delta_bc d_a + delta_ca d_b); the polynomials have none
-    PatchThird p;
-    const Vec2 t = (u - c_) / dc_;
-    const double scale = 1 / (dc_ * dc_ * dc_);
-    for (Index i = 0; i < size(); ++i) {
-        const Vec2 d = t - t_.row(i).transpose();
-        const RadialValue r = basis_(d.squaredNorm());
-        const Vec3 a = scale * coefficients.row(i).transpose();
-        const double x = d.x(), y = d.y();
-        p.X_111 += (8 * r.dddf * x * x * x + 12 * r.ddf * x) * a;
-        p.X_112 += (8 * r.dddf * x * x * y + 4 * r.ddf * y) * a;
-        p.X_122 += (8 * r.dddf * x * y * y + 4 * r.ddf * x) * a;
-        p.X_222 += (8 * r.dddf * y * y * y + 12 * r.ddf * y) * a;
-    }
-    return p;
 }
 
 } // namespace osculate::contact

@@ -1,6 +1,7 @@
 #pragma once
 /// Radial point interpolation on scattered nodes of a reference plane.
 
+#include "osculate/contact/basis_table.hpp"
 #include "osculate/contact/radial_basis.hpp"
 #include "osculate/contact/surface_patch.hpp"
 
@@ -49,39 +50,51 @@ public:
                                                       const std::optional<Multiquadric>& basis,
                                                       const Multiquadric& suited, int m);
 
-    [[nodiscard]] Index size() const { return static_cast<Index>(t_.rows()); }
+    [[nodiscard]] Index size() const { return n_; }
     [[nodiscard]] int polynomial_terms() const { return terms_; } ///< 3 to 6
     [[nodiscard]] double node_distance() const { return dc_; }    ///< dc, mean nearest-neighbour distance, m
 
-    /// Coefficients H x (n + m x 3) of the surface through nodal positions x (n x 3); they make point() O(n).
+    /// Coefficients H x of the surface through nodal positions x (n x 3), filled up with zeros to the width of a table; they
+    /// make point() O(n).
     [[nodiscard]] MatrixX3 coefficients(const MatrixX3& x) const;
+    /// The same; storage of both is used again. @param x  (padded_size() x 3), zeros below the nodes; overwritten
+    void coefficients(MatrixX3& x, MatrixX3& result) const;
+    /// Values and derivatives of the basis functions. @param rows  BasisTable::first, second or third
+    void tabulate(const Vec2& u, int rows, BasisTable& table) const;
+
     [[nodiscard]] PatchPoint point(const Vec2& u, const MatrixX3& coefficients) const;
+    /// @param table  with second derivatives
+    [[nodiscard]] PatchPoint point(const BasisTable& table, const MatrixX3& coefficients) const;
 
     /// Weights Phi (n) and their derivatives Phi,1 Phi,2 (n x 2). Phi_i(u_j) = delta_ij; they sum to 1.  Cost O(n^2).
     void weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<MatrixX2> phi_a) const;
+    /// Weights and derivatives from the first rows of a table, or from linear combinations of rows that replaced them.
+    /// @param rows   2, 3 or 6
+    /// @param exact  how many of them reproduce polynomials to the last digit, 2 or 3
+    /// @param phi    (rows x padded_size()) row by row
+    void weights(const BasisTable& table, int rows, int exact, double* phi) const;
     /// Second derivatives Phi,11 Phi,12 Phi,22 (n x 3).
     [[nodiscard]] MatrixX3 second_derivatives(const Vec2& u) const;
-    /// Third derivatives of the surface with the given coefficients().
+    /// Third derivatives of the surface with the given coefficients(). @param table  with third derivatives
     [[nodiscard]] PatchThird third(const Vec2& u, const MatrixX3& coefficients) const;
+    [[nodiscard]] PatchThird third(const BasisTable& table, const MatrixX3& coefficients) const;
+    /// Length of a row of weights: n, filled up with zeros.
+    [[nodiscard]] Index padded_size() const { return static_cast<Index>(H_.cols()); }
 
 private:
-    struct BasisRow {
-        double value = 0;
-        Vec2 first = Vec2::Zero();
-        Vec3 second = Vec3::Zero(); // 11, 12, 22
-    };
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     RpimPatch() = default;
-    /// Calls f(k, row) for the n radial and m polynomial basis functions at u, derivatives with respect to u.
-    template <class F> void for_each_basis(const Vec2& u, F&& f) const;
 
-    MatrixX2 t_;
+    Index n_ = 0;
+    Rows t_; ///< (2 x width) t_i, zeros behind
     Vec2 c_ = Vec2::Zero();
     double dc_ = 1;
     Multiquadric basis_;
-    int m_ = 6;                                                                ///< polynomials that are evaluated
-    int terms_ = 6;                                                            ///< combinations of them in the basis
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> H_; // (n + m) x n, first n columns of G^-1
-    Matrix D_, fit_; // (n x m) p(t_i), and (m x n) its least-squares inverse
+    int m_ = 6;     ///< polynomials that are evaluated
+    int terms_ = 6; ///< combinations of them in the basis
+    // rows filled up with zeros to padded_size()
+    Rows H_;       ///< (n + m rows) first n columns of G^-1
+    Rows D_, fit_; ///< (m rows) p(t_i), and its least-squares inverse
 };
 
 } // namespace osculate::contact

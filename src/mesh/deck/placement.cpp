@@ -1,4 +1,4 @@
-#include "mesh/deck_placement.hpp"
+#include "mesh/deck/placement.hpp"
 
 #include <array>
 #include <charconv>

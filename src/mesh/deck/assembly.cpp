@@ -1,7 +1,7 @@
-#include "mesh/deck_assembly.hpp"
+#include "mesh/deck/assembly.hpp"
 
-#include "mesh/deck_instance.hpp"
-#include "mesh/deck_numbers.hpp"
+#include "mesh/deck/instance.hpp"
+#include "mesh/deck/numbers.hpp"
 
 #include <algorithm>
 #include <cctype>

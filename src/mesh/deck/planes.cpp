@@ -1,4 +1,4 @@
-#include "mesh/deck_planes.hpp"
+#include "mesh/deck/planes.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "mesh/deck_sets.hpp"
+#include "mesh/deck/sets.hpp"
 
 #include "mesh/sort_unique.hpp"
 

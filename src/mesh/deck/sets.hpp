@@ -1,8 +1,8 @@
 #pragma once
 /// Named sets of a deck.
 
-#include "mesh/deck_numbers.hpp"
-#include "mesh/deck_reading.hpp"
+#include "mesh/deck/numbers.hpp"
+#include "mesh/deck/reading.hpp"
 
 #include <map>
 #include <string>

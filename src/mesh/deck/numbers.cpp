@@ -1,4 +1,4 @@
-#include "mesh/deck_numbers.hpp"
+#include "mesh/deck/numbers.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 #pragma once
 /// Surfaces of a deck.
 
-#include "mesh/deck_sets.hpp"
+#include "mesh/deck/sets.hpp"
 #include "osculate/mesh/deck_mesh.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "osculate/mesh/deck.hpp"
 
-#include "mesh/deck_assembly.hpp"
+#include "mesh/deck/assembly.hpp"
 #include "osculate/core/file_content.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 

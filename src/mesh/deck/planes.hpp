@@ -1,8 +1,8 @@
 #pragma once
 /// Plane elements of decks as layers of solid ones.
 
-#include "mesh/deck_numbers.hpp"
-#include "mesh/deck_reading.hpp"
+#include "mesh/deck/numbers.hpp"
+#include "mesh/deck/reading.hpp"
 #include "osculate/mesh/deck_mesh.hpp"
 
 #include <optional>

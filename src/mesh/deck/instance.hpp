@@ -1,9 +1,9 @@
 #pragma once
 /// One instance of a part, written into a deck without parts.
 
-#include "mesh/deck_faults.hpp"
-#include "mesh/deck_placement.hpp"
-#include "mesh/deck_writer.hpp"
+#include "mesh/deck/faults.hpp"
+#include "mesh/deck/placement.hpp"
+#include "mesh/deck/writer.hpp"
 
 #include <algorithm>
 #include <set>

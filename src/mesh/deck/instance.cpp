@@ -1,6 +1,6 @@
-#include "mesh/deck_instance.hpp"
+#include "mesh/deck/instance.hpp"
 
-#include "mesh/deck_numbers.hpp"
+#include "mesh/deck/numbers.hpp"
 
 #include <map>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 /// What the readers of the parts of one deck share.
 
-#include "mesh/deck_faults.hpp"
+#include "mesh/deck/faults.hpp"
 #include "osculate/mesh/deck.hpp"
 
 namespace osculate::mesh {

@@ -1,7 +1,7 @@
 #pragma once
 /// From the numbers of a deck's nodes or elements to ours.
 
-#include "mesh/deck_reading.hpp"
+#include "mesh/deck/reading.hpp"
 #include "osculate/core/types.hpp"
 
 #include <string>

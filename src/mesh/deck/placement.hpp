@@ -1,7 +1,7 @@
 #pragma once
 /// Where an instance of a part stands.
 
-#include "mesh/deck_faults.hpp"
+#include "mesh/deck/faults.hpp"
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/deck.hpp"
 

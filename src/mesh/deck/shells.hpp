@@ -1,8 +1,8 @@
 #pragma once
 /// Rigid facets of decks as a layer of solid elements.
 
-#include "mesh/deck_reading.hpp"
-#include "mesh/deck_sets.hpp"
+#include "mesh/deck/reading.hpp"
+#include "mesh/deck/sets.hpp"
 #include "osculate/mesh/deck_mesh.hpp"
 
 #include <string_view>

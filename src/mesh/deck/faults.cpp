@@ -1,4 +1,4 @@
-#include "mesh/deck_faults.hpp"
+#include "mesh/deck/faults.hpp"
 
 #include "osculate/mesh/mesh_error.hpp"
 

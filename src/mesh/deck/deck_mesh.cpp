@@ -1,12 +1,12 @@
 #include "osculate/mesh/deck_mesh.hpp"
 
-#include "mesh/deck_elements.hpp"
-#include "mesh/deck_numbers.hpp"
-#include "mesh/deck_planes.hpp"
-#include "mesh/deck_reading.hpp"
-#include "mesh/deck_sets.hpp"
-#include "mesh/deck_shells.hpp"
-#include "mesh/deck_surfaces.hpp"
+#include "mesh/deck/elements.hpp"
+#include "mesh/deck/numbers.hpp"
+#include "mesh/deck/planes.hpp"
+#include "mesh/deck/reading.hpp"
+#include "mesh/deck/sets.hpp"
+#include "mesh/deck/shells.hpp"
+#include "mesh/deck/surfaces.hpp"
 
 #include <algorithm>
 #include <utility>

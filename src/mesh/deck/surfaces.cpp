@@ -1,4 +1,4 @@
-#include "mesh/deck_surfaces.hpp"
+#include "mesh/deck/surfaces.hpp"
 
 #include "mesh/face_cells.hpp"
 #include "mesh/sort_few.hpp"

@@ -1,4 +1,4 @@
-#include "mesh/deck_shells.hpp"
+#include "mesh/deck/shells.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "mesh/deck_elements.hpp"
+#include "mesh/deck/elements.hpp"
 
 #include "osculate/mesh/deck_mesh.hpp"
 

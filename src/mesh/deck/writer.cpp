@@ -1,4 +1,4 @@
-#include "mesh/deck_writer.hpp"
+#include "mesh/deck/writer.hpp"
 
 #include <memory>
 

@@ -16,22 +16,27 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
     const Vec3& n = state.normal;
     const Vec3& lambda = state.lambda;
     const double c = c_, L = lambda.dot(n), q = yield_ * L + c * (state.gap + from_);
-    ContactResidual R;
-    if (status == Status::open) {
-        R.value = lambda;
-        R.by_lambda.setIdentity();
-        return R;
-    }
     const Mat3 T = Mat3::Identity() - n * n.transpose();
     // d(T v) = T dv - (n . v) dn - n (v . dn)
     const auto by_normal_of_Tv = [&](const Vec3& v) -> Mat3 {
         return -n.dot(v) * Mat3::Identity() - n * v.transpose();
     };
+    ContactResidual R;
+    if (drag_ > 0) {
+        R.value = drag_ * (T * state.drift);
+        R.by_normal = drag_ * by_normal_of_Tv(state.drift);
+        R.by_drift = drag_ * T;
+    }
+    if (status == Status::open) {
+        R.value += lambda;
+        R.by_lambda.setIdentity();
+        return R;
+    }
     // lambda - L_N n = T lambda + q n,  q = yield L + c (g + from)
-    R.value = T * lambda + q * n;
+    R.value += T * lambda + q * n;
     R.by_lambda = T + yield_ * n * n.transpose();
     R.by_gap = c * n;
-    R.by_normal = by_normal_of_Tv(lambda) + yield_ * n * lambda.transpose() + q * Mat3::Identity();
+    R.by_normal += by_normal_of_Tv(lambda) + yield_ * n * lambda.transpose() + q * Mat3::Identity();
     if (status == Status::glide) return R;
 
     const Vec3 v = trial(state);
@@ -40,7 +45,7 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
         R.value -= L_T;
         R.by_lambda -= follow_ * T;
         R.by_normal -= by_normal_of_Tv(v);
-        R.by_drift = spring_ * T;
+        R.by_drift += spring_ * T;
         return R;
     }
     const double L_N = L - q;
@@ -52,7 +57,7 @@ ContactResidual Coulomb::residual(const ContactState& state, Status status) cons
     R.by_lambda -= mu_ * (1 - yield_) * e * n.transpose() + follow_ * turn * T;
     R.by_gap += mu_ * c * e;
     R.by_normal -= mu_ * (1 - yield_) * e * lambda.transpose() + turn * by_normal_of_Tv(v);
-    R.by_drift = spring_ * turn * T;
+    R.by_drift += spring_ * turn * T;
     return R;
 }
 

@@ -46,6 +46,7 @@ void ContactCards::friction(const DeckCard& card) {
         const auto law = model_.interactions.find(changed_);
         if (law == model_.interactions.end()) return lose(card, "no *SURFACE INTERACTION is called " + changed_);
         if (v[0] < 0) return lose(card, "a negative coefficient");
+        if (law->second.static_friction > 0) return lose(card, "static friction stays for the whole run");
         if (v.size() > 1 && v[1] > 0 && law->second.stick == 0) law->second.stick = v[1];
         if (v.size() > 1 && v[1] > 0 && v[1] != law->second.stick)
             lose(card, "the stick slope stays what it is before the steps");
@@ -56,12 +57,24 @@ void ContactCards::friction(const DeckCard& card) {
         return lose(card, "no coefficient, or no *SURFACE INTERACTION before it");
     const std::vector<double> v = numbers(*deck_.begin(card), 1);
     if (v[0] < 0) return lose(card, "a negative coefficient");
+    if (card.parameter("EXPONENTIALDECAY") != nullptr) return decaying_friction(card, v);
     for (const char* name : {"ROUGH", "TAUMAX"})
         if (card.parameter(name) != nullptr) lose(card, std::string(name) + " has no counterpart");
     if (card.last - card.first > 1)
         lose(card, "friction that depends on anything has no counterpart: that of its first line is used");
     model_.interactions[interaction_].friction = v[0];
     if (v.size() > 1 && v[1] > 0) model_.interactions[interaction_].stick = v[1];
+}
+
+void ContactCards::decaying_friction(const DeckCard& card, const std::vector<double>& v) {
+    if (v.size() < 2 || v[1] < 0 || v[1] > v[0])
+        return lose(card, "a static and a kinetic coefficient are expected, which is no larger");
+    DeckInteraction& law = model_.interactions[interaction_];
+    law.friction = v[1];
+    law.static_friction = v[1] > 0 && v[0] > v[1] ? v[0] : 0;
+    if (v[1] == 0 && v[0] > 0) return lose(card, "no kinetic friction beside static friction has no counterpart");
+    if (law.static_friction > 0)
+        note(card, "a node that has slid in an increment has the kinetic coefficient in the next, at any speed");
 }
 
 void ContactCards::pair(const DeckCard& card) {
@@ -201,13 +214,14 @@ void ContactCards::damping(const DeckCard& card) {
     const std::vector<double> v = numbers(*deck_.begin(card), 1);
     double fraction = 0;
     if (const std::string* given = this->given(card, "TANGENTFRACTION");
-        given != nullptr && (!to_number(*given, fraction) || fraction != 0))
-        lose(card, "TANGENT FRACTION has no counterpart: damping acts along the normal");
+        given != nullptr && (!to_number(*given, fraction) || fraction < 0))
+        return lose(card, "TANGENT FRACTION is no number that is not negative");
     if (card.parameter("DEFINITION") != nullptr &&
         without_blanks(capitals_of(card, "DEFINITION")) != "DAMPINGCOEFFICIENT")
         return lose(card, "only a damping coefficient has a counterpart");
     if (v[0] < 0) return lose(card, "a negative coefficient");
     model_.interactions[interaction_].damping = v[0];
+    model_.interactions[interaction_].tangential_damping = fraction * v[0];
 }
 
 std::optional<DeckOverclosure> ContactCards::overclosure_of(const DeckCard& card, const std::string& law) {

@@ -14,6 +14,7 @@ public:
 
 private:
     void friction(const DeckCard& card);
+    void decaying_friction(const DeckCard& card, const std::vector<double>& v);
     void pair(const DeckCard& card);
     /// A distance that moves all slave nodes, where a set of nodes to move has them all.
     double adjust_all(const DeckCard& card, const std::string& slave, const std::string& set);

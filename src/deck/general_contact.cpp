@@ -114,6 +114,8 @@ private:
         if (at->second.overclosure.gives_way() || at->second.stick > 0)
             model_.note(law.place, "overclosure and stick slope of " + law.interaction,
                         "general contact and its stick are exact");
+        if (at->second.static_friction > 0)
+            model_.lose(law.place, "static friction of " + law.interaction, "general contact has the kinetic one");
         return at->second.friction;
     }
 

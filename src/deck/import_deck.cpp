@@ -39,7 +39,7 @@ public:
             throw mesh::MeshError(model_.mesh.raw.file,
                                   "no *STEP with *STATIC or *DYNAMIC, which alone have counterparts");
         stages_.resize(model_.steps.size());
-        const DeckRigidBodies rigid(model_, bodies_, units_, stages_);
+        const DeckRigidBodies rigid(model_, bodies_, sets_, units_, stages_);
         const std::string bodies = BodyWriter(model_, bodies_, rigid, units_, path_, nlgeom_).write(),
                           supports = DeckSupports(model_, sets_, units_.length, stages_).write(),
                           contact = write_contact(), ties = write_ties(), rings = write_rings(),
@@ -66,6 +66,7 @@ public:
         text += "bodies:\n" + bodies;
         if (!sets_.yaml().empty()) text += "sets:\n" + sets_.yaml();
         if (!supports.empty()) text += "supports:\n" + supports;
+        if (!rigid.couplings().empty()) text += "couplings:\n" + rigid.couplings();
         if (!ties.empty()) text += "ties:\n" + ties;
         if (!rings.empty()) text += "cyclic:\n" + rings;
         if (!equations.empty()) text += "equations:\n" + equations;
@@ -284,6 +285,7 @@ private:
         const bool statics = std::ranges::none_of(model_.steps, &DeckStep::dynamic);
         std::string text;
         if (law.friction > 0) text += "    friction: " + number(law.friction) + "\n";
+        if (law.static_friction > 0) text += "    static_friction: " + number(law.static_friction) + "\n";
         const bool rubs_later = std::ranges::any_of(model_.steps, [&](const DeckStep& step) {
             const auto later = step.friction.find(pair.interaction);
             return later != step.friction.end() && later->second > 0;
@@ -301,7 +303,9 @@ private:
             model_.lose(pair.place, "damping of " + pair.slave + " and " + pair.master,
                         "only pairs that give way have it");
         else if (law.damping > 0 && !statics)
-            text += "    damping: " + number(units_.stress / units_.length * law.damping) + "\n";
+            text += "    damping: " + number(per_length * law.damping) + "\n";
+        if (law.tangential_damping > 0 && !statics)
+            text += "    tangential_damping: " + number(per_length * law.tangential_damping) + "\n";
         return text;
     }
 

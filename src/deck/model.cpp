@@ -17,8 +17,8 @@ namespace {
 constexpr int components = 3;
 
 /// What these say is in the mesh, or has nothing to say.
-const std::set<std::string> read_elsewhere{"NODE",    "ELEMENT", "NSET",     "ELSET",
-                                           "SURFACE", "HEADING", "PREPRINT", "RIGIDBODY"};
+const std::set<std::string> read_elsewhere{"NODE",    "ELEMENT",  "NSET",      "ELSET",    "SURFACE",
+                                           "HEADING", "PREPRINT", "RIGIDBODY", "COUPLING", "KINEMATICCOUPLING"};
 
 class Reader : CardReader {
 public:
@@ -45,6 +45,9 @@ private:
             contact_.end_step();
             return;
         }
+        const bool of_coupling = (word == "KINEMATIC" || word == "DISTRIBUTING") && before_ == "COUPLING";
+        before_ = word;
+        if (of_coupling) return;
         if (read_elsewhere.contains(word)) {
             check_element_type(card);
             return;
@@ -428,6 +431,7 @@ private:
     GeneralContactCards general_;
     EquationCards equations_;
     RigidCards rigid_;
+    std::string before_; ///< the card before
     DeckStep* step_ = nullptr;
     DeckStep dropped_;
     bool step_taken_ = false, passing_over_ = false;

@@ -74,8 +74,9 @@ struct DeckOverclosure {
 struct DeckInteraction {
     double friction = 0, stick = 0; ///< coefficient; stick slope, 0: not given
     DeckOverclosure overclosure;
-    double damping = 0; ///< pressure over speed
-    bool tied = false;  ///< surfaces do not part
+    double damping = 0, tangential_damping = 0; ///< pressure over speed, traction over it
+    double static_friction = 0;                 ///< 0: as friction
+    bool tied = false;                          ///< surfaces do not part
 };
 
 struct DeckPair {
@@ -131,12 +132,17 @@ struct DeckValues {
     std::string place;
 };
 
-/// Elements that move as one.
+/// Elements, or nodes, that move as one, or nodes that share the loads of a reference node.
 struct DeckRigid {
     std::vector<Index> cells;
-    std::string elements; ///< their name
+    std::string elements;      ///< their name
+    std::vector<Index> points; ///< of a coupling
+    std::string set;           ///< their name, in capitals
+    bool distributing = false;
     Index reference = -1; ///< point
     std::string place;
+
+    [[nodiscard]] bool couples() const { return cells.empty(); }
 };
 
 /// A component of a reference node that is held at a value, or a force or moment along it.
@@ -209,6 +215,7 @@ struct DeckModel {
     std::vector<DeckValues> held;              ///< in all steps
     std::vector<DeckRigid> rigid;
     std::map<Index, std::size_t> rigid_of;  ///< number of the rigid body of a reference node
+    std::map<Index, std::size_t> turned_by; ///< the same of a node whose displacements are rotations
     std::vector<DeckRigidValue> rigid_held; ///< in all steps
     std::vector<DeckTemperature> initial_temperatures;
     std::map<std::string, Amplitude> amplitudes;

@@ -12,12 +12,17 @@ constexpr std::array<const char*, 6> component_words{"x", "y", "z", "rx", "ry", 
 
 } // namespace
 
-DeckRigidBodies::DeckRigidBodies(DeckModel& model, const std::vector<DeckBody>& bodies, const Units& units,
-                                 std::vector<StageLoads>& stages)
+DeckRigidBodies::DeckRigidBodies(DeckModel& model, const std::vector<DeckBody>& bodies, DeckSets& sets,
+                                 const Units& units, std::vector<StageLoads>& stages)
     : model_(model), units_(units) {
+    for (const DeckBody& body : bodies) taken_.insert(body.name);
     const bool dynamic = std::ranges::any_of(model.steps, &DeckStep::dynamic);
     for (std::size_t r = 0; r < model.rigid.size(); ++r) {
         const Motion& motion = motions_.emplace_back(motion_of(r));
+        if (model.rigid[r].couples()) {
+            couple(r, bodies, sets, stages);
+            continue;
+        }
         const std::string& place = model.rigid[r].place;
         std::vector<const DeckBody*> own;
         for (const DeckBody& body : bodies)
@@ -31,23 +36,65 @@ DeckRigidBodies::DeckRigidBodies(DeckModel& model, const std::vector<DeckBody>& 
                 model.lose(place, "*RIGID BODY " + body->name,
                            "dynamics need its mass: give bodies." + body->name +
                                ".rigid a mass, a centre and an inertia");
-            for (std::size_t s = 0; s < stages.size(); ++s) {
-                if (!motion.motions[s].empty()) stages[s].motion[body->name] = motion.motions[s];
-                if (!motion.forces[s].empty()) stages[s].force[body->name] = motion.forces[s];
-                if (!motion.moments[s].empty()) stages[s].moment[body->name] = motion.moments[s];
-            }
+            put(body->name, motion, stages);
         }
     }
 }
 
+void DeckRigidBodies::put(const std::string& name, const Motion& motion, std::vector<StageLoads>& stages) const {
+    for (std::size_t s = 0; s < stages.size(); ++s) {
+        if (!motion.motions[s].empty()) stages[s].motion[name] = motion.motions[s];
+        if (!motion.forces[s].empty()) stages[s].force[name] = motion.forces[s];
+        if (!motion.moments[s].empty()) stages[s].moment[name] = motion.moments[s];
+    }
+}
+
+void DeckRigidBodies::couple(std::size_t rigid, const std::vector<DeckBody>& bodies, DeckSets& sets,
+                             std::vector<StageLoads>& stages) {
+    const DeckRigid& one = model_.rigid[rigid];
+    const Motion& motion = motions_[rigid];
+    std::set<int> of;
+    for (const Index p : one.points) of.insert(sets.body_of(p));
+    of.erase(-1);
+    const auto lose = [&](const char* why) { model_.lose(one.place, "the coupling of " + one.set, why); };
+    if (of.size() != 1)
+        return lose(of.empty() ? "no element has its nodes" : "it has nodes of several pieces of the mesh");
+    const auto body = static_cast<std::size_t>(*of.begin());
+    if (bodies[body].rigid != nullptr) return lose("its nodes are those of a rigid body");
+    if (bodies[body].slice != mesh::DeckSlice::none) return lose("its nodes are those of plane elements");
+    if (one.distributing && std::ranges::any_of(motion.held, [](bool held) { return held; }))
+        return lose("a distributing coupling has forces and moments alone: its reference node is held or moved");
+    if (one.distributing && std::ranges::any_of(motion.motions, [](const std::string& m) { return !m.empty(); }))
+        return lose("a distributing coupling has forces and moments alone: its reference node is moved");
+    std::string set = sets.of_surface(body, one.set);
+    if (set.empty()) {
+        std::vector<Index> points = one.points;
+        std::erase_if(points, [&](Index p) { return sets.body_of(p) < 0; });
+        const std::vector<std::string> all = sets.of_points(body, points, "coupled");
+        if (all.size() != 1) return lose("no one set of a scene has just these nodes");
+        set = all.front();
+    }
+    const std::string name = fresh_name(set + "_coupling", taken_);
+    couplings_ += fmt::format("  {}: {{set: {}, {}reference_point: {}{}}}\n", name, set,
+                              one.distributing ? "kind: distributing, " : "", at_reference(rigid), fixed(motion));
+    put(name, motion, stages);
+}
+
+std::string DeckRigidBodies::at_reference(std::size_t rigid) const {
+    const Vec3 x = units_.length * model_.mesh.raw.points[static_cast<std::size_t>(model_.rigid[rigid].reference)];
+    return fmt::format("[{}, {}, {}]", number(x[0]), number(x[1]), number(x[2]));
+}
+
+std::string DeckRigidBodies::fixed(const Motion& motion) const {
+    std::string words;
+    for (std::size_t c = 0; c < component_words.size(); ++c)
+        if (motion.fixed[c]) words += (words.empty() ? "" : ", ") + std::string(component_words[c]);
+    return words.empty() ? "" : ", fix: [" + words + "]";
+}
+
 std::string DeckRigidBodies::of(const DeckBody& body) const {
     const auto r = static_cast<std::size_t>(body.rigid - model_.rigid.data());
-    const Vec3 x = units_.length * model_.mesh.raw.points[static_cast<std::size_t>(body.rigid->reference)];
-    std::string fixed;
-    for (std::size_t c = 0; c < component_words.size(); ++c)
-        if (motions_[r].fixed[c]) fixed += (fixed.empty() ? "" : ", ") + std::string(component_words[c]);
-    std::string text = fmt::format("{{reference_point: [{}, {}, {}]", number(x[0]), number(x[1]), number(x[2]));
-    if (!fixed.empty()) text += ", fix: [" + fixed + "]";
+    std::string text = "{reference_point: " + at_reference(r) + fixed(motions_[r]);
     if (const double rho = density(body); rho > 0) text += ", density: " + number(rho);
     return text + "}";
 }

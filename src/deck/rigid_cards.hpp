@@ -9,7 +9,7 @@ namespace osculate::deck {
 
 class RigidCards : CardReader {
 public:
-    /// Reads all *RIGID BODY of the deck: other cards may stand before them.
+    /// Reads all *RIGID BODY and couplings of the deck: other cards may stand before them.
     RigidCards(const mesh::Deck& deck, DeckModel& model);
 
     /// Takes reference nodes out of the points of what is held, along components from 1 to 6.
@@ -19,6 +19,14 @@ public:
 
 private:
     void read(const DeckCard& card);
+    /// @param kind  the card after *COUPLING
+    void couple(const DeckCard& card, const DeckCard* kind);
+    void couple_kinematically(const DeckCard& card);
+    /// Whether lines of components have all displacements. @param first  field of a line that they begin in
+    [[nodiscard]] bool has_all_displacements(const DeckCard& card, std::size_t first);
+    /// Points of a node set or a surface.
+    [[nodiscard]] std::vector<Index> points_on(const std::string& name);
+    void add(const DeckCard& card, DeckRigid rigid, const std::string* reference);
     template <class Add> void take_out(DeckValues& values, const Add& add);
 };
 

@@ -110,7 +110,7 @@ bool ContactTerm::begin(const model::State& state, const Iterate& at, const Step
         if (dynamics_ == nullptr) continue;
         if (const double recovery = dynamics_->recovery_time; dt < recovery)
             evaluations_[p].keep_depths(1 - dt / recovery, at.x, timings_, threads_, at.tail);
-        evaluations_[p].take_means(at.x, {dt, 1 - dynamics_->integrator.alpha_f}, timings_, threads_, at.tail);
+        evaluations_[p].take_step(at.x, {dt, 1 - dynamics_->integrator.alpha_f}, timings_, threads_, at.tail);
     }
     return false;
 }
@@ -245,18 +245,20 @@ bool ContactTerm::rows_within(const Iterate& at, const Field& sums, const ConstV
 }
 
 bool ContactTerm::reaches(std::size_t p, Index j) const {
-    return evaluations_[p].point(j).found && (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0));
+    return evaluations_[p].point(j).found &&
+           (contact::is_closed(statuses_[p][j]) || !lambda_[p][j].isZero(0) || evaluations_[p].drag(j) > 0);
 }
 
 void ContactTerm::complete(const ConstVectorRef& z, model::State& state) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         const model::ContactEvaluation& evaluation = evaluations_[p];
-        model::ContactHistory history{pairs_[p], std::vector<Vec3>(statuses_[p].size()), statuses_[p],
-                                      evaluation.facets(), evaluation.master()};
+        model::ContactHistory history{pairs_[p],           std::vector<Vec3>(statuses_[p].size()),
+                                      statuses_[p],        evaluation.facets(),
+                                      evaluation.master(), evaluation.slides(statuses_[p])};
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
             history.lambda[j] = force(z, first_[p] + j);
             // open nodes carry nothing: what is left is the solver's round-off
-            if (statuses_[p][j] == Status::open) history.lambda[j].setZero();
+            if (statuses_[p][j] == Status::open && !(evaluation.drag(j) > 0)) history.lambda[j].setZero();
         }
         state.contact.push_back(std::move(history));
     }

@@ -27,7 +27,7 @@ void ContactTerm::linearise(std::size_t p, Index j, contact::VariationForm form,
     if (!tangent.reaches) return;
     evaluation.vary(j, tangent.variation);
     tangent.A.noalias() = law.by_gap * tangent.variation.dg + law.by_normal * tangent.variation.dn;
-    if (evaluation.pair().options().friction > 0) {
+    if (evaluation.pair().options().rubs()) {
         evaluation.drift_variation(j, tangent.variation, tangent.dd);
         tangent.A.noalias() += law.by_drift * tangent.dd;
     }
@@ -60,7 +60,7 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
             one.coupling = first_[p] + j;
             one.slave = evaluation.pair().slaves().node[j];
             one.masters = evaluation.point_nodes(j);
-            one.friction = evaluation.pair().options().friction;
+            one.friction = evaluation.friction(j);
             const contact::ContactState state = evaluation.state(j, lambda_[p][j]);
             const Vec3& n = state.normal;
             const Mat3 mirrored = symmetry_directions(one.slave), kept = Mat3::Identity() - mirrored,
@@ -74,7 +74,7 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
             variation.form = contact::VariationForm::products;
             evaluation.vary(j, variation);
             one.A = n * variation.dg;
-            if (one.friction > 0) {
+            if (evaluation.pair().options().rubs()) {
                 evaluation.drift_variation(j, variation, dd);
                 one.A += T * dd;
             }
@@ -86,6 +86,7 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
             one.w = one.axes.transpose() * (kept * (state.gap * n + T * state.drift));
             const contact::Coulomb law = evaluation.law(j, lambda_[p][j]);
             one.w(0) = state.gap + law.from();
+            one.drag = law.drag();
             one.compliance = law.compliance();
             one.normal_compliance = law.normal_compliance();
             one.anchor = one.axes.transpose() * law.anchor();

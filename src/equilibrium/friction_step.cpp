@@ -3,6 +3,7 @@
 #include "osculate/solve/by_components.hpp"
 #include "osculate/solve/friction_problem.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 
 namespace osculate::equilibrium {
@@ -107,10 +108,23 @@ bool FrictionStep::advance(const Iterate& at, const Field& unbalanced, Vector& z
                 problem.W.block<3, 1>(3 * j, begin + c) =
                     relative(contacts[static_cast<std::size_t>(j)], solved.col(c));
     }
+    Vector drag = Vector::Zero(3 * n);
     for (Index j = 0; j < n; ++j) {
         const LinearisedContact& contact = contacts[static_cast<std::size_t>(j)];
         problem.mu(j) = contact.friction;
         problem.q.segment<3>(3 * j) = contact.w + relative(contact, du);
+        drag.segment<2>(3 * j + 1).setConstant(contact.drag);
+    }
+    // u = W r + q with r = r_c - drag u:  u = (I + W drag)^-1 (W r_c + q)
+    const bool resists = (drag.array() > 0).any();
+    if (resists) {
+        const Eigen::PartialPivLU<Matrix> factors(Matrix::Identity(3 * n, 3 * n) + problem.W * drag.asDiagonal());
+        problem.W = factors.solve(problem.W).eval();
+        problem.q = factors.solve(problem.q).eval();
+    }
+    const solve::FrictionProblem motion{resists ? problem.W : Matrix(), resists ? problem.q : Vector(), Vector()};
+    for (Index j = 0; j < n; ++j) {
+        const LinearisedContact& contact = contacts[static_cast<std::size_t>(j)];
         problem.W(3 * j, 3 * j) += contact.normal_compliance;
         for (int k = 1; k < 3; ++k) {
             problem.W(3 * j + k, 3 * j + k) += contact.compliance;
@@ -118,8 +132,9 @@ bool FrictionStep::advance(const Iterate& at, const Field& unbalanced, Vector& z
         }
     }
     if (!problem.W.allFinite() || !problem.q.allFinite()) return false;
-    const solve::FrictionSolution solution = solve::solve_friction(problem, tolerance);
+    solve::FrictionSolution solution = solve::solve_friction(problem, tolerance);
     if (!solution.converged) return false;
+    if (resists) solution.r -= drag.cwiseProduct(motion.W * solution.r + motion.q);
 
     for (Index j = 0; j < n; ++j)
         add_forces(contacts[static_cast<std::size_t>(j)], solution.r.segment<3>(3 * j), right);

@@ -228,6 +228,17 @@ std::array<double, mesh::most_nodes_per_face> tributary_areas(const mesh::Surfac
     return areas;
 }
 
+Matrix shape_products(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions) {
+    const Index n = face.count;
+    if (n == 3) return area(face, positions) / 12 * (Matrix::Identity(n, n) + Matrix::Ones(n, n));
+    Matrix products = Matrix::Zero(n, n);
+    integrate(face, positions, [&](const Point& p) {
+        const Eigen::Map<const Vector> N(p.N.data(), n);
+        products += p.weight * p.x_xi.cross(p.x_eta).norm() * N * N.transpose();
+    });
+    return products;
+}
+
 std::array<double, 4> tributary_areas(const mesh::Facet& facet, const std::vector<Vec3>& positions) {
     const auto areas = tributary_areas(mesh::plane_face(facet), positions);
     return {areas[0], areas[1], areas[2], areas[3]};

@@ -31,9 +31,9 @@ ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
       faces_(other.faces_), tracking_(other.tracking_), in_force_(other.in_force_),
       in_force_start_(other.in_force_start_), points_(other.points_), points_at_(other.points_at_),
       depth_(other.depth_), kept_part_(other.kept_part_), overclosure_start_(other.overclosure_start_),
-      mean_(other.mean_), vertices_start_(other.vertices_start_), passes_over_(other.passes_over_),
-      clearance_(other.clearance_), left_(other.left_), states_(other.states_), point_nodes_(other.point_nodes_),
-      facet_changes_(other.facet_changes_) {
+      step_(other.step_), slides_(other.slides_), vertices_start_(other.vertices_start_),
+      passes_over_(other.passes_over_), clearance_(other.clearance_), left_(other.left_), states_(other.states_),
+      point_nodes_(other.point_nodes_), facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -83,6 +83,12 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
     lambda_start_ = history.lambda;
     depth_.clear();
     overclosure_start_.clear();
+    step_ = {};
+    slides_.clear();
+    if (pair_->options().static_friction > pair_->options().friction) {
+        slides_ = history.slides;
+        slides_.resize(points_.size(), 0);
+    }
     std::fill(tracking_.changes.begin(), tracking_.changes.end(), 0);
     const ScopedTimer timer(timings, Part::search);
     if (pair_->slaves().edges) {
@@ -277,7 +283,7 @@ Vec3 ContactEvaluation::drift(Index j, const std::vector<Vec3>& from, const std:
 
 contact::ContactState ContactEvaluation::measure(Index j, const contact::PairPositions& at) const {
     const contact::ContactPoint& point = points_[j];
-    const bool rubs = pair_->options().friction > 0;
+    const bool rubs = pair_->options().rubs();
     contact::ContactState state{Vec3::Zero(), point.gap, point.normal, rubs ? drift(j) : Vec3(Vec3::Zero())};
     state.gap -= kept_depth(j);
     if (!point.found || tails_.slaves.empty()) return state;
@@ -304,7 +310,7 @@ void ContactEvaluation::vary(Index j, contact::ContactVariation& variation) cons
 }
 
 void ContactEvaluation::drift_variation(Index j, const contact::ContactVariation& variation, Matrix& dd) const {
-    if (!(pair_->options().friction > 0)) {
+    if (!pair_->options().rubs()) {
         dd.setZero(3, variation.dg.cols());
         return;
     }

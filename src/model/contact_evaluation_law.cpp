@@ -27,6 +27,26 @@ ContactEvaluation::GivesWay ContactEvaluation::gives_way(Index j, const Vec3& la
     return {at.overclosure, at.compliance / area};
 }
 
+double ContactEvaluation::friction(Index j) const {
+    const ContactOptions& options = pair_->options();
+    return slides_.empty() || slides_[static_cast<std::size_t>(j)] != 0 ? options.friction : options.static_friction;
+}
+
+std::vector<char> ContactEvaluation::slides(const std::vector<contact::Status>& statuses) const {
+    std::vector<char> result = slides_; // what flies goes on as it was
+    for (std::size_t j = 0; j < result.size(); ++j)
+        if (contact::is_closed(statuses[j])) result[j] = statuses[j] == contact::Status::slip ? 1 : 0;
+    return result;
+}
+
+double ContactEvaluation::drag(Index j) const {
+    const double damping = pair_->options().tangential_damping;
+    // not for what closes now: there is no equilibrium where the force of a touch lifts it again
+    const bool touched = damping > 0 && step_.dt > 0 && points_[j].found && !status_start_.empty() &&
+                         contact::is_closed(status_start_[static_cast<std::size_t>(j)]);
+    return touched ? damping * soft_area(j) / step_.dt : 0;
+}
+
 double ContactEvaluation::stiffness(Index j, const Vec3& lambda) const {
     if (!overclosure_start_.empty()) return law_of_means(j).parameter();
     const double c = pair_->slaves().stiffness[j] + inertia_[j];
@@ -36,13 +56,14 @@ double ContactEvaluation::stiffness(Index j, const Vec3& lambda) const {
 contact::Coulomb ContactEvaluation::law(Index j, const Vec3& lambda) const {
     if (!overclosure_start_.empty()) return law_of_means(j);
     const ContactOptions& options = pair_->options();
-    const double c = stiffness(j, lambda), friction = options.friction;
+    const double c = stiffness(j, lambda), friction = this->friction(j), drag = this->drag(j);
     const bool yields = this->yields(j), soft = options.overclosure.has_value(), slips = options.stick_stiffness > 0;
-    if (!yields && !soft && !slips && held_[j] == 0) return {friction, c};
+    if (!yields && !soft && !slips && !(drag > 0) && held_[j] == 0) return {friction, c};
     const bool sticks_exactly = soft && !slips && held_[j] == 0;
     const double spring = slips ? options.stick_stiffness * soft_area(j) : held_stick_stiffness * c;
     contact::Coulomb law = sticks_exactly ? contact::Coulomb(friction, c)
                                           : contact::Coulomb::elastic(friction, c, spring, lambda_start_[j]);
+    law.resist(drag);
     if (yields) {
         law.yield(shared_yield);
     } else if (soft) {
@@ -52,13 +73,13 @@ contact::Coulomb ContactEvaluation::law(Index j, const Vec3& lambda) const {
     return law;
 }
 
-void ContactEvaluation::take_means(const std::vector<Vec3>& x, const MeanOfStep& step, Timings& timings, int threads,
-                                   const std::vector<Vec3>& tails) {
+void ContactEvaluation::take_step(const std::vector<Vec3>& x, const DynamicStep& step, Timings& timings, int threads,
+                                  const std::vector<Vec3>& tails) {
+    step_ = step;
     if (!pair_->options().overclosure) return;
     evaluate(x, timings, threads, tails);
     for (Index j = 0; j < pair_->size(); ++j) // what comes from beside the master begins to touch where it is seen
         overclosure_start_.push_back(points_[j].found ? -states_[j].gap : pair_->options().overclosure->first());
-    mean_ = step;
     forget_path();
 }
 
@@ -66,7 +87,7 @@ contact::Overclosure::Mean ContactEvaluation::mean_force(Index j) const {
     const contact::Overclosure& law = *pair_->options().overclosure;
     const double start = overclosure_start_[j], end = -states_[j].gap, first = law.first(), area = soft_area(j);
     contact::Overclosure::Mean mean = law.mean(start, end);
-    const double late = mean_.weight - 0.5, rate = pair_->options().damping / mean_.dt;
+    const double late = step_.weight - 0.5, rate = pair_->options().damping / step_.dt;
     mean.pressure +=
         late * (law.pressure(end) - law.pressure(start)) + rate * (std::max(end, first) - std::max(start, first));
     if (end > first) mean.slope += late / law.at(law.pressure(end)).compliance + rate;
@@ -80,11 +101,11 @@ contact::Coulomb ContactEvaluation::law_of_means(Index j) const {
     const contact::Overclosure::Mean mean = mean_force(j);
     const bool apart = !(mean.pressure > 0) && -states_[j].gap <= law.first();
     const double slope = apart ? first_slope : std::max(mean.slope, least_slope * first_slope),
-                 from = apart ? law.first() : -states_[j].gap - mean.pressure / slope,
-                 friction = pair_->options().friction;
+                 from = apart ? law.first() : -states_[j].gap - mean.pressure / slope, friction = this->friction(j);
     contact::Coulomb result =
         held_[j] == 0 ? contact::Coulomb(friction, slope)
                       : contact::Coulomb::elastic(friction, slope, held_stick_stiffness * slope, lambda_start_[j]);
+    result.resist(drag(j));
     result.yield(1, from); // lambda . n = -slope (g + from), the tangent of the mean force; open where that would pull
     return result;
 }
@@ -98,7 +119,7 @@ Taken ContactEvaluation::taken(Index j, const Vec3& lambda) const {
     if (overclosure_start_.empty() || !points_[j].found) return {};
     const contact::Overclosure& law = *pair_->options().overclosure;
     const double start = overclosure_start_[j], end = -states_[j].gap, force = lambda.dot(points_[j].normal),
-                 late = force > 0 ? mean_.weight - 0.5 : 0;
+                 late = force > 0 ? step_.weight - 0.5 : 0;
     Taken taken;
     taken.algorithmic = soft_area(j) * late * (law.pressure(end) - law.pressure(start)) * (end - start);
     taken.damping = force * (end - start) - soft_area(j) * (law.energy(end) - law.energy(start)) - taken.algorithmic;

@@ -59,8 +59,12 @@ ContactPair::ContactPair(const ContactPair& other, const ContactOptions& options
 
 ContactHistory ContactPair::initial_history() const {
     const std::size_t n = slaves_.node.size();
-    return {nullptr, std::vector<Vec3>(n, Vec3::Zero()), std::vector<contact::Status>(n, contact::Status::open),
-            std::vector<Index>(n, -1), master()};
+    return {nullptr,
+            std::vector<Vec3>(n, Vec3::Zero()),
+            std::vector<contact::Status>(n, contact::Status::open),
+            std::vector<Index>(n, -1),
+            master(),
+            {}};
 }
 
 std::pair<contact::SharpEdge, contact::SharpEdge> ContactPair::edges(Index j, const std::vector<Vec3>& x,

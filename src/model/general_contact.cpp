@@ -224,6 +224,7 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
             opened(make_pair(scope, sides.first, sides.second, part.nodes, std::move(facets), part.yielding)));
         if (old == before.end()) continue;
         history.master = old->master;
+        if (!old->slides.empty()) history.slides.assign(history.status.size(), 0);
         const std::vector<Index>& known = old->pair->slaves().node;
         for (std::size_t j = 0; j < part.nodes.size(); ++j) {
             const auto at = std::ranges::lower_bound(known, part.nodes[j]);
@@ -232,6 +233,7 @@ std::vector<ContactHistory> GeneralContact::near(ContactScope& scope, const std:
             history.lambda[j] = old->lambda[k];
             history.status[j] = old->status[k];
             history.facet[j] = old->facet[k];
+            if (!history.slides.empty()) history.slides[j] = old->slides[k];
         }
     }
     add_edges(scope, before, histories);
@@ -309,6 +311,7 @@ std::shared_ptr<const ContactPair> GeneralContact::make_pair(const ContactScope&
     }
     ContactOptions options = options_.pair;
     options.friction = options_.friction(slave, master);
+    if (options_.static_friction.size() > 0) options.static_friction = options_.static_friction(slave, master);
     return std::make_shared<const ContactPair>("general: " + own.name + " on " +
                                                    (slave == master ? "itself" : other.name),
                                                X_, std::move(slaves), other.side, options);

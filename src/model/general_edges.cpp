@@ -123,6 +123,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
         });
         if (old == before.end()) continue;
         history.master = old->master;
+        if (!old->slides.empty()) history.slides.assign(history.status.size(), 0);
         const std::vector<std::array<Index, 2>>& known = old->pair->slaves().edges->half_edges;
         for (std::size_t j = 0; j < edges.size(); ++j) {
             const auto known_at = std::ranges::lower_bound(known, edges[j]);
@@ -131,6 +132,7 @@ void GeneralContact::add_edges(const ContactScope& scope, const std::vector<Cont
             history.lambda[j] = old->lambda[k];
             history.status[j] = old->status[k];
             history.facet[j] = old->facet[k];
+            if (!history.slides.empty()) history.slides[j] = old->slides[k];
         }
     }
 }
@@ -176,6 +178,7 @@ std::shared_ptr<const ContactPair> GeneralContact::make_edges(const ContactScope
     }
     ContactOptions options = options_.pair;
     options.friction = options_.friction(slave, master);
+    if (options_.static_friction.size() > 0) options.static_friction = options_.static_friction(slave, master);
     options.discretisation = Discretisation::node;
     return std::make_shared<const ContactPair>("general: edges of " + own.name + " on " + other.name, X_,
                                                std::move(slaves), other.side, options);

@@ -231,6 +231,7 @@ void each_value(History& history,
                 const Visit& visit) requires std::is_same_v<std::remove_const_t<History>, model::ContactHistory> {
     visit("lambda", history.lambda);
     visit("status", history.status);
+    visit("slides", history.slides);
     visit("facet", history.facet); // the master is made from the patches
 }
 
@@ -295,6 +296,9 @@ struct Writer {
     void operator()(const char* name, const std::vector<double>& value) const {
         if (!value.empty()) json[name] = packed(value);
     }
+    void operator()(const char* name, const std::vector<char>& value) const {
+        if (!value.empty()) json[name] = packed(value);
+    }
     void operator()(const char* name, const std::vector<contact::Status>& value) const { json[name] = packed(value); }
     void operator()(const char* name, const std::vector<Index>& value) const { json[name] = packed(value); }
     void operator()(const char* name, const std::vector<model::ContactHistory>& pairs) const {
@@ -340,6 +344,9 @@ struct Reader {
     void operator()(const char* name, std::vector<Vec3>& value) const { value = unpacked_matrices<Vec3>(json, name); }
     void operator()(const char* name, std::vector<double>& value) const { // left out where there is nothing
         if (json.contains(name)) value = unpacked<double>(json, name);
+    }
+    void operator()(const char* name, std::vector<char>& value) const {
+        if (json.contains(name)) value = unpacked<char>(json, name);
     }
     void operator()(const char* name, std::vector<contact::Status>& value) const {
         value = unpacked<contact::Status>(json, name);

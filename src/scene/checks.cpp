@@ -80,6 +80,10 @@ public:
         for (const auto& [name, coupling] : scene.couplings) {
             if (find(scene.bodies, name) != nullptr)
                 fault({"couplings", name}, "another name than that of a body: stages name both", "'" + name + "'");
+            if (coupling.kind == CouplingKind::distributing &&
+                std::ranges::any_of(coupling.fixed, [](bool fixed) { return fixed; }))
+                fault({"couplings", name, "fix"}, "none with kind distributing: its reference point has no motion",
+                      "components that are held");
             const SetSpec* set = find(scene.sets, coupling.set);
             const Body* body = set != nullptr ? find(scene.bodies, set->body) : nullptr;
             if (body != nullptr && body->rigid)
@@ -154,6 +158,10 @@ public:
         for (const auto& [body, components] : stage.motion) {
             const Held rigid = needs_rigid("motion", body);
             if (rigid.fixed == nullptr) continue;
+            if (const Coupling* coupling = find(scene.couplings, body);
+                coupling != nullptr && coupling->kind == CouplingKind::distributing)
+                fault({"stages", name, "motion", body},
+                      "a coupling of kind rigid: others have forces and moments alone", "one that distributes");
             bool any = false;
             for (std::size_t a = 0; a < components.size(); ++a) {
                 if (!components[a]) continue;

@@ -55,6 +55,10 @@ public:
             known.push_back(name);
             if (!body.finish.empty()) known.push_back(body.finish);
         }
+        check_static({"contact", "general", "static_friction"}, general.friction, general.static_friction);
+        for (const auto& [name, rule] : general.pairs)
+            check_static({"contact", "general", "pairs", name, "static_friction"},
+                         rule.friction.value_or(general.friction), rule.static_friction);
         for (const auto& [name, rule] : general.pairs)
             for (const std::string& side : rule.between)
                 if (!side.empty() && std::ranges::count(known, side) == 0) {
@@ -112,6 +116,10 @@ public:
             if (pair.damping > 0 && dynamic == scene.stages.end())
                 fault({"contact", name, "damping"}, "none where no stage is dynamic",
                       number_text(pair.damping) + " Pa s/m");
+            if (pair.tangential_damping > 0 && dynamic == scene.stages.end())
+                fault({"contact", name, "tangential_damping"}, "none where no stage is dynamic",
+                      number_text(pair.tangential_damping) + " Pa s/m");
+            check_static({"contact", name, "static_friction"}, pair.friction, pair.static_friction);
             check_rows({"contact", name, "pressure_overclosure"}, pair.pressure_overclosure);
             // the energy of elastic stick is in no ledger
             if (dynamic != scene.stages.end() && pair.stick_stiffness)
@@ -120,6 +128,13 @@ public:
             if (pair.stick_stiffness && !(pair.friction > 0))
                 fault({"contact", name, "stick_stiffness"}, "friction above 0 beside it", "no friction");
         }
+    }
+    void check_static(const std::vector<std::string>& key, double friction, const std::optional<double>& at_rest) {
+        if (!at_rest) return;
+        if (!(friction > 0))
+            fault(key, "friction above 0 beside it", "no friction");
+        else if (*at_rest < friction)
+            fault(key, "at least friction, " + number_text(friction), number_text(*at_rest));
     }
     void check_rows(std::vector<std::string> key, const PressureOverclosure& law) {
         const auto* tabular = std::get_if<TabularOverclosure>(&law);
@@ -135,6 +150,13 @@ public:
     }
     /// What the exact law needs of a pair is settled before the first stage.
     void check_changes_of_laws(const Scene& scene, const std::string& name, const Stage& stage) {
+        for (const auto& [pair, friction] : stage.friction) {
+            const Pair* of = find(scene.contact, pair);
+            if (of == nullptr || !of->static_friction || (friction > 0 && friction <= *of->static_friction)) continue;
+            fault({"stages", name, "friction", pair},
+                  "above 0, at most the pair's static_friction, " + number_text(*of->static_friction),
+                  number_text(friction));
+        }
         for (const auto& [pair, law] : stage.pressure_overclosure) {
             const std::vector<std::string> key{"stages", name, "pressure_overclosure", pair};
             check_rows(key, law);

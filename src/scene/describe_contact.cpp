@@ -159,6 +159,12 @@ void describe(Visitor& v, Pair& pair) {
            discretisations, index);
     pair.discretisation = index == 0 ? std::nullopt : std::optional(static_cast<Discretisation>(index - 1));
     v.number({.name = "friction", .meaning = "Coulomb's coefficient mu.", .range = range::not_negative}, pair.friction);
+    v.optional_number({.name = "static_friction",
+                       .meaning =
+                           "Coulomb's coefficient of nodes that do not slide, no less than friction: a node that "
+                           "slid in the last step has friction in this one. Without it they are the same.",
+                       .range = range::positive},
+                      pair.static_friction);
     describe_overclosure(v,
                          {.name = "pressure_overclosure",
                           .meaning = "How deep the surfaces give way under pressure.",
@@ -171,6 +177,11 @@ void describe(Visitor& v, Pair& pair) {
               .unit = dimension::pressure_per_velocity,
               .range = range::not_negative},
              pair.damping);
+    v.number({.name = "tangential_damping",
+              .meaning = "Traction against sliding over its speed, beside friction; in dynamics.",
+              .unit = dimension::pressure_per_velocity,
+              .range = range::not_negative},
+             pair.tangential_damping);
     v.optional_number({.name = "stick_stiffness",
                        .meaning = "Friction over elastic slip before it reaches Coulomb's bound, in statics; without "
                                   "it nodes stick exactly.",
@@ -202,6 +213,8 @@ void describe(Visitor& v, GeneralContact& general) {
     v.number(
         {.name = "friction", .meaning = "Coulomb's coefficient mu between all bodies.", .range = range::not_negative},
         general.friction);
+    v.optional_number({.name = "static_friction", .meaning = "As for pairs.", .range = range::positive},
+                      general.static_friction);
     static const Words surfaces{"automatic", "facets", "blend"};
     word(v,
          {.name = "surface",
@@ -236,6 +249,11 @@ void describe(Visitor& v, GeneralContact& general) {
                                      .range = range::not_negative,
                                      .default_text = "that of contact.general"},
                                     rule.friction);
+                  v.optional_number({.name = "static_friction",
+                                     .meaning = "Coulomb's coefficient of nodes that do not slide.",
+                                     .range = range::positive,
+                                     .default_text = "that of contact.general, or the rule's own friction"},
+                                    rule.static_friction);
                   v.flag({.name = "contact", .meaning = "false: they do not meet, and pass through one another."},
                          rule.contact);
               });

@@ -133,11 +133,17 @@ void describe(Visitor& v, RigidSurface& surface) {
 }
 
 void describe(Visitor& v, Coupling& coupling) {
-    v.text({.name = "set",
-            .meaning = "Nodes that follow the reference point as one: displacement and rotation, however large.",
-            .required = true,
-            .names = Names::set},
-           coupling.set);
+    v.text(
+        {.name = "set", .meaning = "Nodes that belong to the reference point.", .required = true, .names = Names::set},
+        coupling.set);
+    static const Words kinds{"rigid", "distributing"};
+    word(v,
+         {.name = "kind",
+          .meaning =
+              "rigid: the nodes follow the reference point as one, displacement and rotation, however large. "
+              "distributing: force and moment at the reference point are a traction on the set that is linear in "
+              "the place, of the undeformed body, and the nodes move as they do."},
+         kinds, coupling.kind);
     v.optional_vector({.name = "reference_point",
                        .meaning = "Point that fix, motion, force and moment speak of; it moves with the nodes.",
                        .unit = dimension::length,

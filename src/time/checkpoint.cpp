@@ -27,6 +27,7 @@ std::string misfit(const model::ContactHistory& history, std::size_t slaves, Ind
     const std::string whose = " of pair '" + name + "'";
     if (history.lambda.size() != slaves || history.status.size() != slaves || history.facet.size() != slaves)
         return "slave nodes" + whose;
+    if (!history.slides.empty() && history.slides.size() != slaves) return "slave nodes" + whose;
     if (!finite(history.lambda)) return "contact forces" + whose;
     for (const contact::Status status : history.status)
         if (status > contact::Status::glide) return "contact statuses" + whose;

@@ -134,6 +134,36 @@ TEST_P(Branch, HasExactDerivativesWhereItYields) {
     expect_exact_derivatives(yielding, trial_of_spring);
 }
 
+TEST_P(Branch, HasExactDerivativesWhereSlidingMeetsMore) {
+    Coulomb resisting = law;
+    resisting.resist(0.7);
+    expect_exact_derivatives(resisting, [](const ContactState& s) { return augmented(s).L_T; });
+}
+
+TEST(ResistingCoulomb, HasThatForceBesideFrictionAndNoneWhereItSticks) {
+    // solutions: lambda_T = -(mu p + drag |d|) d/|d| in slip, d = 0 in stick
+    Coulomb resisting(mu, c);
+    const double drag = 0.7, p = 1.5;
+    resisting.resist(drag);
+    for (ContactState s : random_states()) {
+        const Vec3 n = s.normal, along = (s.drift - n * n.dot(s.drift)).normalized();
+        s.gap = 0;
+        s.drift = 0.3 * along;
+        s.lambda = p * n - (mu * p + drag * 0.3) * along;
+        EXPECT_EQ(resisting.status(s), Status::slip);
+        EXPECT_LT(resisting.residual(s, Status::slip).value.norm(), 10 * round_off);
+        s.gap = 1;
+        s.lambda = -drag * 0.3 * along;
+        EXPECT_EQ(resisting.status(s), Status::open);
+        EXPECT_LT(resisting.residual(s, Status::open).value.norm(), 10 * round_off);
+        s.gap = 0;
+        s.drift.setZero();
+        s.lambda = p * n + 0.5 * mu * p * along;
+        EXPECT_EQ(resisting.status(s), Status::stick);
+        EXPECT_LT(resisting.residual(s, Status::stick).value.norm(), 10 * round_off);
+    }
+}
+
 TEST(YieldingCoulomb, HasTheGapThatItsForceOpens) {
     Coulomb yielding(mu, c);
     yielding.yield(0.2);

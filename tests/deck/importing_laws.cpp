@@ -50,12 +50,26 @@ TEST_F(ImportingLaws, StepsChangeTheLawOfOverclosure) {
                 ElementsAre(HasSubstr("no *SURFACE INTERACTION is called NONE")));
 }
 
+TEST_F(ImportingLaws, FrictionOfRestIsThatOfTheDeck) {
+    const scene::Pair pair = checked(import("*FRICTION, EXPONENTIAL DECAY\n.4,.3,2.\n" + pressed)).contact.at(0).second;
+    EXPECT_EQ(pair.friction, 0.3);
+    EXPECT_EQ(pair.static_friction, 0.4);
+    for (const char* bad : {".3,.4", ".3", ".4,0."})
+        EXPECT_EQ(import(std::string("*FRICTION, EXPONENTIAL DECAY\n") + bad + "\n" + pressed).lost.size(), 1u) << bad;
+    EXPECT_EQ(import("*FRICTION, EXPONENTIAL DECAY\n.4,.3,2.\n" + pressed +
+                     "*STEP\n*STATIC\n*CHANGE FRICTION, INTERACTION=I\n*FRICTION\n.2\n*END STEP\n")
+                  .lost.size(),
+              1u);
+}
+
 TEST_F(ImportingLaws, DampingOfContactActsInDynamics) {
     const std::string damped = "*CONTACT DAMPING\n3.\n",
                       dynamic = "*STEP\n*DYNAMIC\n.1,1.\n*DSLOAD\nTop,P,5.\n*END STEP\n";
     EXPECT_EQ(checked(import(damped + pressed)).contact.at(0).second.damping, 0);
     EXPECT_THAT(import(damped + dynamic).text, HasSubstr("damping: 3000000000"));
-    EXPECT_EQ(import("*CONTACT DAMPING, TANGENT FRACTION=.5\n3.\n" + pressed).lost.size(), 1u);
+    const std::string both = import("*CONTACT DAMPING, TANGENT FRACTION=.5\n3.\n" + dynamic).text;
+    EXPECT_THAT(both, HasSubstr("\n    damping: 3000000000\n    tangential_damping: 1500000000\n"));
+    EXPECT_EQ(import("*CONTACT DAMPING, TANGENT FRACTION=-.5\n3.\n" + pressed).lost.size(), 1u);
 }
 
 } // namespace

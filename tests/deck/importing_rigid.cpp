@@ -162,11 +162,11 @@ TEST_F(ImportingRigidBodies, WhatHasNoCounterpartIsLost) {
                 Contains(HasSubstr("PINNSET has no counterpart")));
     EXPECT_THAT(with(swapped(block, card, card + ", POSITION=CENTER OF MASS")).lost,
                 Contains(HasSubstr("POSITION=CENTER OF MASS")));
-    EXPECT_THAT(with(swapped(block, card, "*RIGID BODY, NSET=Roof, REF NODE=100")).lost,
-                Contains(HasSubstr("*RIGID BODY")));
+    EXPECT_THAT(with(swapped(block, card, "*RIGID BODY, NSET=Nowhere, REF NODE=100")).lost,
+                Contains(HasSubstr("no node set 'Nowhere'")));
     EXPECT_THAT(with(swapped(block, card, "*RIGID BODY, ELSET=Plate, REF NODE=All")).lost,
                 Contains(HasSubstr("REF NODE=All is not one node")));
-    EXPECT_THAT(with(block + card + "\n").lost, Contains(HasSubstr("another *RIGID BODY has the same reference node")));
+    EXPECT_THAT(with(block + card + "\n").lost, Contains(HasSubstr("another *RIGID BODY or *COUPLING has the same")));
     EXPECT_THAT(with(facets + "*SURFACE, NAME=Tool\nPlate,SNEG\n").lost, Contains(HasSubstr("without a *RIGID BODY")));
     EXPECT_THAT(with(block, pressed("*BOUNDARY\n11,1,1\n")).lost,
                 Contains(AllOf(HasSubstr("*BOUNDARY on 1 nodes of rigid bodies"), HasSubstr(".inp:"))));
@@ -180,6 +180,76 @@ TEST_F(ImportingRigidBodies, WhatHasNoCounterpartIsLost) {
                 Contains(HasSubstr("dynamics need its mass")));
     EXPECT_THAT(with("*RIGID BODY, REF NODE=5, ELSET=Cube\n" + block).lost,
                 Contains(HasSubstr("two rigid bodies do not meet")));
+}
+
+/// The cube alone, whose roof is free, with a point above it.
+std::string hung(const std::string& cards, const std::string& step) {
+    std::string text = cube.substr(0, cube.find("*SURFACE INTERACTION")) + "*BOUNDARY\nFloor,1,3\n";
+    return text + "*NODE, NSET=Ref\n100,5,5,40\n101,5,5,40\n" + cards + "*STEP\n*STATIC\n1.,1.\n" + step +
+           "*END STEP\n";
+}
+
+TEST_F(ImportingRigidBodies, CouplingsLeadAndLoadTheirNodes) {
+    const auto imported = [&](const std::string& cards, const std::string& step) {
+        return import("", DeckUnits::mm, hung(cards, step));
+    };
+    const std::string moved = "*BOUNDARY\n100,1,2\n100,3,3,-.1\n100,4,6\n", forced = "*CLOAD\n100,3,-7.\n100,5,20.\n";
+    for (const char* cards : {"*COUPLING, CONSTRAINT NAME=C, REF NODE=100, SURFACE=Up\n*KINEMATIC\n1,6\n",
+                              "*COUPLING, CONSTRAINT NAME=C, REF NODE=100, SURFACE=Up\n*KINEMATIC\n",
+                              "*RIGID BODY, NSET=Roof, REF NODE=100\n",
+                              "*COUPLING, CONSTRAINT NAME=C, REF NODE=100, SURFACE=Up\n*KINEMATIC\n1\n2\n3\n",
+                              "*KINEMATIC COUPLING, REF NODE=100\nRoof,1,3\n",
+                              "*KINEMATIC COUPLING, REF NODE=100\n5,1,3\n6,1,3\n7\n8,,\n"}) {
+        const ImportedScene one = imported(cards, moved);
+        EXPECT_THAT(one.lost, IsEmpty()) << cards;
+        const scene::Scene scene = checked(one);
+        ASSERT_THAT(scene.couplings, SizeIs(1)) << cards;
+        const auto& [name, coupling] = scene.couplings[0];
+        EXPECT_EQ(coupling.kind, scene::CouplingKind::rigid);
+        EXPECT_EQ(coupling.fixed, (std::array{true, true, false, true, true, true}));
+        EXPECT_LT((*coupling.reference_point - Vec3(.005, .005, .04)).norm(), 1e-15);
+        app::Plan plan = support::compiled(scene);
+        EXPECT_EQ(plan.model.rigid.at(0).nodes.size(), 4u);
+        const support::Diary diary = support::diary_of(plan);
+        for (const Index n : plan.model.rigid[0].nodes)
+            EXPECT_NEAR(diary.states.back().u[static_cast<std::size_t>(n)].z(), -1e-4, 1e-15);
+        const scene::Stage stage = checked(imported(cards, forced)).stages.at(0).second;
+        ASSERT_THAT(stage.force, SizeIs(1)) << cards;
+        EXPECT_DOUBLE_EQ(stage.force[0].second[2].value(), -7);
+        EXPECT_DOUBLE_EQ(stage.moment.at(0).second[1].value(), .02) << "N m";
+    }
+    const std::string shared = "*COUPLING, CONSTRAINT NAME=C, REF NODE=100, SURFACE=Up\n*DISTRIBUTING\n1,6\n";
+    const ImportedScene loads = imported(shared, forced);
+    EXPECT_THAT(loads.lost, IsEmpty());
+    EXPECT_EQ(checked(loads).couplings.at(0).second.kind, scene::CouplingKind::distributing);
+    EXPECT_THAT(imported(shared, moved).lost, Contains(HasSubstr("has forces and moments alone")));
+}
+
+TEST_F(ImportingRigidBodies, ANodeOfRotationsTurnsTheOther) {
+    const std::string cards = "*RIGID BODY, NSET=Roof, REF NODE=100, ROT NODE=101\n";
+    const scene::Scene scene =
+        checked(import("", DeckUnits::mm, hung(cards, "*BOUNDARY\n100,1,3\n101,1,2\n101,3,3,.01\n")));
+    EXPECT_EQ(scene.couplings.at(0).second.fixed, (std::array{true, true, true, true, true, false}));
+    EXPECT_EQ((*scene::find(scene.stages.at(0).second.motion, scene.couplings[0].first))[5]->value(), .01);
+    const scene::Stage loaded =
+        checked(import("", DeckUnits::mm, hung(cards, "*CLOAD\n101,3,50.\n"))).stages.at(0).second;
+    EXPECT_DOUBLE_EQ(loaded.moment.at(0).second[2].value(), .05);
+    EXPECT_THAT(loaded.force, IsEmpty());
+}
+
+TEST_F(ImportingRigidBodies, CouplingsOfLessAreLost) {
+    const std::string coupling = "*COUPLING, CONSTRAINT NAME=C, REF NODE=100, SURFACE=Up",
+                      moved = "*BOUNDARY\n100,1,3\n";
+    const auto lost = [&](const std::string& cards, const std::string& step) {
+        return import("", DeckUnits::mm, hung(cards, step)).lost;
+    };
+    EXPECT_THAT(lost(coupling + "\n*KINEMATIC\n1,2\n", moved), Contains(HasSubstr("all displacements")));
+    EXPECT_THAT(lost(coupling + "\n", moved), Contains(HasSubstr("*KINEMATIC or *DISTRIBUTING is expected")));
+    EXPECT_THAT(lost(coupling + ", ORIENTATION=O\n*KINEMATIC\n", moved), Contains(HasSubstr("ORIENTATION")));
+    EXPECT_THAT(lost(coupling + "\n*DISTRIBUTING, WEIGHTING METHOD=CUBIC\n", moved), Contains(HasSubstr("CUBIC")));
+    EXPECT_THAT(lost("*KINEMATIC COUPLING, REF NODE=100\nRoof,1,1\n", moved), Contains(HasSubstr("all displacements")));
+    EXPECT_THAT(lost("*RIGID BODY, NSET=Ref, REF NODE=100\n", moved), Contains(HasSubstr("no element has its nodes")));
+    EXPECT_THAT(lost("*KINEMATIC\n1,3\n", moved), Contains(HasSubstr("*KINEMATIC")));
 }
 
 TEST_F(ImportingRigidBodies, HaveNoWeightWithoutADensityAndAreNotTied) {

@@ -29,10 +29,11 @@ TEST(BadScene, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(faults[0].line, 19);
     EXPECT_EQ(faults[0].column, 5);
     EXPECT_EQ(faults[0].key, "contact.joint.frcition");
-    EXPECT_EQ(faults[0].expected,
-              "one of the keys slave, master, between, discretisation, friction, pressure_overclosure, "
-              "damping, stick_stiffness, adjust, closing_tolerance, "
-              "initial_overlap_limit, stiffness_scale");
+    EXPECT_EQ(
+        faults[0].expected,
+        "one of the keys slave, master, between, discretisation, friction, static_friction, pressure_overclosure, "
+        "damping, tangential_damping, stick_stiffness, adjust, closing_tolerance, "
+        "initial_overlap_limit, stiffness_scale");
     EXPECT_EQ(faults[0].found, "unknown key 'frcition'");
     EXPECT_EQ(faults[0].nearest, "friction");
 }
@@ -249,8 +250,8 @@ TEST(BadScene, FaultInAnOverride) {
                           "--set: contact..friction: expected key.path=value, found 'contact..friction'");
     expect_override_fault({"contact.joint.ring", "1"},
                           "--set: contact.joint.ring: expected one of the keys slave, master, between, discretisation, "
-                          "friction, pressure_overclosure, "
-                          "damping, stick_stiffness, adjust, closing_tolerance, "
+                          "friction, static_friction, pressure_overclosure, "
+                          "damping, tangential_damping, stick_stiffness, adjust, closing_tolerance, "
                           "initial_overlap_limit, stiffness_scale, found unknown key 'ring'");
 }
 
@@ -313,6 +314,17 @@ TEST(BadScene, InterfacesThatCannotBe) {
         ElementsAre(HasSubstr("contact.joint.damping: expected none where no stage is dynamic, found 1 Pa s/m")));
     EXPECT_THAT(messages(faults_of(small_scene, {{"contact.joint.damping", "1 Pa s/m"}})),
                 Contains(HasSubstr("expected a pressure_overclosure beside it that gives way, found exact contact")));
+    EXPECT_THAT(messages(faults_of(small_scene, {{"contact.joint.tangential_damping", "1 Pa s/m"}})),
+                ElementsAre(HasSubstr("contact.joint.tangential_damping: expected none where no stage is dynamic")));
+    EXPECT_THAT(messages(faults_of(small_scene, {{"contact.joint.static_friction", "0.2"}})),
+                ElementsAre(HasSubstr("contact.joint.static_friction: expected at least friction, 0.3, found 0.2")));
+    EXPECT_THAT(messages(faults_of(replaced(small_scene, "friction: 0.3", "static_friction: 0.3"))),
+                ElementsAre(HasSubstr("static_friction: expected friction above 0 beside it, found no friction")));
+    const std::string two = replaced(small_scene, "friction: 0.3", "friction: 0.3\n    static_friction: 0.4");
+    EXPECT_THAT(messages(faults_of(two)), IsEmpty());
+    for (const char* other : {"0", "0.5"})
+        EXPECT_THAT(messages(faults_of(two, {{"stages.load.friction", std::string("{joint: ") + other + "}"}})),
+                    ElementsAre(HasSubstr("expected above 0, at most the pair's static_friction, 0.4")));
     const std::string slips = replaced(small_scene, "friction: 0.3", "friction: 0.3\n    stick_stiffness: 1e9 N/m^3");
     EXPECT_THAT(messages(faults_of(slips)), IsEmpty());
     EXPECT_THAT(messages(faults_of(slips, {{"stages.load.analysis", "dynamic"}})),

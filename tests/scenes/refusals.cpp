@@ -38,7 +38,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{
             "unknown_key",
             {"34:5: contact.joint.frcition: expected one of the keys slave, master, between, discretisation, friction, "
-             "pressure_overclosure, damping, stick_stiffness, adjust, closing_tolerance, initial_overlap_limit, "
+             "static_friction, pressure_overclosure, damping, tangential_damping, stick_stiffness, adjust, "
+             "closing_tolerance, initial_overlap_limit, "
              "stiffness_scale, found "
              "unknown key 'frcition' (did you mean 'friction'?)"}},
         Refusal{"wrong_unit",

@@ -60,6 +60,53 @@ TEST(Coupling, TakesTheMomentThatItsRotationAsksFor) {
     EXPECT_LT(last.held_force[0].norm(), 1e-6 * moment / L);
 }
 
+/// Tractions of beam theory: N/A and M z/I, which elements with midside nodes and nu = 0 answer exactly.
+TEST(DistributingCoupling, LoadsABeamAsTheorySays) {
+    for (const char* element : {"hex20", "hex8", "wedge15", "tet10"}) {
+        std::string text = cantilever("{set: tip, reference_point: [3, 0.2, 0.1]}",
+                                      "{force: {head: [1, 0, 0]}, moment: {head: [0, 0, 0.1]}}");
+        text.erase(text.find("    hex_formulation"), text.find("sets:") - text.find("    hex_formulation"));
+        support::SceneRun bent;
+        support::run_scene(bent, support::scene_file("coupling.yaml", text),
+                           {{"couplings.head.kind", "distributing"},
+                            {"bodies.beam.mesh.block.divisions", "[10, 2, 2]"},
+                            {"bodies.beam.mesh.block.element", element}});
+        const support::RunStep& last = bent.steps.back();
+        EXPECT_TRUE(bent.plan.model.rigid.empty());
+        // F is 0.2 m and 0.1 m beside the axis: M_y = 0.1, M_z = 0.1 - 0.2
+        const double stretch = 1 / 1e7, k_y = 0.1 / EI, k_z = -0.1 / EI;
+        const bool exact = std::string(element) != "hex8";
+        double largest = 0;
+        for (Index n = 0; n < bent.plan.model.nodes(); ++n) {
+            const Vec3 X = bent.plan.model.X[static_cast<std::size_t>(n)] + bent.plan.model.origin;
+            const Vec3 u(stretch * X.x() + k_y * X.x() * X.z() - k_z * X.x() * X.y(), k_z * X.x() * X.x() / 2,
+                         -k_y * X.x() * X.x() / 2);
+            largest = std::max(largest, (last.state.u[static_cast<std::size_t>(n)] - u).norm());
+        }
+        if (exact) {
+            EXPECT_LT(largest, 1e-9 * k_y * L * L) << element;
+        }
+        EXPECT_LT((last.reactions[0] + Vec3(1, 0, 0)).norm(), 1e-9) << element;
+    }
+}
+
+/// Without faces nodes have equal shares: statics alone, for forces in every direction.
+TEST(DistributingCoupling, SharesLoadsAmongNodes) {
+    std::string text = cantilever("{set: some, kind: distributing, reference_point: [2.5, 0.3, 0.1]}",
+                                  "{force: {head: [{table: [[0, 0], [1, 2]]}, 3, -1]}, moment: {head: [1, 2, 3]}}");
+    text.replace(text.find("  tip:"), 6, "  some: {body: beam, box: {min: [1.3, -1, -1], max: [1.7, 1, 0]}}\n  tip:");
+    const support::SceneRun bent = run(text);
+    const support::RunStep& last = bent.steps.back();
+    EXPECT_LT((last.reactions[0] + Vec3(2, 3, -1)).norm(), 1e-8);
+    // moments about the root's centre
+    const Vec3 about = Vec3(2.5, .3, .1).cross(Vec3(2, 3, -1)) + Vec3(1, 2, 3);
+    Vec3 moment = Vec3::Zero();
+    for (Index n = 0; n < bent.plan.model.nodes(); ++n)
+        moment += (bent.plan.model.X[static_cast<std::size_t>(n)] + bent.plan.model.origin)
+                      .cross(bent.plan.stages[0].force_end[static_cast<std::size_t>(n)]);
+    EXPECT_LT((moment - (about - Vec3(2.5, .3, .1).cross(Vec3(2, 0, 0)))).norm(), 1e-9) << "x follows its course";
+}
+
 /// A force at a reference point away from the section is a force and a moment on it; the supports answer.
 TEST(Coupling, CarriesAForceBesideTheSection) {
     const support::SceneRun bent =

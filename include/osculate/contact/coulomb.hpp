@@ -42,6 +42,8 @@ struct ContactResidual {
 /// Elastic: v = lambda_start - k d: a soft spring k makes stick elastic. For slave nodes that are held or driven along
 /// a tangent: if several of them stuck to one master facet, they would constrain its motion more than once, and the
 /// tangent would be singular.
+/// A law that resists has a force -drag T d more, open or closed, which stick does not feel: lambda + drag T d in place of
+/// lambda where that stands alone, not in L_N and v.
 class Coulomb {
 public:
     /// The exact law. @param mu coefficient of friction  @param c complementarity parameter, N/m
@@ -63,6 +65,9 @@ public:
         yield_ = part;
         from_ = from;
     }
+    /// Makes what slides meet a resistance. @param drag  force over displacement in the step, N/m
+    void resist(double drag) { drag_ = drag; }
+    [[nodiscard]] double drag() const { return drag_; }
     /// Compliance along the normal, m/N, and what the gap is more without a force, m.
     [[nodiscard]] double normal_compliance() const { return yield_ / c_; }
     [[nodiscard]] double from() const { return from_; }
@@ -82,7 +87,7 @@ private:
         return follow_ * state.lambda + anchor_ - spring_ * state.drift;
     }
 
-    double mu_, c_, follow_, spring_, yield_ = 0, from_ = 0;
+    double mu_, c_, follow_, spring_, yield_ = 0, from_ = 0, drag_ = 0;
     Vec3 anchor_;
 };
 

@@ -23,7 +23,7 @@ enum class StatusRule {
 /// Contact of one slave node, linear in the motion of its nodes and in its force, in the local axes (n, t_1, t_2):
 ///     u = w + A dy = (gap, tangential drift),   forces on the masters F r for the force r on the slave.
 /// If stick is elastic, its law holds for the tangential part of u + compliance (r - anchor); if the contact yields, for the
-/// gap + normal compliance r_n.
+/// gap + normal compliance r_n. Friction is then r with drag times the tangential drift added.
 struct LinearisedContact {
     Index coupling = -1, slave = -1;
     std::span<const Index> masters;               ///< (n) global
@@ -34,6 +34,7 @@ struct LinearisedContact {
     Matrix A;                                     ///< (3 x 3+3n)
     contact::MatrixX3 F;                          ///< (3m x 3), of the first m masters
     double friction = 0;
+    double drag = 0; ///< force against sliding beside friction, over the drift, N/m
 };
 
 ///     forces        lambda on the slave, on its masters as ContactPoint says

@@ -30,6 +30,10 @@ struct FacePoint {
 /// nodes.
 [[nodiscard]] std::array<double, 4> tributary_areas(const mesh::Facet& facet, const std::vector<Vec3>& positions);
 
+/// Integrals of N_i N_j dA, m^2, in the order of face.nodes (count x count); exact where tributary_areas() is, but for faces with
+/// midside nodes that are curved or no parallelograms.
+[[nodiscard]] Matrix shape_products(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions);
+
 /// Area of a face, m^2: the sum of its tributary areas.
 [[nodiscard]] double area(const mesh::SurfaceFace& face, const std::vector<Vec3>& positions);
 

@@ -11,8 +11,8 @@
 
 namespace osculate::model {
 
-/// Of a dynamic step.
-struct MeanOfStep {
+/// What laws of contact need of it.
+struct DynamicStep {
     double dt = 0;     ///< s
     double weight = 0; ///< of forces at the end, 1 - alpha_f of the integrator
 };
@@ -86,10 +86,17 @@ public:
     /// contacts yield, contact keeps this part of the depth.
     void keep_depths(double part, const std::vector<Vec3>& x, Timings& timings, int threads,
                      const std::vector<Vec3>& tails = {});
-    /// Of an interface that gives way, in dynamics, once after begin_step() with the positions there: contact has the mean
-    /// pressure of the step, whose work is the change of the interface's energy.
-    void take_means(const std::vector<Vec3>& x, const MeanOfStep& step, Timings& timings, int threads,
-                    const std::vector<Vec3>& tails = {});
+    /// Of a dynamic step, once after begin_step() with the positions there. Interfaces that give way have the mean pressure of
+    /// the step then, whose work is the change of the interface's energy.
+    void take_step(const std::vector<Vec3>& x, const DynamicStep& step, Timings& timings, int threads,
+                   const std::vector<Vec3>& tails = {});
+    /// Coulomb's coefficient at slave j in this step: that of rest until it has slid, see ContactHistory::slides.
+    [[nodiscard]] double friction(Index j) const;
+    /// What sliding meets beside friction, N/m: the force over the displacement in the step. Of slaves that were closed at its
+    /// start.
+    [[nodiscard]] double drag(Index j) const;
+    /// Which slaves slide after a step that ends with these statuses; empty: it makes no difference.
+    [[nodiscard]] std::vector<char> slides(const std::vector<contact::Status>& statuses) const;
     /// Energy of the interface at slave j, J; 0 if it does not give way.
     [[nodiscard]] double stored(Index j) const;
     /// What the law takes of the energy in a step with this contact force, J; zeros if it does not give way.
@@ -257,10 +264,11 @@ private:
     std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along
     std::vector<double> depth_;   ///< (slaves) see kept_depth(), NaN for nodes that had no partner then; empty: none
     double kept_part_ = 0;
-    std::vector<double> overclosure_start_; ///< (slaves) see take_means(), m; empty: the force at the end counts
-    MeanOfStep mean_;
-    std::vector<Vec3> vertices_start_; ///< of the master surface at the start of the attempt, of general contact
-    bool passes_over_ = false;         ///< see pass_over_far_nodes()
+    std::vector<double> overclosure_start_; ///< (slaves) see take_step(), m; empty: the force at the end counts
+    DynamicStep step_;                      ///< zeros in statics
+    std::vector<char> slides_;              ///< (slaves) see ContactHistory; empty: friction is the same at rest
+    std::vector<Vec3> vertices_start_;      ///< of the master surface at the start of the attempt, of general contact
+    bool passes_over_ = false;              ///< see pass_over_far_nodes()
     /// (slaves) How far the node and the master may move in the attempt, together, before they could touch, m; negative if they
     /// may touch. Empty: no node is passed over.
     std::vector<double> clearance_;

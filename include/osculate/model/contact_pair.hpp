@@ -31,6 +31,9 @@ struct ContactHistory {
     std::vector<contact::Status> status;     ///< (slaves)
     std::vector<Index> facet;                ///< (slaves) temporary facet, -1: not searched yet
     std::shared_ptr<const contact::MasterSurface> master; ///< with all patches refitted so far; never null
+    /// (slaves) Whether a node slid when it last touched: 1, or 0 where it stuck or has not touched yet. Empty: static friction is
+    /// no larger than kinetic.
+    std::vector<char> slides{};
 };
 
 /// What a surface needs to touch itself: parts of it that face each other and are not neighbours.
@@ -73,15 +76,18 @@ struct SlaveNodes {
 
 struct ContactOptions {
     double friction = 0;                               ///< Coulomb's mu
+    double static_friction = 0;                        ///< mu of nodes that do not slide; counts if it is larger
     std::optional<contact::Overclosure> overclosure{}; ///< law of the pressure; none: contact is exact
     double damping = 0; ///< pressure over the speed at which surfaces close, in dynamics, Pa s/m; with an overclosure
-    double stick_stiffness = 0; ///< friction over elastic slip, Pa/m; 0: stick is exact
-    double hysteresis = 0.03;   ///< of the facet size, see contact::FacetSearch::track
+    double tangential_damping = 0; ///< traction against sliding over its speed, in dynamics, Pa s/m
+    double stick_stiffness = 0;    ///< friction over elastic slip, Pa/m; 0: stick is exact
+    double hysteresis = 0.03;      ///< of the facet size, see contact::FacetSearch::track
     int changes_before_latch =
         4; ///< facet changes of a node in one attempt after which it keeps its facet: it is on an edge
     double closing_tolerance = 0.02; ///< of the facet size: largest distance that counts as touching before any contact
     Discretisation discretisation = Discretisation::node;
     bool in_force = true; ///< false: no slave finds a facet
+    [[nodiscard]] bool rubs() const { return friction > 0 || tangential_damping > 0; }
     bool operator==(const ContactOptions&) const = default;
 };
 

@@ -57,6 +57,7 @@ struct OuterSurface {
 struct GeneralContactOptions {
     ContactOptions pair;                           ///< of every pair but for the friction
     Matrix friction;                               ///< (surfaces x surfaces) Coulomb's coefficients, symmetric
+    Matrix static_friction;                        ///< the same, where nodes do not slide; empty: none differs
     std::vector<std::pair<Index, Index>> left_out; ///< surfaces that do not meet, the lower first
     double stiffness_scale = 1;
     /// Nodes and the nodes that they do not meet, both ascending: surfaces that pairs of the scene's own treat.

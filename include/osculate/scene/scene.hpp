@@ -134,8 +134,10 @@ struct Pair {
     std::array<std::string, 2> between{};         ///< sets, in place of slave and master.set; empty: not given
     std::optional<Discretisation> discretisation; ///< none: automatic
     double friction = 0;                          ///< Coulomb's coefficient mu
+    std::optional<double> static_friction;        ///< of nodes that do not slide; none: the same
     PressureOverclosure pressure_overclosure;
     double damping = 0;                    ///< of an interface that gives way, in dynamics, Pa s/m
+    double tangential_damping = 0;         ///< against sliding, in dynamics, Pa s/m
     std::optional<double> stick_stiffness; ///< Pa/m; none: nodes stick exactly
     std::optional<double> adjust;          ///< slave nodes as near as this are moved onto the master at the start, m
     double closing_tolerance = 0.02;       ///< of the facet size: the first solve closes nodes with a smaller gap
@@ -147,9 +149,10 @@ struct Pair {
 
 /// What differs between two of the bodies in general contact, or between all bodies of two finishes.
 struct GeneralRule {
-    std::array<std::string, 2> between{}; ///< bodies or finishes
-    std::optional<double> friction;       ///< none: that of all
-    bool contact = true;                  ///< false: they do not meet
+    std::array<std::string, 2> between{};  ///< bodies or finishes
+    std::optional<double> friction;        ///< none: that of all
+    std::optional<double> static_friction; ///< none: that of all, or friction where the rule gives that
+    bool contact = true;                   ///< false: they do not meet
     bool operator==(const GeneralRule&) const = default;
 };
 
@@ -158,6 +161,7 @@ enum class GeneralSurface { automatic, facets, blend };
 /// Contact of all outer surfaces.
 struct GeneralContact {
     double friction = 0;                                ///< Coulomb's coefficient mu
+    std::optional<double> static_friction;              ///< of nodes that do not slide; none: the same
     GeneralSurface surface = GeneralSurface::automatic; ///< of masters
     std::optional<Discretisation> discretisation;       ///< none: automatic
     double closing_tolerance = Pair{}.closing_tolerance;
@@ -295,9 +299,12 @@ struct Expectation {
     bool operator==(const Expectation&) const = default;
 };
 
-/// Nodes of a body that deforms which follow a reference point as one.
+enum class CouplingKind { rigid, distributing };
+
+/// Nodes of a body that deforms and a reference point: they follow it as one, or share its loads.
 struct Coupling {
     std::string set;
+    CouplingKind kind = CouplingKind::rigid;
     std::optional<Vec3> reference_point; ///< m; none: the mean of the nodes
     std::array<bool, 6> fixed{};         ///< displacement and rotation components held at zero
     bool operator==(const Coupling&) const = default;

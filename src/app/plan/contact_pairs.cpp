@@ -250,6 +250,8 @@ std::unique_ptr<const model::ContactPair> make_contact_pair(const scene::Scene& 
     model::ContactOptions options;
     options.discretisation = spec.discretisation.value();
     options.friction = spec.friction;
+    options.static_friction = spec.static_friction.value_or(0);
+    options.tangential_damping = spec.tangential_damping;
     options.overclosure = law_of(spec.pressure_overclosure);
     options.damping = spec.damping;
     options.stick_stiffness = spec.stick_stiffness.value_or(0);
@@ -348,6 +350,7 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
     options.stiffness_scale = spec.stiffness_scale;
     const auto n = static_cast<Index>(surfaces.size());
     options.friction = Matrix::Constant(n, n, spec.friction);
+    Matrix at_rest = Matrix::Constant(n, n, spec.static_friction.value_or(0));
     const auto is = [&](Index s, const std::string& side) {
         const auto& [name, body] = scene.bodies[static_cast<std::size_t>(surfaces[static_cast<std::size_t>(s)].body)];
         return side == name || side == body.finish;
@@ -358,11 +361,16 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
             for (const auto& [name, rule] : spec.pairs) {
                 const auto& [one, other] = rule.between;
                 if (!(is(a, one) && is(b, other)) && !(is(a, other) && is(b, one))) continue;
-                if (rule.friction) options.friction(a, b) = options.friction(b, a) = *rule.friction;
+                if (rule.friction) {
+                    options.friction(a, b) = options.friction(b, a) = *rule.friction;
+                    at_rest(a, b) = at_rest(b, a) = 0;
+                }
+                if (rule.static_friction) at_rest(a, b) = at_rest(b, a) = *rule.static_friction;
                 meet = rule.contact;
             }
             if (!meet) options.left_out.emplace_back(a, b);
         }
+    if ((at_rest.array() > options.friction.array()).any()) options.static_friction = std::move(at_rest);
     const auto nodes_of = [&](const std::string& name) {
         const auto set = std::ranges::find(model.sets, name, &model::Set::name);
         std::vector<Index> nodes = set->nodes;

@@ -1,6 +1,7 @@
 #pragma once
 /// A plan that is being made of a scene, part by part, in the order of compile().
 
+#include "app/plan/load_spread.hpp"
 #include "osculate/app/compile.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/mesh/surface_faces.hpp"
@@ -24,7 +25,9 @@ struct Draft {
     std::map<Index, model::Set> outer_skins{};  ///< by body: outer surfaces likewise, for general contact
 
     [[nodiscard]] Index body_index(const std::string& name) const;
-    /// Of the name of a rigid body or a coupling.
+    std::map<std::string, LoadSpread> spreads{}; ///< of couplings that distribute loads
+
+    /// Of the name of a rigid body or a coupling of kind rigid.
     [[nodiscard]] const model::RigidBody& rigid(const std::string& name) const;
     [[nodiscard]] const model::Set& set(const std::string& name) const;
     /// A set as contact sees it.

@@ -56,6 +56,27 @@ void find_missing(const std::array<bool, 6>& fixed, const Vec3& arm, const Vec3&
 
 } // namespace
 
+namespace {
+void add_spread(Draft& draft, const std::string& name, const scene::Coupling& spec) {
+    const model::Model& m = draft.plan.model;
+    const model::Set& set = draft.set(spec.set);
+    const std::string key = "couplings." + name;
+    if (std::ranges::any_of(m.bodies[static_cast<std::size_t>(set.body)].kernels,
+                            [](const auto& kernel) { return kernel->finite_strain(); }))
+        draft.faults.push_back(fault(key + ".kind",
+                                     "rigid for a set of a body of finite strain: shares of a load are those of the "
+                                     "undeformed body",
+                                     "distributing"));
+    const Vec3 point = spec.reference_point.value_or(Vec3::Zero()) - m.origin;
+    const LoadSpread spread(draft.faces(set), set.nodes, m.X.values(), spec.reference_point ? &point : nullptr);
+    if (!spread.is_spatial())
+        draft.faults.push_back(fault(key + ".set",
+                                     "nodes that are not all on one line: nothing carries the moment about it",
+                                     fmt::format("{} on one line", set.nodes.size())));
+    draft.spreads.emplace(name, spread);
+}
+} // namespace
+
 void add_couplings(Draft& draft) {
     model::Model& m = draft.plan.model;
     const auto place = [&](Index node) {
@@ -64,6 +85,10 @@ void add_couplings(Draft& draft) {
     };
     std::map<Index, std::string> follows; // node -> coupling
     for (const auto& [name, spec] : draft.scene.couplings) {
+        if (spec.kind == scene::CouplingKind::distributing) {
+            add_spread(draft, name, spec);
+            continue;
+        }
         const std::string key = "couplings." + name;
         const model::Set& set = draft.set(spec.set);
         model::RigidBody coupling;

@@ -58,6 +58,15 @@ void add_pressure(const Draft& draft, const std::string& set_name, double pressu
         fe::add_pressure_forces(face, draft.plan.model.X, pressure, force.values());
 }
 
+/// Adds a force and a moment at the reference point of a rigid body or coupling.
+void add_at_point(const Draft& draft, const std::string& name, const Vec3& force, const Vec3& moment, Field& forces) {
+    if (const auto spread = draft.spreads.find(name); spread != draft.spreads.end())
+        return spread->second.add(force, moment, forces);
+    const model::RigidBody& rigid = draft.rigid(name);
+    forces[static_cast<std::size_t>(rigid.reference)] += force;
+    forces[static_cast<std::size_t>(rigid.rotation())] += moment / rigid.radius; // a force at the radius
+}
+
 /// Loads that follow no course.
 Field ramped_forces(const Draft& draft, const Driving& driving) {
     Field force(draft.plan.model.X.size());
@@ -74,10 +83,9 @@ Field ramped_forces(const Draft& draft, const Driving& driving) {
         for (const Index node : draft.set(set_name).nodes)
             force[static_cast<std::size_t>(node)] += Vec3(ramped(f[0]), ramped(f[1]), ramped(f[2]));
     for (const auto& [body, f] : driving.force)
-        force[static_cast<std::size_t>(draft.rigid(body).reference)] += Vec3(ramped(f[0]), ramped(f[1]), ramped(f[2]));
-    for (const auto& [body, m] : driving.moment) // moments are forces at the radius
-        force[static_cast<std::size_t>(draft.rigid(body).rotation())] +=
-            Vec3(ramped(m[0]), ramped(m[1]), ramped(m[2])) / draft.rigid(body).radius;
+        add_at_point(draft, body, {ramped(f[0]), ramped(f[1]), ramped(f[2])}, Vec3::Zero(), force);
+    for (const auto& [body, m] : driving.moment)
+        add_at_point(draft, body, Vec3::Zero(), {ramped(m[0]), ramped(m[1]), ramped(m[2])}, force);
     return force;
 }
 
@@ -100,18 +108,17 @@ void add_course_forces(const Draft& draft, const Driving& driving, CourseList& c
                 Field& one = pattern("nodal_force." + set_name + "." + std::string(1, "xyz"[k]), course);
                 for (const Index node : draft.set(set_name).nodes) one[static_cast<std::size_t>(node)] = Vec3::Unit(k);
             }
-    const auto add_at_point = [&](const std::string& key, const auto& vectors, bool moment) {
+    const auto add_at_points = [&](const std::string& key, const auto& vectors, bool moment) {
         for (const auto& [body, components] : vectors)
             for (int k = 0; k < 3; ++k)
                 if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value()) {
-                    const model::RigidBody& rigid = draft.rigid(body);
-                    const auto node = static_cast<std::size_t>(moment ? rigid.rotation() : rigid.reference);
-                    pattern(key + "." + body + "." + std::string(1, "xyz"[k]), course)[node] =
-                        Vec3::Unit(k) / (moment ? rigid.radius : 1);
+                    const Vec3 unit = Vec3::Unit(k), none = Vec3::Zero();
+                    add_at_point(draft, body, moment ? none : unit, moment ? unit : none,
+                                 pattern(key + "." + body + "." + std::string(1, "xyz"[k]), course));
                 }
     };
-    add_at_point("force", driving.force, false);
-    add_at_point("moment", driving.moment, true);
+    add_at_points("force", driving.force, false);
+    add_at_points("moment", driving.moment, true);
 }
 
 /// Held and driven components of rigid bodies and couplings, at their own nodes.

@@ -66,6 +66,11 @@ void DeckRigidBodies::couple(std::size_t rigid, const std::vector<DeckBody>& bod
         return lose("a distributing coupling has forces and moments alone: its reference node is held or moved");
     if (one.distributing && std::ranges::any_of(motion.motions, [](const std::string& m) { return !m.empty(); }))
         return lose("a distributing coupling has forces and moments alone: its reference node is moved");
+    const bool large = std::ranges::any_of(model_.steps, &DeckStep::nlgeom);
+    if (one.distributing && large) return lose("with NLGEOM bodies are of finite strain, whose loads turn with them");
+    if (!one.distributing && !large)
+        model_.note(one.place, "the coupling of " + one.set,
+                    "its rotation is exact; without NLGEOM it is linear there");
     std::string set = sets.of_surface(body, one.set);
     if (set.empty()) {
         std::vector<Index> points = one.points;

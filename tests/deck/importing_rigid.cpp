@@ -5,6 +5,7 @@
 #include "support/diary.hpp"
 
 #include <gmock/gmock.h>
+#include <regex>
 
 namespace osculate::deck {
 namespace {
@@ -222,6 +223,10 @@ TEST_F(ImportingRigidBodies, CouplingsLeadAndLoadTheirNodes) {
     const ImportedScene loads = imported(shared, forced);
     EXPECT_THAT(loads.lost, IsEmpty());
     EXPECT_EQ(checked(loads).couplings.at(0).second.kind, scene::CouplingKind::distributing);
+    EXPECT_THAT(
+        import("", DeckUnits::mm, std::regex_replace(hung(shared, forced), std::regex("\\*STEP"), "*STEP, NLGEOM"))
+            .lost,
+        Contains(HasSubstr("with NLGEOM")));
     EXPECT_THAT(imported(shared, moved).lost, Contains(HasSubstr("has forces and moments alone")));
 }
 

@@ -90,6 +90,26 @@ TEST(DistributingCoupling, LoadsABeamAsTheorySays) {
     }
 }
 
+TEST(DistributingCoupling, IsRefusedWhereSharesOfTheUndeformedBodyAreWrong) {
+    const std::string text = cantilever("{set: tip, kind: distributing}", "{moment: {head: [0, 0.1, 0]}}");
+    const auto refusal = [&](const char* key, const char* value, const char* other, const char* with) -> std::string {
+        try {
+            support::SceneRun result;
+            support::run_scene(result, support::scene_file("coupling.yaml", text), {{key, value}, {other, with}});
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    EXPECT_NE(
+        refusal("bodies.beam.material", "{neo_hookean: {E: 1 GPa, nu: 0.3}}", "bodies.beam.hex_formulation", "full")
+            .find("couplings.head.kind: expected rigid"),
+        std::string::npos);
+    EXPECT_NE(refusal("bodies.beam.slice", "{kind: plane_stress}", "supports.root.fix", "[x, y]")
+                  .find("couplings.head.set: expected a set of a body that is no slice"),
+              std::string::npos);
+}
+
 /// Without faces nodes have equal shares: statics alone, for forces in every direction.
 TEST(DistributingCoupling, SharesLoadsAmongNodes) {
     std::string text = cantilever("{set: some, kind: distributing, reference_point: [2.5, 0.3, 0.1]}",

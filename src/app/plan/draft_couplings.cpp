@@ -67,6 +67,11 @@ void add_spread(Draft& draft, const std::string& name, const scene::Coupling& sp
                                      "rigid for a set of a body of finite strain: shares of a load are those of the "
                                      "undeformed body",
                                      "distributing"));
+    if (draft.scene.bodies[static_cast<std::size_t>(set.body)].second.slice)
+        draft.faults.push_back(fault(key + ".set",
+                                     "a set of a body that is no slice: nothing there carries moments out of "
+                                     "its plane",
+                                     "one of bodies." + m.bodies[static_cast<std::size_t>(set.body)].name));
     const Vec3 point = spec.reference_point.value_or(Vec3::Zero()) - m.origin;
     const LoadSpread spread(draft.faces(set), set.nodes, m.X.values(), spec.reference_point ? &point : nullptr);
     if (!spread.is_spatial())

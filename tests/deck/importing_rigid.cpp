@@ -1,6 +1,7 @@
 /// Rigid bodies of decks.
 
 #include "deck/imported.hpp"
+#include "osculate/mesh/deck_mesh.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 #include "support/diary.hpp"
 
@@ -86,6 +87,15 @@ TEST_F(ImportingRigidBodies, TheLayerOfFacetsIsBehindTheSideThatTouches) {
         for (const Vec3& x : mesh.nodes)
             EXPECT_TRUE(std::abs(x[2] - .01) < 1e-12 || std::abs(x[2] - (.01 - sign * .0025)) < 1e-12) << x[2];
     }
+}
+
+TEST_F(ImportingRigidBodies, SetsOfTheNodesOfFacetsAreThoseOfTheDeck) {
+    const std::string model = cube + plate + "*NSET, NSET=Corners, ELSET=Plate\n" + pair;
+    std::ofstream(path) << model;
+    const mesh::DeckMesh read = mesh::read_deck_mesh(mesh::read_deck(path));
+    EXPECT_THAT(read.raw.node_sets.at("Corners"), SizeIs(9));
+    for (const Index p : read.raw.node_sets.at("Corners")) EXPECT_GE(p, 0);
+    EXPECT_THAT(import(pressed(), DeckUnits::mm, model).lost, IsEmpty());
 }
 
 TEST_F(ImportingRigidBodies, MotionsForcesAndMomentsKeepTheirStepsAndUnits) {

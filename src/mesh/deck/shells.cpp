@@ -18,6 +18,8 @@ RawCell DeckShells::begin(const DeckLine& line, const std::vector<Index>& points
     mesh_.shells.push_back(1);
     RawCell made;
     made.type = points.size() == 3 ? CellType::wedge6 : CellType::hex8;
+    // until finish() both sides are the front: sets of its nodes are those of the deck
+    for (std::size_t i = 0; i < 2 * points.size(); ++i) made.nodes[i] = points[i % points.size()];
     return made;
 }
 

@@ -54,7 +54,11 @@ void RigidCards::couple(const DeckCard& card, const DeckCard* kind) {
         if (given(card, other) != nullptr) return lose(card, std::string(other) + " has no counterpart");
     DeckRigid rigid;
     rigid.distributing = word == "DISTRIBUTING";
-    if (!has_all_displacements(*kind, 0)) return lose(*kind, "only a coupling of all displacements has a counterpart");
+    if (!has_components(*kind, 0, 3)) return lose(*kind, "only a coupling of all displacements has a counterpart");
+    if (rigid.distributing && kind->first == kind->last)
+        note(*kind, "moments go to the surface, as in Abaqus; CalculiX passes them on only if 4 to 6 are listed");
+    if (rigid.distributing && kind->first != kind->last && !has_components(*kind, 0, 6))
+        return lose(*kind, "one that passes on no moments has no counterpart: all of 1 to 6 are expected");
     if (const std::string* weights = given(*kind, "WEIGHTINGMETHOD");
         weights != nullptr && in_capitals(*weights) != "UNIFORM")
         return lose(*kind, "WEIGHTING METHOD=" + *weights + " has no counterpart: loads are shared by area");
@@ -66,7 +70,7 @@ void RigidCards::couple(const DeckCard& card, const DeckCard* kind) {
 
 void RigidCards::couple_kinematically(const DeckCard& card) {
     if (given(card, "ORIENTATION") != nullptr) return lose(card, "ORIENTATION has no counterpart");
-    if (!has_all_displacements(card, 1)) return lose(card, "only a coupling of all displacements has a counterpart");
+    if (!has_components(card, 1, 3)) return lose(card, "only a coupling of all displacements has a counterpart");
     DeckRigid rigid;
     for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
         split_fields(line->text, fields_);
@@ -79,7 +83,7 @@ void RigidCards::couple_kinematically(const DeckCard& card) {
     add(card, std::move(rigid), given(card, "REFNODE"));
 }
 
-bool RigidCards::has_all_displacements(const DeckCard& card, std::size_t first) {
+bool RigidCards::has_components(const DeckCard& card, std::size_t first, long long count) {
     if (first == 0 && card.first == card.last) return true; // none given: all
     std::map<std::string, std::set<long long>> by_name;     // of a line's nodes
     for (auto line = deck_.begin(card); line != deck_.end(card); ++line) {
@@ -96,8 +100,10 @@ bool RigidCards::has_all_displacements(const DeckCard& card, std::size_t first) 
             return false;
         for (long long c = begin; c <= std::min(end, 6ll); ++c) components.insert(c);
     }
-    return std::ranges::all_of(by_name, [](const auto& one) {
-        return one.second.contains(1) && one.second.contains(2) && one.second.contains(3);
+    return std::ranges::all_of(by_name, [&](const auto& one) {
+        for (long long c = 1; c <= count; ++c)
+            if (!one.second.contains(c)) return false;
+        return true;
     });
 }
 

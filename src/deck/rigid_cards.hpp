@@ -22,8 +22,8 @@ private:
     /// @param kind  the card after *COUPLING
     void couple(const DeckCard& card, const DeckCard* kind);
     void couple_kinematically(const DeckCard& card);
-    /// Whether lines of components have all displacements. @param first  field of a line that they begin in
-    [[nodiscard]] bool has_all_displacements(const DeckCard& card, std::size_t first);
+    /// Whether lines of components have those from 1 to `count`. @param first  field of a line that they begin in
+    [[nodiscard]] bool has_components(const DeckCard& card, std::size_t first, long long count);
     /// Points of a node set or a surface.
     [[nodiscard]] std::vector<Index> points_on(const std::string& name);
     void add(const DeckCard& card, DeckRigid rigid, const std::string* reference);

@@ -59,7 +59,7 @@ contact::Coulomb ContactEvaluation::law(Index j, const Vec3& lambda) const {
     const double c = stiffness(j, lambda), friction = this->friction(j), drag = this->drag(j);
     const bool yields = this->yields(j), soft = options.overclosure.has_value(), slips = options.stick_stiffness > 0;
     if (!yields && !soft && !slips && !(drag > 0) && held_[j] == 0) return {friction, c};
-    const bool sticks_exactly = soft && !slips && held_[j] == 0;
+    const bool sticks_exactly = !yields && !slips && held_[j] == 0;
     const double spring = slips ? options.stick_stiffness * soft_area(j) : held_stick_stiffness * c;
     contact::Coulomb law = sticks_exactly ? contact::Coulomb(friction, c)
                                           : contact::Coulomb::elastic(friction, c, spring, lambda_start_[j]);

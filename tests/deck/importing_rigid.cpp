@@ -262,6 +262,8 @@ TEST_F(ImportingRigidBodies, CouplingsOfLessAreLost) {
     EXPECT_THAT(lost(coupling + "\n", moved), Contains(HasSubstr("*KINEMATIC or *DISTRIBUTING is expected")));
     EXPECT_THAT(lost(coupling + ", ORIENTATION=O\n*KINEMATIC\n", moved), Contains(HasSubstr("ORIENTATION")));
     EXPECT_THAT(lost(coupling + "\n*DISTRIBUTING, WEIGHTING METHOD=CUBIC\n", moved), Contains(HasSubstr("CUBIC")));
+    EXPECT_THAT(lost(coupling + "\n*DISTRIBUTING\n1,3\n", "*CLOAD\n100,3,-7.\n"),
+                Contains(HasSubstr("passes on no moments")));
     EXPECT_THAT(lost("*KINEMATIC COUPLING, REF NODE=100\nRoof,1,1\n", moved), Contains(HasSubstr("all displacements")));
     EXPECT_THAT(lost("*RIGID BODY, NSET=Ref, REF NODE=100\n", moved), Contains(HasSubstr("no element has its nodes")));
     EXPECT_THAT(lost("*KINEMATIC\n1,3\n", moved), Contains(HasSubstr("*KINEMATIC")));

@@ -47,6 +47,8 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
                 linear::BlockMatrix undeformed = model::undeformed_stiffness(model, threads);
                 return folded_ ? folded_->folded(undeformed) : undeformed;
             });
+    if (choice.reduced)
+        reduced_ = std::make_unique<linear::ReducedGmres>(constraints_, unknowns_, *preconditioner_, threads);
     if (!choice.condensed) return;
     std::vector<linear::CondensedBody> condensed;
     for (const model::Body& body : model.bodies)
@@ -69,13 +71,17 @@ void EquilibriumTangent::fold_stiffness() {
 void EquilibriumTangent::begin(double mass_factor, bool changed) {
     const ScopedTimer timer(timings_, Part::assembly);
     if (condensed_) condensed_->begin(mass_factor, changed);
+    mass_factor_ = mass_factor;
+    if (made_for_.mass_factor != mass_factor) wear().usable = false;
     if (!changed) return;
+    in_force_ = false;
     fold_stiffness();
     if (matrix_) matrix_->stiffness_changed();
     if (preconditioner_) preconditioner_->stiffness_changed();
 }
 
 void EquilibriumTangent::stiffness_replaced() {
+    in_force_ = wear().usable = false;
     fold_stiffness();
     const linear::BlockMatrix& K = stiffness();
     if (matrix_) matrix_->use(K);
@@ -93,6 +99,9 @@ void EquilibriumTangent::commit() {
     kept_patterns_ = patterns_built_;
     if (preconditioner_) preconditioner_->keep_pattern();
     if (condensed_) condensed_->commit();
+    kept_for_ = made_for_;
+    kept_wear_ = wear();
+    if (bodies_.bodies().stabilised()) kept_wear_.usable = false;
 }
 
 void EquilibriumTangent::rollback() {
@@ -103,12 +112,20 @@ void EquilibriumTangent::rollback() {
     }
     if (preconditioner_) preconditioner_->restore_pattern();
     if (condensed_) condensed_->rollback();
+    if (made_for_.contacts != kept_for_.contacts) in_force_ = false;
+    made_for_ = kept_for_;
+    wear() = kept_wear_;
 }
 
 EquilibriumMemory EquilibriumTangent::memory() const {
     EquilibriumMemory memory;
     if (kept_patterns_ > 0) memory.couplings = kept_couplings_;
     if (preconditioner_) memory.springs = preconditioner_->kept_pattern();
+    if (reduced_ && kept_wear_.usable) {
+        memory.factors = kept_for_;
+        memory.factors->fresh = kept_wear_.fresh;
+        memory.factors->wasted = kept_wear_.wasted;
+    }
     if (condensed_) {
         memory.condensed = condensed_->kept_nodes();
         if (const linear::ContactLaws* laws = condensed_->kept_laws()) memory.laws = *laws;
@@ -123,6 +140,11 @@ void EquilibriumTangent::recall(const EquilibriumMemory& memory) {
         kept_patterns_ = patterns_built_;
     }
     if (preconditioner_ && memory.springs) preconditioner_->restore_pattern(*memory.springs);
+    if (reduced_ && memory.factors) {
+        made_for_ = kept_for_ = *memory.factors;
+        wear() = kept_wear_ = {true, memory.factors->fresh, memory.factors->wasted};
+        in_force_ = false;
+    }
     if (condensed_) condensed_->recall(memory.condensed, memory.laws ? &*memory.laws : nullptr);
 }
 
@@ -131,7 +153,16 @@ solve::FactorStatus EquilibriumTangent::factorise() {
     stale_preconditioner_ = false;
     std::vector<linear::SoftContact> soft;
     for (const Term* term : terms_) term->add_soft(soft);
-    return preconditioner_->factorise(std::move(soft));
+    made_for_.mass_factor = mass_factor_;
+    made_for_.contacts = std::make_shared<const std::vector<linear::SoftContact>>(std::move(soft));
+    in_force_ = true;
+    return preconditioner_->factorise(*made_for_.contacts);
+}
+
+solve::FactorStatus EquilibriumTangent::refresh() {
+    if (in_force_) return solve::FactorStatus::ok;
+    in_force_ = true;
+    return preconditioner_->factorise(*made_for_.contacts);
 }
 
 void EquilibriumTangent::precondition(const ConstVectorRef& r, VectorRef z) {
@@ -169,6 +200,27 @@ void EquilibriumTangent::multiply(const ConstVectorRef& x, VectorRef y) {
             if (const Index row = unknowns_.equilibrium_row(node, k); row != linear::Constraints::held)
                 y[row] = local(k);
     }
+}
+
+std::optional<solve::Gmres::Result> EquilibriumTangent::solve_with(const ConstVectorRef& b, VectorRef x,
+                                                                   double allowed) {
+    if (!reduced_) return std::nullopt;
+    constexpr int most_corrections = 2;
+    const Index size = unknowns_.size();
+    Vector left = b, more(size), product(size);
+    x.setZero();
+    solve::Gmres::Result all{true, 0};
+    for (int k = 0; k <= most_corrections; ++k) {
+        const solve::Gmres::Result one = reduced_->solve(contact_.bearing(), contact_.open_laws(), left, more, allowed);
+        all.iterations += one.iterations;
+        all.converged = one.converged && more.allFinite();
+        if (!all.converged) return all;
+        x += more;
+        multiply(x, product);
+        left = b - product;
+        if (left.norm() <= 2 * allowed) return all; // its own measure, and round-off
+    }
+    return std::nullopt;
 }
 
 bool EquilibriumTangent::solve(const ConstVectorRef& b, VectorRef x, double allowed) {

@@ -86,6 +86,8 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
         choice.multigrid ||
         ((contact || !symmetric || !model.ties.empty() || !model.cyclic.empty() || !model.led.empty()) &&
          asked != LinearSolver::direct);
+    choice.reduced = choice.preconditioned && choice.products && !choice.multigrid && !model.nonlinear &&
+                     !model.has_dependent_nodes() && !follows;
     // steps of dynamics change their length and with it the inverses; general contact reaches many more nodes than bear
     const bool grows = scope != nullptr && !dynamic, asks = asked == LinearSolver::condensed;
     choice.condensed = !model.nonlinear && !model.has_dependent_nodes() && !follows && !choice.multigrid &&

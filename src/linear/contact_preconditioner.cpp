@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace osculate::linear {
 
@@ -21,12 +22,13 @@ ContactPreconditioner::ContactPreconditioner(const Constraints& constraints, con
                                              std::unique_ptr<solve::Multigrid> multigrid,
                                              std::function<BlockMatrix()> undeformed)
     : constraints_(constraints), undeformed_(std::move(undeformed)), stiffness_(constraints, K),
-      solver_(multigrid ? nullptr : solve::make_cholesky()), multigrid_(std::move(multigrid)),
+      solver_(multigrid ? nullptr : solve::make_condensing_cholesky({})), multigrid_(std::move(multigrid)),
       softness_(multigrid_ ? softness_multigrid : softness_factorised), load_(constraints.equations()) {}
 
 solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> contacts) {
     contacts_ = std::move(contacts);
     S_.clear();
+    springs_.assign(contacts_.size(), Mat3::Zero());
     std::vector<Spring> springs;
     for (const SoftContact& k : contacts_) {
         S_.push_back(Mat3((k.D + softness_ / k.c * k.B).inverse()));
@@ -34,12 +36,19 @@ solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> co
         if (k.where.masters.empty()) continue;
         const Mat3 SB = S_.back() * k.B, N = k.normal * k.normal.transpose(), T = Mat3::Identity() - N;
         Spring& spring = springs.emplace_back(k.where);
-        spring.stiffness = positive_part(N * SB * N + T * SB * T);
+        spring.stiffness = springs_[S_.size() - 1] = positive_part(N * SB * N + T * SB * T);
     }
     stiffness_.set_springs(springs);
     if (!multigrid_) return solver_->factorise(stiffness_.matrix());
     // grids of the undeformed bodies: those of the moment would depend on when the pattern was last renewed
     return multigrid_->factorise(stiffness_.matrix(), [&] { return stiffness_.values_of(undeformed_()); });
+}
+
+double ContactPreconditioner::effort() const {
+    constexpr double of_multigrid = 20; // cycles
+    constexpr double least = 10,
+                     most = 100; // what does not grow with the operations; an iteration is more than a solution
+    return multigrid_ ? of_multigrid : std::min(least + solver_->effort(), most);
 }
 
 void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const {

@@ -1,23 +1,17 @@
 #include "osculate/output/checkpoint_file.hpp"
 
 #include "osculate/core/file_content.hpp"
+#include "output/checkpoint_memory.hpp"
 #include "output/files.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <boost/crc.hpp>
-#include <cstring>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <type_traits>
 
 namespace osculate::output {
 
 namespace {
-
-using Json = nlohmann::json;
-static_assert(std::endian::native == std::endian::little, "values are stored as they lie in memory");
 
 constexpr std::string_view format = "osculate checkpoint 1\n";
 constexpr std::size_t checksum_length = 17; // 16 digits and a line's end
@@ -29,158 +23,7 @@ std::uint64_t checksum(std::string_view bytes) { // CRC-64/XZ
     return crc.checksum();
 }
 
-[[noreturn]] void incomplete(const std::string& what) {
-    throw std::runtime_error("it holds no " + what);
-}
-
-// ---- plain values as bytes ------------------------------------------------------------------------------------------------
-
-template <class T> Json packed(const std::vector<T>& values) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
-    Json::binary_t::container_type bytes(values.size() * sizeof(T));
-    if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-    return Json::binary(std::move(bytes));
-}
-
-template <class T> Json packed_matrices(const std::vector<T>& values) {
-    std::vector<double> flat;
-    for (const T& value : values) flat.insert(flat.end(), value.data(), value.data() + value.size());
-    return packed(flat);
-}
-
-const Json& member(const Json& object, const char* name) {
-    const auto found = object.is_object() ? object.find(name) : object.end();
-    if (!object.is_object() || found == object.end()) incomplete(name);
-    return *found;
-}
-
-template <class T> std::vector<T> unpacked(const Json& object, const char* name) {
-    const Json& value = member(object, name);
-    if (!value.is_binary() || value.get_binary().size() % sizeof(T) != 0) incomplete(name);
-    std::vector<T> values(value.get_binary().size() / sizeof(T));
-    if (!values.empty()) std::memcpy(values.data(), value.get_binary().data(), value.get_binary().size());
-    return values;
-}
-
-template <class T> std::vector<T> unpacked_matrices(const Json& object, const char* name) {
-    const std::vector<double> flat = unpacked<double>(object, name);
-    constexpr auto size = static_cast<std::size_t>(T::SizeAtCompileTime);
-    if (flat.size() % size != 0) incomplete(name);
-    std::vector<T> values(flat.size() / size);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = Eigen::Map<const T>(flat.data() + size * i);
-    return values;
-}
-
-template <class T> T number(const Json& object, const char* name) {
-    const Json& value = member(object, name);
-    if (std::is_integral_v<T> ? !value.is_number_integer() : !value.is_number()) incomplete(name);
-    return value.get<T>();
-}
-
-std::string text(const Json& object, const char* name) {
-    const Json& value = member(object, name);
-    if (!value.is_string()) incomplete(name);
-    return value.get<std::string>();
-}
-
-/// Lists of different lengths: the lengths, and all values one after another.
-template <class T> struct Ragged {
-    std::vector<Index> length;
-    std::vector<T> value;
-
-    void add(const std::vector<T>& list) {
-        length.push_back(static_cast<Index>(list.size()));
-        value.insert(value.end(), list.begin(), list.end());
-    }
-    [[nodiscard]] std::vector<std::vector<T>> lists(const char* name) const {
-        std::vector<std::vector<T>> result;
-        std::size_t at = 0;
-        for (const Index n : length) {
-            if (n < 0 || static_cast<std::size_t>(n) > value.size() - at) incomplete(name);
-            const auto begin = value.begin() + static_cast<std::ptrdiff_t>(at);
-            result.emplace_back(begin, begin + n);
-            at += static_cast<std::size_t>(n);
-        }
-        if (at != value.size()) incomplete(name);
-        return result;
-    }
-};
-
 // ---- parts ------------------------------------------------------------------------------------------------------------------
-
-/// Nodes, each with other nodes: couplings and springs.
-template <class T> Json links(const std::vector<T>& list) {
-    std::vector<Index> slaves;
-    Ragged<Index> masters;
-    for (const T& link : list) {
-        slaves.push_back(link.slave);
-        masters.add(link.masters);
-    }
-    return {{"slave", packed(slaves)}, {"count", packed(masters.length)}, {"master", packed(masters.value)}};
-}
-
-template <class T> std::vector<T> links(const Json& json, const char* name) {
-    const auto slaves = unpacked<Index>(json, "slave");
-    const auto masters = Ragged<Index>{unpacked<Index>(json, "count"), unpacked<Index>(json, "master")}.lists(name);
-    if (slaves.size() != masters.size()) incomplete(name);
-    std::vector<T> list(slaves.size());
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        list[i].slave = slaves[i];
-        list[i].masters = masters[i];
-    }
-    return list;
-}
-
-Json to_json(const linear::ContactLaws& laws) {
-    Ragged<Index> nodes;
-    std::vector<Mat3> by;
-    for (const auto& terms : laws.terms) {
-        nodes.length.push_back(static_cast<Index>(terms.size()));
-        for (const auto& term : terms) {
-            nodes.value.push_back(term.node);
-            by.push_back(term.by);
-        }
-    }
-    return {{"mass_factor", laws.mass_factor}, {"couplings", packed(laws.couplings)}, {"count", packed(nodes.length)},
-            {"node", packed(nodes.value)},     {"by", packed_matrices(by)},           {"B", packed_matrices(laws.B)},
-            {"D", packed_matrices(laws.D)}};
-}
-
-linear::ContactLaws contact_laws(const Json& json) {
-    linear::ContactLaws laws;
-    laws.mass_factor = number<double>(json, "mass_factor");
-    laws.couplings = unpacked<Index>(json, "couplings");
-    const auto nodes = Ragged<Index>{unpacked<Index>(json, "count"), unpacked<Index>(json, "node")}.lists("laws");
-    const auto by = unpacked_matrices<Mat3>(json, "by");
-    std::size_t at = 0;
-    for (const std::vector<Index>& list : nodes) {
-        auto& terms = laws.terms.emplace_back();
-        for (const Index node : list) {
-            if (at == by.size()) incomplete("laws");
-            terms.push_back({node, by[at++]});
-        }
-    }
-    laws.B = unpacked_matrices<Mat3>(json, "B");
-    laws.D = unpacked_matrices<Mat3>(json, "D");
-    return laws;
-}
-
-Json to_json(const equilibrium::EquilibriumMemory& memory) {
-    Json json{{"couplings", links(memory.couplings)}};
-    if (memory.springs) json["springs"] = links(*memory.springs);
-    if (memory.laws) json["laws"] = to_json(*memory.laws);
-    if (!memory.condensed.empty()) json["condensed"] = packed(memory.condensed);
-    return json;
-}
-
-equilibrium::EquilibriumMemory equilibrium_memory(const Json& json) {
-    equilibrium::EquilibriumMemory memory;
-    memory.couplings = links<linear::Coupling>(member(json, "couplings"), "couplings");
-    if (json.contains("springs")) memory.springs = links<linear::Spring>(json["springs"], "springs");
-    if (json.contains("laws")) memory.laws = contact_laws(json["laws"]);
-    if (json.contains("condensed")) memory.condensed = unpacked<Index>(json, "condensed");
-    return memory;
-}
 
 Json to_json(const std::vector<contact::RefittedPatch>& patches) {
     std::vector<Index> number;
@@ -330,7 +173,7 @@ struct Writer {
     }
     void operator()(const char* name, const time::Ledger& value) const { json[name] = to_json(value); }
     void operator()(const char* name, const equilibrium::EquilibriumMemory& value) const {
-        json[name] = to_json(value);
+        json[name] = output::to_json(value);
     }
     template <class T>
     requires std::is_arithmetic_v<T>

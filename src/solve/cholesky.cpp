@@ -1,10 +1,12 @@
 #include "osculate/core/error.hpp"
 #include "osculate/solve/direct_solver.hpp"
 #include "solve/blas_threads.hpp"
+#include "solve/supernodal_selection.hpp"
 
 #include <algorithm>
 #include <cholmod.h>
 #include <cstring>
+#include <optional>
 
 extern "C" void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 
@@ -38,6 +40,7 @@ public:
 
     FactorStatus factorise(const SparseMatrix& A) override {
         failing_ = -1;
+        selection_.reset();
         empty_ = A.rows() == 0; // everything is held
         if (empty_) return FactorStatus::ok;
         // The rows of a symmetric CSR matrix are the columns CHOLMOD expects; it reads the lower triangle only.
@@ -87,6 +90,26 @@ public:
     }
 
     SparseIndex failing_equation() const override { return failing_; }
+
+    void select(std::span<const SparseIndex> equations) override {
+        if (empty_) return;
+        require(factor_ != nullptr, "select before factorise");
+        if (selection_ && std::ranges::equal(equations, selected_)) return;
+        selected_.assign(equations.begin(), equations.end());
+        selection_.emplace(*factor_, equations);
+    }
+
+    void solve_selected(const double* b, double* x) override {
+        if (empty_) return;
+        require(selection_.has_value(), "solve_selected before select");
+        selection_->solve(b, x);
+    }
+
+    double effort() const override {
+        if (empty_ || factor_ == nullptr) return 0;
+        constexpr double as_fast = 4; // dense operations are as much quicker than solutions, which wait for memory
+        return common_.fl / (4 * common_.lnz) / as_fast;
+    }
 
     Matrix compliance() override {
         const auto n = static_cast<SparseIndex>(factor_->n), k = static_cast<SparseIndex>(kept_.size());
@@ -222,7 +245,8 @@ private:
     std::uint64_t pattern_ = 0;
     SparseIndex failing_ = -1;
     bool empty_ = false;
-    std::vector<SparseIndex> kept_;
+    std::vector<SparseIndex> kept_, selected_;
+    std::optional<SupernodalSelection> selection_; ///< at selected_
 };
 
 } // namespace

@@ -2,7 +2,6 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/timing.hpp"
-#include "osculate/solve/gmres.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,10 +39,6 @@ constexpr int recoverable = 1, fatal = -1;
 // Newton's linear systems are solved to a fraction of the residual that shrinks with it, so that convergence stays
 // quadratic, and never further than the nonlinear tolerance can tell.
 constexpr double forcing_slope = 0.1, least_forcing = 1e-8, most_forcing = 1e-3, tolerance_share = 0.1;
-/// Iterations beyond which factors are worth making anew: one factorisation costs about as much as 20 to 40 of them.
-constexpr int worth_keeping = 20;
-/// Ratio of iterations a digit to those with fresh factors, up to which making them anew would gain too little.
-constexpr double still_good = 2;
 /// Failures of a fresh preconditioner in one solve after which it is not tried again there.
 constexpr int worth_trying = 2;
 } // namespace
@@ -195,7 +190,6 @@ struct KinsolSolver::Impl {
     /// GMRES with the problem's preconditioner, which is kept while it is good and made anew where it is not; at last a
     /// factorisation of the tangent itself.
     bool solve_by_krylov(N_Vector b, N_Vector x) {
-        if (krylov == nullptr) krylov = std::make_unique<Gmres>(size);
         const auto times = [this](const double* v, double* y) {
             if (matrix != nullptr)
                 matrix->multiply(v, y);
@@ -206,26 +200,35 @@ struct KinsolSolver::Impl {
             problem->preconditioner()->precondition(values(r), values(y));
         };
         const double allowed = allowed_error(b);
+        Wear& wear = problem->preconditioner()->wear();
         SparseIndex suspect = -1;
         for (bool fresh = false; !fresh && preconditioner_failures < worth_trying;) {
-            fresh = !preconditioner_good;
-            if (fresh) {
+            fresh = !wear.usable;
+            if (fresh || problem->preconditioner()->lasts()) {
                 const ScopedTimer timer(timings, Part::factor);
-                ++factorisations;
-                if (problem->preconditioner()->factorise() != FactorStatus::ok) {
+                factorisations += fresh ? 1 : 0;
+                const FactorStatus status =
+                    fresh ? problem->preconditioner()->factorise() : problem->preconditioner()->refresh();
+                if (status != FactorStatus::ok) {
+                    wear.usable = false;
                     suspect = problem->preconditioner()->failing_equation();
                     ++preconditioner_failures;
                     break;
                 }
             }
             const ScopedTimer timer(timings, Part::solve);
-            const Gmres::Result result =
-                krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
+            const auto on_all_unknowns = [&] {
+                if (krylov == nullptr) krylov = std::make_unique<Gmres>(size);
+                return krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
+            };
+            const std::optional<Gmres::Result> own =
+                problem->preconditioner()->solve_with(values(b), values(x), allowed);
+            const Gmres::Result result = own ? *own : on_all_unknowns();
             gmres_iterations += result.iterations;
             const double digits = std::max(1.0, std::log10(std::sqrt(N_VDotProd(b, b)) / allowed));
-            if (fresh) fresh_effort = result.iterations / digits;
-            preconditioner_good = result.converged && (result.iterations <= worth_keeping ||
-                                                       result.iterations <= still_good * digits * fresh_effort);
+            if (fresh) wear = {true, result.iterations / digits, 0};
+            wear.wasted += std::max(0.0, result.iterations - digits * wear.fresh);
+            wear.usable = result.converged && wear.wasted <= problem->preconditioner()->effort();
             if (result.converged) return true;
             preconditioner_failures += fresh ? 1 : 0;
         }
@@ -272,8 +275,6 @@ struct KinsolSolver::Impl {
     std::unique_ptr<DirectSolver> direct;
     std::unique_ptr<Gmres> krylov;
     const SparseMatrix* matrix = nullptr; ///< the tangent's, null where it has not been asked for
-    bool preconditioner_good = false;     ///< it has factors, and they served well last time
-    double fresh_effort = 0;              ///< iterations a digit when it was made
     int preconditioner_failures = 0;      ///< in this solve
     int own_failures = 0;                 ///< of the problem's own solver, in this solve
     double tolerance = 0;
@@ -306,7 +307,8 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     s.tolerance = options.tolerance;
     s.stopped = s.singular = s.unsolved = s.not_finite = false;
     s.preconditioner_failures = s.own_failures = 0;
-    s.preconditioner_good = false; // no result may depend on what was tried before this call
+    // no result may depend on what was tried before this call
+    if (Preconditioner* p = problem.preconditioner(); p != nullptr && !p->lasts()) p->wear() = {};
     s.failing_equation = -1;
     s.error = nullptr;
     if (s.size == 0) { // everything is held; KINSOL looks at the first entry of every vector

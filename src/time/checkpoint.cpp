@@ -75,6 +75,17 @@ std::string misfit(const equilibrium::EquilibriumMemory& memory, const model::Mo
         for (const linear::Spring& spring : *memory.springs)
             if (!within(spring.slave, model.nodes()) || !within(spring.masters, model.nodes())) return "springs";
     if (!within(memory.condensed, model.nodes()) || !std::ranges::is_sorted(memory.condensed)) return "condensed nodes";
+    if (memory.factors) {
+        const auto& contacts = *memory.factors->contacts;
+        const auto slave = [](const linear::SoftContact& c) { return c.where.slave; };
+        if (!std::isfinite(memory.factors->mass_factor) || !(memory.factors->fresh >= 0) ||
+            !(memory.factors->wasted >= 0) || !std::ranges::equal(contacts, slaves, {}, slave))
+            return "factors";
+        for (const linear::SoftContact& c : contacts)
+            if (!within(c.where.masters, model.nodes()) || !finite(c.where.follow) || !c.normal.allFinite() ||
+                !c.B.allFinite() || !c.D.allFinite() || !(c.c > 0))
+                return "factors";
+    }
     if (!memory.laws) return {};
     const linear::ContactLaws& laws = *memory.laws;
     const std::size_t count = laws.terms.size();

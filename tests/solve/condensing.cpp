@@ -82,6 +82,48 @@ TEST(CondensingCholesky, FollowsNewValues) {
     }
 }
 
+/// The same in single precision, for 12^3 points.
+constexpr double single_round_off = 10 * std::numeric_limits<float>::epsilon() * 12 * 12;
+
+/// Largest difference between solve_selected() and the same solution by solve(), of its largest entry.
+double error_of_selection(CondensingSolver& solver, Index size, const std::vector<SparseIndex>& chosen) {
+    Random random(3);
+    const Vector right = random_vector(static_cast<Index>(chosen.size()), random);
+    Vector b = Vector::Zero(size), x(size), at(right.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) b(chosen[i]) = right(static_cast<Index>(i));
+    solver.solve(b.data(), x.data());
+    solver.select(chosen);
+    solver.solve_selected(right.data(), at.data());
+    double worst = 0;
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        worst = std::max(worst, std::abs(at(static_cast<Index>(i)) - x(chosen[i])));
+    return worst / x.cwiseAbs().maxCoeff();
+}
+
+TEST(CondensingCholesky, SolvesAtChosenEquationsAsInFull) {
+    constexpr int wide = 12;
+    const SparseMatrix S = laplacian(wide);
+    const auto solver = make_condensing_cholesky({});
+    ASSERT_EQ(solver->factorise(S), FactorStatus::ok);
+    std::vector<SparseIndex> bottom(wide * wide), all(static_cast<std::size_t>(S.rows()));
+    std::iota(bottom.begin(), bottom.end(), 0);
+    std::iota(all.begin(), all.end(), 0);
+    std::reverse(all.begin(), all.end());
+    for (const auto& chosen : {bottom, {1000, 5, 171}, {1727}, all, bottom})
+        EXPECT_LT(error_of_selection(*solver, S.rows(), chosen), single_round_off) << chosen.size() << " equations";
+}
+
+TEST(CondensingCholesky, SolvesAtChosenEquationsWithNewValuesAndPatterns) {
+    const auto solver = make_condensing_cholesky({});
+    for (const auto& [points, shift] : {std::pair{3, 0.0}, {3, 1.0}, {5, 0.0}, {5, 2.0}}) {
+        SparseMatrix S = laplacian(points, shift);
+        S.pattern = static_cast<std::uint64_t>(points);
+        ASSERT_EQ(solver->factorise(S), FactorStatus::ok);
+        EXPECT_LT(error_of_selection(*solver, S.rows(), {0, 4, 26}), single_round_off)
+            << points << " points, shift " << shift;
+    }
+}
+
 TEST(DenseLu, SolvesAndSaysWhatIsSingular) {
     Random random(7);
     Matrix A = random_matrix(40, 1, random);

@@ -327,6 +327,53 @@ TEST_F(PreconditionedNewton, SaysSoWhereTheTangentIsTooLargeToFactorise) {
     EXPECT_EQ(u, Vector::Zero(p.size()));
 }
 
+/// Factors that may serve the next solve, for as many wasted iterations as `cost`.
+struct Lasting : Preconditioned {
+    using Preconditioned::Preconditioned;
+    [[nodiscard]] bool lasts() const override { return true; }
+    [[nodiscard]] double effort() const override { return cost; }
+    FactorStatus refresh() override {
+        ++refreshed;
+        return Preconditioned::refresh();
+    }
+    double cost = 1e9;
+    int refreshed = 0;
+};
+
+TEST_F(PreconditionedNewton, KeepsFactorsThatLastFromSolveToSolve) {
+    Lasting p(cubic(n, load), laplacian(n, 3));
+    KinsolSolver solver(p.size(), timings);
+    for (const int expected : {1, 0}) {
+        Vector u = Vector::Zero(p.size());
+        const KinsolResult result = solver.solve(p, u, options);
+        EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+        EXPECT_EQ(result.factorisations, expected);
+        EXPECT_LT((u - exact()).cwiseAbs().maxCoeff(), 2 * options.tolerance);
+    }
+    EXPECT_GT(p.refreshed, 0);
+    p.wear() = {}; // as a problem does whose matrix changes
+    Vector u = Vector::Zero(p.size());
+    EXPECT_EQ(solver.solve(p, u, options).factorisations, 1);
+}
+
+/// The more a factorisation costs, the longer factors are kept; and never beyond the iterations that they have wasted.
+TEST_F(PreconditionedNewton, MakesFactorsAnewOnceTheirWasteWouldHavePaid) {
+    int before = 1 << 30;
+    for (const double cost : {0., 2., 1e9}) {
+        Lasting p(cubic(n, 10 * load), laplacian(n, 3));
+        p.cost = cost;
+        Vector u = Vector::Zero(p.size());
+        KinsolSolver solver(p.size(), timings);
+        const KinsolResult result = solver.solve(p, u, options);
+        EXPECT_EQ(result.outcome, KinsolOutcome::converged);
+        EXPECT_LE(p.wear().usable ? p.wear().wasted : 0, cost);
+        EXPECT_LE(result.factorisations, before);
+        before = result.factorisations;
+        EXPECT_TRUE(cost > 0 || result.factorisations > 1);
+    }
+    EXPECT_EQ(before, 1);
+}
+
 TEST_F(PreconditionedNewton, DoesNotRememberEarlierSolves) {
     const auto solve = [&](KinsolSolver& solver, double factor) {
         Preconditioned p(cubic(n, factor * load), laplacian(n, 3));

@@ -168,6 +168,10 @@ TEST(Checkpoint, OfAnotherSceneIsRefused) {
         c.memory.laws.emplace();
         c.memory.laws->couplings = {-1};
     });
+    refused([](time::Checkpoint& c) {
+        c.memory.factors.emplace();
+        c.memory.factors->contacts = std::make_shared<std::vector<linear::SoftContact>>();
+    });
     refused([](time::Checkpoint& c) { c.memory.springs = {{linear::Spring{1 << 30, {}, {}}}}; });
 }
 

@@ -8,6 +8,7 @@
 #include "osculate/equilibrium/tangent_choice.hpp"
 #include "osculate/linear/contact_preconditioner.hpp"
 #include "osculate/linear/folded_matrix.hpp"
+#include "osculate/linear/reduced_gmres.hpp"
 #include "osculate/solve/kinsol_solver.hpp"
 
 #include <functional>
@@ -51,7 +52,12 @@ public:
     [[nodiscard]] const solve::SparseMatrix& jacobian();
 
     [[nodiscard]] solve::FactorStatus factorise() override;
+    [[nodiscard]] bool lasts() const override { return reduced_ != nullptr; }
+    [[nodiscard]] solve::FactorStatus refresh() override;
     void precondition(const ConstVectorRef& r, VectorRef z) override;
+    [[nodiscard]] double effort() const override { return preconditioner_->effort(); }
+    [[nodiscard]] std::optional<solve::Gmres::Result> solve_with(const ConstVectorRef& b, VectorRef x,
+                                                                 double allowed) override;
     [[nodiscard]] solve::SparseIndex failing_equation() const override { return preconditioner_->failing_equation(); }
     void linearise() override;
     void multiply(const ConstVectorRef& x, VectorRef y) override;
@@ -85,9 +91,15 @@ private:
     long patterns_built_ = 0, kept_patterns_ = 0;
     std::unique_ptr<linear::SystemMatrix> matrix_;                  ///< null: not needed yet
     std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< see TangentChoice; null: not used
-    std::unique_ptr<Condensation> condensed_;                       ///< see TangentChoice; null: not used
-    bool stale_preconditioner_ = false, stale_matrix_ = false;      ///< the stiffness of the bodies has changed since
-    Field product_u_, product_f_;                                   ///< scratch of multiply()
+    linear::KeptFactors made_for_,
+        kept_for_;          ///< the preconditioner's factors: those that serve, those at the last commit
+    solve::Wear kept_wear_; ///< at the last commit
+    bool in_force_ = false; ///< the preconditioner has the factors of made_for_
+    double mass_factor_ = 0;
+    std::unique_ptr<linear::ReducedGmres> reduced_;            ///< see TangentChoice; null: not used
+    std::unique_ptr<Condensation> condensed_;                  ///< see TangentChoice; null: not used
+    bool stale_preconditioner_ = false, stale_matrix_ = false; ///< the stiffness of the bodies has changed since
+    Field product_u_, product_f_;                              ///< scratch of multiply()
 };
 
 } // namespace osculate::equilibrium

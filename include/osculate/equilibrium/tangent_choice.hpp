@@ -32,6 +32,7 @@ struct CondensationCost {
 struct TangentChoice {
     bool products = false;       ///< products of the tangent with vectors, without its matrix
     bool preconditioned = false; ///< GMRES with linear::ContactPreconditioner
+    bool reduced = false;        ///< and linear::ReducedGmres where contact is linearised as products
     bool multigrid = false;      ///< multigrid inverts this preconditioner
     bool condensed = false;      ///< linear::CondensedTangent first
     bool factorisable = true;    ///< the whole tangent may be factorised if GMRES fails

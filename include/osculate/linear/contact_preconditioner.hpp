@@ -39,16 +39,25 @@ public:
     /// z = P^-1 r; `rows` gives the numbering of the residual's rows.
     void apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const;
     [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
+    /// Estimate of the time of factorise() over that of an iteration of GMRES with it.
+    [[nodiscard]] double effort() const;
+    /// What it was last factorised for, by coupling: contacts, S, and the stiffness of the springs, zero where there is none.
+    [[nodiscard]] const std::vector<SoftContact>& contacts() const { return contacts_; }
+    [[nodiscard]] const Mat3& law_stiffness(std::size_t coupling) const { return S_[coupling]; }
+    [[nodiscard]] const Mat3& spring_stiffness(std::size_t coupling) const { return springs_[coupling]; }
+    /// Of the condensed stiffness. @pre factorises()
+    [[nodiscard]] solve::CondensingSolver& factors() { return *solver_; }
+    [[nodiscard]] bool factorises() const { return solver_ != nullptr; }
 
 private:
     const Constraints& constraints_;
     std::function<BlockMatrix()> undeformed_;
     PenaltyStiffness stiffness_;
-    std::unique_ptr<solve::DirectSolver> solver_; ///< one of these two
+    std::unique_ptr<solve::CondensingSolver> solver_; ///< one of these two
     std::unique_ptr<solve::Multigrid> multigrid_;
     double softness_; ///< c / gamma
     std::vector<SoftContact> contacts_;
-    std::vector<Mat3> S_;
+    std::vector<Mat3> S_, springs_;
     mutable Vector load_;
 };
 

@@ -2,9 +2,11 @@
 /// Nonlinear solver: SUNDIALS' KINSOL, with our matrix and our factorisations behind its interfaces.
 
 #include "osculate/solve/direct_solver.hpp"
+#include "osculate/solve/gmres.hpp"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace osculate {
@@ -13,16 +15,42 @@ class Timings;
 
 namespace osculate::solve {
 
+/// How the factors of a preconditioner have served since they were made.
+struct Wear {
+    bool usable = false; ///< they exist, and new ones would not pay
+    double fresh = 0;    ///< iterations of GMRES a digit when they were new
+    double wasted = 0;   ///< iterations since then beyond those that new ones would have taken
+};
+
 /// A matrix P that approximates the tangent and is cheaper to invert.
 class Preconditioner {
 public:
     virtual ~Preconditioner() = default;
+    /// Of the factors, by the solver.
+    [[nodiscard]] Wear& wear() { return wear_; }
+    [[nodiscard]] const Wear& wear() const { return wear_; }
+    /// Whether the factors, and their wear, may serve from one solve to the next; then the problem undoes what failed attempts do.
+    [[nodiscard]] virtual bool lasts() const { return false; }
+    /// Makes the factors that wear() speaks of again, where the problem has put back others. @pre lasts()
+    [[nodiscard]] virtual FactorStatus refresh() { return FactorStatus::ok; }
     /// Factorises P at the z of the last residual.
     [[nodiscard]] virtual FactorStatus factorise() = 0;
     /// z = P^-1 r
     virtual void precondition(const ConstVectorRef& r, VectorRef z) = 0;
+    /// Estimate of the time of factorise() over that of an iteration of GMRES: P is made anew once that many have been wasted.
+    [[nodiscard]] virtual double effort() const { return 20; }
+    /// Computes x with |b - J x| <= allowed by a GMRES of its own, for the tangent J at the last residual; no value: it has none, or
+    /// that does not reach so far.
+    [[nodiscard]] virtual std::optional<Gmres::Result> solve_with(const ConstVectorRef& b, VectorRef x,
+                                                                  double allowed) {
+        (void)b, (void)x, (void)allowed;
+        return std::nullopt;
+    }
     /// Equation at which factorise() failed, -1: unknown.
     [[nodiscard]] virtual SparseIndex failing_equation() const = 0;
+
+private:
+    Wear wear_;
 };
 
 /// The tangent J as products with vectors, without its matrix.

@@ -92,7 +92,8 @@ double bytes(const Plan& plan, bool multigrid, bool condensed) {
     const double unknowns = 3.0 * plan.model.nodes();
     if (multigrid) return sum + by_multigrid * unknowns;
     const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope());
-    if (!condensed || (grows(plan) && !cost.pays())) return sum + factor_bytes(unknowns);
+    constexpr double copied = 1.2; // the part of the factors near contact, once more in single precision
+    if (!condensed || (grows(plan) && !cost.pays())) return sum + copied * factor_bytes(unknowns);
     for (const model::Body& body : plan.model.bodies) sum += factor_bytes(3.0 * body.nodes());
     return sum + cost.bytes;
 }
@@ -112,7 +113,11 @@ std::vector<CostTerm> cost_terms(const scene::Scene& scene, const Plan& plan) {
     for (const model::Body& body : plan.model.bodies) elements += body.mesh.element_count();
     const double frames = scene.output.frame_every > 0 ? all / scene.output.frame_every : 0;
     const double fields = 1.0 + static_cast<double>(scene.output.body_fields.size());
-    const double factorisations = condensed ? 1 : changing ? all : static_cast<double>(plan.stages.size());
+    const bool lasts = std::ranges::all_of(plan.stages, [](const time::Stage& stage) { return stage.tangent.reduced; });
+    constexpr double steps_served = 4; // by factors that last, about
+    const double factorisations = condensed  ? 1
+                                  : changing ? (lasts ? std::max(1.0, all / steps_served) : all)
+                                             : static_cast<double>(plan.stages.size());
     return {
         {"start", 1, 0.019},
         {"elements", elements, 3e-5},

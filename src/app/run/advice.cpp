@@ -5,10 +5,12 @@
 #include "app/plan/settling.hpp"
 #include "osculate/core/without_traps.hpp"
 #include "osculate/model/general_contact.hpp"
+#include "osculate/time/collision_check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace osculate::app {
 
@@ -280,7 +282,7 @@ private:
         const std::string why = "the node then moves less in a step";
         if (found_.cause == Cause::collision) { // shorter still: at the surface its depth is bounded, too
             constexpr double most = 0.02;
-            return steps_smaller_by(std::min(failed_.decision.value, most), least, why);
+            return steps_smaller_by(std::min({failed_.decision.value, most, share_within_depth()}), least, why);
         }
         const time::StepLimits& limits = failed_.stage.limits;
         const double depth = std::abs(failed_.decision.value), unit = unit_of_depth();
@@ -297,6 +299,17 @@ private:
             change(key, rounded(enough), text);
         else
             add(key, text);
+    }
+
+    /// Share of a step that ended beyond the surface, within which the node moves no more than it may enter; infinite: not known.
+    [[nodiscard]] double share_within_depth() const {
+        constexpr double unknown = std::numeric_limits<double>::infinity();
+        if (!found_.contact || found_.contact->master_facet < 0 || !(found_.contact->gap < 0)) return unknown;
+        const double beyond = 1 - failed_.decision.value, moved = -found_.contact->gap / beyond;
+        const double depth = std::min(failed_.stage.limits.allowed_interpenetration * unit_of_depth(),
+                                      time::CollisionCheck::deepest *
+                                          pair(found_.contact->pair)->thickness(found_.contact->master_facet));
+        return beyond > 0 && moved > 0 ? depth / moved : unknown;
     }
 
     /// What allowed_interpenetration is a share of at the node in question, m.

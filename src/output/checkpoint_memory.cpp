@@ -111,6 +111,7 @@ linear::KeptFactors kept_factors(const Json& json) {
         contact.D = D[j];
         contact.c = c[j];
     }
+    if (at != follow.size()) incomplete("factors");
     factors.contacts = std::make_shared<const std::vector<linear::SoftContact>>(std::move(contacts));
     return factors;
 }

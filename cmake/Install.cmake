@@ -9,16 +9,16 @@ add_library(osculate::osculate ALIAS osculate_osculate)
 set_target_properties(osculate_osculate PROPERTIES EXPORT_NAME osculate)
 
 get_property(modules GLOBAL PROPERTY OSCULATE_MODULES)
-install(TARGETS osculate)
-install(TARGETS ${modules} osculate_osculate EXPORT osculate)
+install(TARGETS osculate COMPONENT program)
+install(TARGETS ${modules} osculate_osculate EXPORT osculate COMPONENT development)
 foreach(loaded osculate_multigrid osculate_gmsh) # at run time, by scenes that ask for them
   if(TARGET ${loaded})
-    install(TARGETS ${loaded} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(TARGETS ${loaded} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program)
   endif()
 endforeach()
-install(DIRECTORY include/osculate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY output_templates configs DESTINATION ${CMAKE_INSTALL_DATADIR}/osculate)
-install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DATADIR}/osculate)
+install(DIRECTORY include/osculate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(DIRECTORY output_templates configs DESTINATION ${CMAKE_INSTALL_DATADIR}/osculate COMPONENT program)
+install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DATADIR}/osculate COMPONENT program)
 
 # data_folder() finds share/osculate by these
 set(OSCULATE_PYTHON_DIR lib/python3/dist-packages) # where Debian's Python looks below its prefix
@@ -34,7 +34,7 @@ set_source_files_properties(src/core/data_folder.cpp PROPERTIES COMPILE_DEFINITI
 if(TARGET osculate_python)
   file(RELATIVE_PATH libraries ${prefix}/${OSCULATE_PYTHON_DIR} ${prefix}/${CMAKE_INSTALL_LIBDIR})
   set_target_properties(osculate_python PROPERTIES INSTALL_RPATH $ORIGIN/${libraries})
-  install(TARGETS osculate_python LIBRARY DESTINATION ${OSCULATE_PYTHON_DIR})
+  install(TARGETS osculate_python LIBRARY DESTINATION ${OSCULATE_PYTHON_DIR} COMPONENT python)
 endif()
 
 # find_package(osculate)
@@ -43,9 +43,9 @@ set(OSCULATE_VTK_COMPONENTS ${OSCULATE_VTK_READERS} ${OSCULATE_VTK_WRITERS})
 list(TRANSFORM OSCULATE_VTK_COMPONENTS REPLACE "^VTK::" "")
 list(REMOVE_DUPLICATES OSCULATE_VTK_COMPONENTS)
 list(JOIN OSCULATE_VTK_COMPONENTS " " OSCULATE_VTK_COMPONENTS)
-install(EXPORT osculate NAMESPACE osculate:: FILE osculate-targets.cmake DESTINATION ${package_dir})
+install(EXPORT osculate NAMESPACE osculate:: FILE osculate-targets.cmake DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(cmake/osculate-config.cmake.in ${PROJECT_BINARY_DIR}/osculate-config.cmake
                               INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/osculate-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/osculate-config.cmake ${PROJECT_BINARY_DIR}/osculate-config-version.cmake
-              cmake/SuiteSparse.cmake DESTINATION ${package_dir})
+              cmake/SuiteSparse.cmake DESTINATION ${package_dir} COMPONENT development)

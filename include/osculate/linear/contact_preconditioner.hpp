@@ -45,9 +45,8 @@ public:
     [[nodiscard]] const std::vector<SoftContact>& contacts() const { return contacts_; }
     [[nodiscard]] const Mat3& law_stiffness(std::size_t coupling) const { return S_[coupling]; }
     [[nodiscard]] const Mat3& spring_stiffness(std::size_t coupling) const { return springs_[coupling]; }
-    /// Of the condensed stiffness. @pre factorises()
+    /// Of the condensed stiffness. @pre there is no multigrid
     [[nodiscard]] solve::CondensingSolver& factors() { return *solver_; }
-    [[nodiscard]] bool factorises() const { return solver_ != nullptr; }
 
 private:
     const Constraints& constraints_;

@@ -94,9 +94,10 @@ bool BodyForces::begin(const model::State& state, std::vector<FollowerLoad> pres
 }
 
 void BodyForces::add_springs(linear::BlockMatrix& tangent) const {
-    for (Index i = 0; i < tangent.rows(); ++i)
-        tangent.block(tangent.slot(i, i)).diagonal().array() +=
-            springs_.stiffness * (*springs_.share)[static_cast<std::size_t>(i)];
+    for (Index i = 0; i < tangent.rows(); ++i) // nodes of skins have no elements, and empty rows
+        if (tangent.row_begin(i) < tangent.row_end(i))
+            tangent.block(tangent.slot(i, i)).diagonal().array() +=
+                springs_.stiffness * (*springs_.share)[static_cast<std::size_t>(i)];
 }
 
 void BodyForces::stabilise(Stabilisation springs) {

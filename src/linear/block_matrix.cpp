@@ -36,8 +36,10 @@ void BlockMatrix::set_zero() {
 }
 
 Index BlockMatrix::slot(Index row, Index column) const {
-    const auto begin = column_.begin() + row_start_[row];
-    return static_cast<Index>(std::lower_bound(begin, column_.begin() + row_start_[row + 1], column) - column_.begin());
+    const auto end = column_.begin() + row_start_[row + 1];
+    const auto found = std::lower_bound(column_.begin() + row_start_[row], end, column);
+    require(found != end && *found == column, "a block matrix was asked for a block that its pattern lacks");
+    return static_cast<Index>(found - column_.begin());
 }
 
 void BlockMatrix::add(const std::vector<Index>& nodes, const Matrix& element) {

@@ -202,8 +202,9 @@ MaterialHistory initial_history(const Model& model) {
 
 double largest_stiffness(const Model& model) {
     double largest = model.nonlinear ? model.nonlinear->largest_stiffness() : 0;
-    for (Index i = 0; i < model.K.rows(); ++i)
-        largest = std::max(largest, model.K.block(model.K.slot(i, i)).diagonal().maxCoeff());
+    for (Index i = 0; i < model.K.rows(); ++i) // nodes of skins have no elements, and empty rows
+        if (model.K.row_begin(i) < model.K.row_end(i))
+            largest = std::max(largest, model.K.block(model.K.slot(i, i)).diagonal().maxCoeff());
     return largest;
 }
 

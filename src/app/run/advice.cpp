@@ -423,7 +423,9 @@ private:
     [[nodiscard]] bool massless() const {
         const linear::BlockMatrix& M = failed_.model.mass(failed_.stage.dynamics->lumped_mass);
         if (M.empty()) return false;
-        const auto none = [&](Index node) { return M.block(M.slot(node, node))(0, 0) == 0; };
+        const auto none = [&](Index node) { // nodes of skins have empty rows
+            return M.row_begin(node) < M.row_end(node) && M.block(M.slot(node, node))(0, 0) == 0;
+        };
         return std::ranges::any_of(failed_.last.contact, [&](const model::ContactHistory& one) {
             return std::ranges::any_of(one.pair->slaves().node, none);
         });

@@ -11,7 +11,7 @@ set_target_properties(osculate_osculate PROPERTIES EXPORT_NAME osculate)
 get_property(modules GLOBAL PROPERTY OSCULATE_MODULES)
 install(TARGETS osculate COMPONENT program)
 install(TARGETS ${modules} osculate_osculate EXPORT osculate COMPONENT development)
-foreach(loaded osculate_multigrid osculate_gmsh) # at run time, by scenes that ask for them
+foreach(loaded osculate_multigrid osculate_vtk osculate_gmsh) # at run time, by scenes that ask for them
   if(TARGET ${loaded})
     install(TARGETS ${loaded} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program)
   endif()
@@ -39,7 +39,7 @@ endif()
 
 # find_package(osculate)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/osculate)
-set(OSCULATE_VTK_COMPONENTS ${OSCULATE_VTK_READERS} ${OSCULATE_VTK_WRITERS})
+set(OSCULATE_VTK_COMPONENTS ${OSCULATE_VTK_WRITERS})
 list(TRANSFORM OSCULATE_VTK_COMPONENTS REPLACE "^VTK::" "")
 list(REMOVE_DUPLICATES OSCULATE_VTK_COMPONENTS)
 list(JOIN OSCULATE_VTK_COMPONENTS " " OSCULATE_VTK_COMPONENTS)

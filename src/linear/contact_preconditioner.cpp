@@ -45,7 +45,7 @@ solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> co
 }
 
 double ContactPreconditioner::effort() const {
-    constexpr double of_multigrid = 20; // cycles
+    constexpr double of_multigrid = 60; // cycles
     constexpr double least = 10;        // what of a factorisation does not grow with its operations
     constexpr double most = 100;        // an iteration is more than a solution
     return multigrid_ ? of_multigrid : std::min(least + solver_->effort(), most);

@@ -1,38 +1,27 @@
 #include "osculate/mesh/gmsh.hpp"
 
-#include "osculate/mesh/mesh_error.hpp"
-
-#include <dlfcn.h>
+#include "mesh/loaded_reader.hpp"
 
 namespace osculate::mesh {
 namespace {
 
-using Read = void (*)(const std::string* path, RawMesh* mesh);
-using Cad = void (*)(const CadOptions* options, RawMesh* mesh);
-
-void* load(const char* name, const std::string& file) {
-    static void* module = dlopen("libosculate_gmsh.so", RTLD_NOW | RTLD_LOCAL); // never closed
-    void* symbol = module == nullptr ? nullptr : dlsym(module, name);
-    if (symbol == nullptr) {
-        const char* reason = dlerror();
-        throw MeshError(file, std::string("needs Gmsh's library, and this build cannot load it; install the package "
-                                          "libgmsh-dev and build again (") +
-                                  (reason != nullptr ? reason : "not found") + ")");
-    }
-    return symbol;
+template <class Function> Function* load_gmsh(const char* name, const std::string& file) {
+    return reinterpret_cast<Function*>(load_reader(
+        "osculate_gmsh", name, file,
+        "needs Gmsh's library, and this build cannot load it; install the package libgmsh-dev and build again"));
 }
 
 } // namespace
 
 RawMesh read_gmsh(const std::string& path) {
     RawMesh mesh;
-    reinterpret_cast<Read>(load("osculate_gmsh_read", path))(&path, &mesh);
+    load_gmsh<void(const std::string*, RawMesh*)>("osculate_gmsh_read", path)(&path, &mesh);
     return mesh;
 }
 
 RawMesh mesh_cad(const CadOptions& options) {
     RawMesh mesh;
-    reinterpret_cast<Cad>(load("osculate_gmsh_mesh_cad", options.file))(&options, &mesh);
+    load_gmsh<void(const CadOptions*, RawMesh*)>("osculate_gmsh_mesh_cad", options.file)(&options, &mesh);
     return mesh;
 }
 

@@ -2,10 +2,10 @@
 
 #include "mesh/sort_few.hpp"
 #include "mesh/sort_unique.hpp"
-#include "mesh/vtk_reader.hpp"
 #include "osculate/mesh/deck_mesh.hpp"
 #include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/mesh_error.hpp"
+#include "osculate/mesh/vtk_reader.hpp"
 #include "osculate/mesh/vtu_reader.hpp"
 
 #include <algorithm>

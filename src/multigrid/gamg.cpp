@@ -1,10 +1,12 @@
 /// solve::Multigrid by PETSc: a module of its own, as PETSc and MPI take a third of a second to load.
 
+#include "multigrid/single_blocks.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/solve/multigrid.hpp"
 
 #include <Eigen/QR>
 #include <cstdlib>
+#include <optional>
 #include <petscksp.h>
 
 namespace osculate::solve {
@@ -39,26 +41,25 @@ public:
     Gamg& operator=(const Gamg&) = delete;
 
     FactorStatus factorise(const SparseMatrix& A, const std::function<std::vector<double>()>& apart) override {
-        if (A.pattern != pattern_) {
-            clear();
-            pattern_ = 0;
-            lay_out(A);
-            fill(A, apart());
-            create();
-            coarsen();
-            pattern_ = A.pattern;
-        }
+        const bool coupling = find_coupling(A, apart);
+        if (A.pattern != pattern_) coarsen();
+        pattern_ = A.pattern;
         fill(A, A.value);
         changed(matrix_);
+        blocks_->set(row_start_, column_, value_);
+        changed(smoothed_);
         for (std::size_t level = interpolation_.size(); level-- > 0;) {
-            Mat fine = level + 1 < coarse_.size() ? coarse_[level + 1] : matrix_;
-            check(MatPtAP(fine, interpolation_[level], MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse_[level]));
+            if (level + 1 == coarse_.size() && coupling)
+                add_coupling(level);
+            else
+                check(MatPtAP(level + 1 < coarse_.size() ? coarse_[level + 1] : matrix_, interpolation_[level],
+                              MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse_[level]));
             mend(coarse_[level]);
             KSP smoother = nullptr;
             check(PCMGGetSmoother(cycle_, static_cast<PetscInt>(level), &smoother));
             check(KSPSetOperators(smoother, coarse_[level], coarse_[level]));
         }
-        check(PCSetOperators(cycle_, matrix_, matrix_));
+        check(PCSetOperators(cycle_, smoothed_, matrix_));
         const PetscErrorCode code = PCSetUp(cycle_);
         if (code == PETSC_ERR_MAT_LU_ZRPVT || code == PETSC_ERR_MAT_CH_ZRPVT) return FactorStatus::singular;
         check(code);
@@ -79,6 +80,19 @@ public:
     }
 
 private:
+    static PetscErrorCode multiply(Mat matrix, Vec from, Vec to) {
+        SingleBlocks* blocks = nullptr;
+        const double* x = nullptr;
+        double* y = nullptr;
+        check(MatShellGetContext(matrix, &blocks));
+        check(VecGetArrayRead(from, &x));
+        check(VecGetArrayWrite(to, &y));
+        blocks->multiply(x, y);
+        check(VecRestoreArrayWrite(to, &y));
+        check(VecRestoreArrayRead(from, &x));
+        return 0;
+    }
+
     static void changed(Mat matrix) {
         check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
         check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
@@ -104,13 +118,58 @@ private:
         changed(coarse);
     }
 
-    /// Three rows a node, those of held components with a diagonal entry alone.
-    void lay_out(const SparseMatrix& A) {
-        const std::size_t n = unknowns_.equation.size();
+    /// Where A differs from the matrix of uncoupled bodies, and, if its pattern is new, that matrix in matrix_.
+    /// @returns  whether this is at few rows, so that the coarse matrix of uncoupled bodies wants little added
+    bool find_coupling(const SparseMatrix& A, const std::function<std::vector<double>()>& apart) {
+        if (A.pattern != pattern_) clear();
+        const std::vector<double> uncoupled = apart();
+        const std::vector<PetscInt> component = components(A);
+        coupling_ = {};
+        SparseIndex rows = 0;
+        for (const SparseIndex e : unknowns_.equation) {
+            for (SparseIndex k = e < 0 ? 0 : A.row_start[e]; k < (e < 0 ? 0 : A.row_start[e + 1]); ++k)
+                if (A.value[k] != uncoupled[k]) {
+                    coupling_.column.push_back(component[A.column[k]]);
+                    coupling_.value.push_back(A.value[k] - uncoupled[k]);
+                }
+            const auto end = static_cast<PetscInt>(coupling_.column.size());
+            rows += coupling_.row_start.back() < end ? 1 : 0;
+            coupling_.row_start.push_back(end);
+        }
+        constexpr SparseIndex few = 4; // of as many rows one: above, a product of all is as quick
+        if (A.pattern != pattern_) {
+            lay_out(A, component);
+            fill(A, uncoupled);
+            create();
+        }
+        return few * rows <= A.rows();
+    }
+
+    /// The coarse matrix of uncoupled bodies, and the coupling's, on the level below the finest.
+    void add_coupling(std::size_t level) {
+        check(MatCopy(uncoupled_, coarse_[level], SAME_NONZERO_PATTERN));
+        if (coupling_.column.empty()) return;
+        const auto n = static_cast<PetscInt>(unknowns_.equation.size());
+        Mat fine = nullptr, coarse = nullptr;
+        check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, coupling_.row_start.data(), coupling_.column.data(),
+                                        coupling_.value.data(), &fine));
+        check(MatPtAP(fine, interpolation_[level], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse));
+        check(MatAXPY(coarse_[level], 1, coarse, SUBSET_NONZERO_PATTERN));
+        check(MatDestroy(&coarse));
+        check(MatDestroy(&fine));
+    }
+
+    [[nodiscard]] std::vector<PetscInt> components(const SparseMatrix& A) const {
         std::vector<PetscInt> component(static_cast<std::size_t>(A.rows()));
-        for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t i = 0; i < unknowns_.equation.size(); ++i)
             if (unknowns_.equation[i] >= 0)
                 component[static_cast<std::size_t>(unknowns_.equation[i])] = static_cast<PetscInt>(i);
+        return component;
+    }
+
+    /// Three rows a node, those of held components with a diagonal entry alone.
+    void lay_out(const SparseMatrix& A, const std::vector<PetscInt>& component) {
+        const std::size_t n = unknowns_.equation.size();
         row_start_.assign(1, 0);
         column_.clear();
         for (std::size_t i = 0; i < n; ++i) {
@@ -143,6 +202,10 @@ private:
         check(MatSetBlockSize(matrix_, 3));
         check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
         check(MatCreateVecs(matrix_, &x_, &b_));
+        blocks_.emplace(row_start_, column_);
+        check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &*blocks_, &smoothed_));
+        check(MatShellSetOperation(smoothed_, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+        check(MatSetOption(smoothed_, MAT_SPD, PETSC_TRUE));
         check(VecSetBlockSize(b_, 3));
         // an orthonormal basis
         const Eigen::HouseholderQR<Matrix> qr(unknowns_.near_kernel);
@@ -199,6 +262,7 @@ private:
                 check(KSPSetType(smoother, KSPCHEBYSHEV));
                 check(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, sweeps));
                 check(PCSetType(pc, PCPBJACOBI));
+                if (level == levels - 1) check(KSPSetOperators(smoother, smoothed_, matrix_));
             }
             if (level == 0) continue;
             Mat& P = interpolation_[static_cast<std::size_t>(level - 1)];
@@ -212,15 +276,22 @@ private:
             check(PetscObjectReference(reinterpret_cast<PetscObject>(product)));
             check(PCMGSetInterpolation(cycle_, level, P));
         }
+        if (!coarse_.empty()) check(MatDuplicate(coarse_.back(), MAT_COPY_VALUES, &uncoupled_));
         check(PCDestroy(&grids));
     }
 
     void clear() {
+        pattern_ = 0;
+        row_start_ = column_ = {};
+        value_ = {};
+        blocks_.reset();
         PCDestroy(&cycle_);
         for (Mat& P : interpolation_) MatDestroy(&P);
         for (Mat& A : coarse_) MatDestroy(&A);
         VecDestroy(&b_);
         VecDestroy(&x_);
+        MatDestroy(&uncoupled_);
+        MatDestroy(&smoothed_);
         MatDestroy(&matrix_);
     }
 
@@ -228,7 +299,13 @@ private:
     std::vector<PetscInt> row_start_, column_;
     std::vector<double> value_; ///< PETSc works on these three in place
     std::uint64_t pattern_ = 0;
-    Mat matrix_ = nullptr;
+    Mat matrix_ = nullptr, smoothed_ = nullptr; ///< smoothed_: products of matrix_ by blocks_
+    std::optional<SingleBlocks> blocks_;
+    struct {
+        std::vector<PetscInt> row_start{0}, column;
+        std::vector<double> value;
+    } coupling_;                              ///< what A has beside the matrix of uncoupled bodies
+    Mat uncoupled_ = nullptr;                 ///< of uncoupled bodies, on the level below the finest
     std::vector<Mat> interpolation_, coarse_; ///< from level i to i + 1, and at level i, 0 the coarsest
     PC cycle_ = nullptr;
     Vec b_ = nullptr, x_ = nullptr;

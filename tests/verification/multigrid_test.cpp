@@ -142,7 +142,8 @@ TEST_F(Multigrid, FollowsNewValuesOnTheSameGrids) {
     solve::SparseMatrix twice = A;
     for (double& v : twice.value) v *= 2;
     ASSERT_EQ(blocks.multigrid->factorise(twice, blocks.apart()), solve::FactorStatus::ok);
-    EXPECT_EQ(Vector(2 * blocks.cycle(b)), before); // a power of two changes no digit
+    // once as the product for uncoupled bodies and the springs', once as the product for all: they differ by round-off
+    EXPECT_LT((2 * blocks.cycle(b) - before).norm(), 1e-13 * before.norm());
     ASSERT_EQ(blocks.multigrid->factorise(A, blocks.apart()), solve::FactorStatus::ok);
     EXPECT_EQ(blocks.cycle(b), before);
 }

@@ -5,7 +5,7 @@
 #include <vtkAlgorithm.h>
 #include <vtkCommand.h>
 
-namespace osculate::mesh {
+namespace osculate::vtk {
 
 /// Takes VTK's errors and warnings, which would otherwise go to the terminal, and keeps the first error.
 class VtkErrors : public vtkCommand {
@@ -23,4 +23,4 @@ private:
     std::string first_;
 };
 
-} // namespace osculate::mesh
+} // namespace osculate::vtk

@@ -1,9 +1,9 @@
-#include "mesh/cell_translation.hpp"
-#include "mesh/vtk_errors.hpp"
-#include "mesh/vtk_reader.hpp"
 #include "osculate/core/without_traps.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 #include "osculate/mesh/vtk_threads.hpp"
+#include "vtk/cell_translation.hpp"
+#include "vtk/readers.hpp"
+#include "vtk/vtk_errors.hpp"
 
 #include <array>
 #include <fstream>
@@ -17,7 +17,9 @@
 #include <vtkNew.h>
 #include <vtk_exodusII.h>
 
-namespace osculate::mesh {
+namespace osculate::vtk {
+
+using namespace mesh;
 namespace {
 
 /// Whether a file begins as Exodus files do; the library would print a report about any other.
@@ -67,7 +69,7 @@ RawFace face_of(const std::string& file, const std::string& set, int type, vtkId
 
 } // namespace
 
-RawMesh read_exodus_cells(const std::filesystem::path& path) {
+RawMesh read_exodus(const std::filesystem::path& path) {
     if (!is_netcdf(path)) throw MeshError(path.string(), "not an Exodus II file");
     use_no_vtk_threads();
     const vtkNew<VtkErrors> errors;
@@ -123,4 +125,4 @@ RawMesh read_exodus_cells(const std::filesystem::path& path) {
     return raw;
 }
 
-} // namespace osculate::mesh
+} // namespace osculate::vtk

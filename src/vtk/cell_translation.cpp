@@ -1,4 +1,4 @@
-#include "mesh/cell_translation.hpp"
+#include "vtk/cell_translation.hpp"
 
 #include "osculate/mesh/mesh_error.hpp"
 
@@ -15,7 +15,9 @@
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 
-namespace osculate::mesh {
+namespace osculate::vtk {
+
+using namespace mesh;
 namespace {
 
 constexpr NodeOrder as_it_is = [] {
@@ -137,4 +139,4 @@ void add_sets(RawMesh& raw, vtkUnstructuredGrid& grid, const std::vector<Index>&
         if (vtkDataArray* array = naming(data.GetArray(a))) add_parts(raw, *array, cells);
 }
 
-} // namespace osculate::mesh
+} // namespace osculate::vtk

@@ -1,5 +1,5 @@
 #pragma once
-/// VTK's own files.
+/// Meshes of files that VTK reads; its readers are loaded only when needed.
 
 #include "osculate/mesh/raw_mesh.hpp"
 

@@ -1,9 +1,9 @@
-#include "mesh/vtk_errors.hpp"
+#include "vtk/vtk_errors.hpp"
 
 #include <cctype>
 #include <vtkExecutive.h>
 
-namespace osculate::mesh {
+namespace osculate::vtk {
 
 void VtkErrors::Execute(vtkObject*, unsigned long event, void* text) {
     if (event == vtkCommand::ErrorEvent && first_.empty() && text != nullptr) first_ = static_cast<char*>(text);
@@ -22,4 +22,4 @@ std::string VtkErrors::reason() const {
     return first_.empty() || !text.empty() ? text : "VTK cannot read it";
 }
 
-} // namespace osculate::mesh
+} // namespace osculate::vtk

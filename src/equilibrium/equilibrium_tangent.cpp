@@ -39,14 +39,18 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
         std::ranges::sort(couplings_.back().masters);
     }
     kept_couplings_ = couplings_;
-    if (choice.preconditioned)
+    if (choice.preconditioned) {
+        std::function<linear::BlockMatrix()> undeformed;
+        if (&K != &model.K)
+            undeformed = [this, &model, threads] {
+                linear::BlockMatrix stiffness_then = model::undeformed_stiffness(model, threads);
+                return folded_ ? folded_->folded(stiffness_then) : stiffness_then;
+            };
         preconditioner_ = std::make_unique<linear::ContactPreconditioner>(
             constraints_, K,
             choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
-            [this, &model, threads] {
-                linear::BlockMatrix undeformed = model::undeformed_stiffness(model, threads);
-                return folded_ ? folded_->folded(undeformed) : undeformed;
-            });
+            std::move(undeformed));
+    }
     if (choice.reduced)
         reduced_ = std::make_unique<linear::ReducedGmres>(constraints_, unknowns_, *preconditioner_, threads);
     if (!choice.condensed) return;

@@ -21,7 +21,7 @@ Mat3 positive_part(const Mat3& M) {
 ContactPreconditioner::ContactPreconditioner(const Constraints& constraints, const BlockMatrix& K,
                                              std::unique_ptr<solve::Multigrid> multigrid,
                                              std::function<BlockMatrix()> undeformed)
-    : constraints_(constraints), undeformed_(std::move(undeformed)), stiffness_(constraints, K),
+    : constraints_(constraints), K_(&K), first_(&K), undeformed_(std::move(undeformed)), stiffness_(constraints, K),
       solver_(multigrid ? nullptr : solve::make_condensing_cholesky({})), multigrid_(std::move(multigrid)),
       softness_(multigrid_ ? softness_multigrid : softness_factorised), load_(constraints.equations()) {}
 
@@ -38,10 +38,30 @@ solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> co
         Spring& spring = springs.emplace_back(k.where);
         spring.stiffness = springs_[S_.size() - 1] = positive_part(N * SB * N + T * SB * T);
     }
+    if (multigrid_) return couple(springs);
     stiffness_.set_springs(springs);
-    if (!multigrid_) return solver_->factorise(stiffness_.matrix());
-    // grids of the undeformed bodies: those of the moment would depend on when the pattern was last renewed
-    return multigrid_->factorise(stiffness_.matrix(), [&] { return stiffness_.values_of(undeformed_()); });
+    return solver_->factorise(stiffness_.matrix());
+}
+
+solve::FactorStatus ContactPreconditioner::couple(const std::vector<Spring>& springs) {
+    if (!coarsened_) {
+        // grids of the undeformed bodies: those of the moment would depend on when they were chosen
+        if (undeformed_)
+            multigrid_->coarsen(undeformed_().view());
+        else
+            multigrid_->coarsen(first_->view());
+        changed_ = undeformed_ || K_ != first_;
+        coarsened_ = true;
+    }
+    if (changed_) multigrid_->take(K_->view());
+    changed_ = false;
+    std::vector<solve::NodalBlock> blocks;
+    Index most = 1;
+    for (const Spring& s : springs) {
+        for_each_block(s, [&](Index row, Index column, const Mat3& block) { blocks.push_back({row, column, block}); });
+        most = std::max(most, static_cast<Index>(s.masters.size()) + 1);
+    }
+    return multigrid_->couple(blocks, most);
 }
 
 double ContactPreconditioner::effort() const {

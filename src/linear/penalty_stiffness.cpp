@@ -103,17 +103,8 @@ void PenaltyStiffness::set_springs(const std::vector<Spring>& springs) {
         fill_base();
     }
     matrix_.value = base_;
-    for (const Spring& s : springs) {
-        // w = u_s - N_i u_i: blocks S, -S N_i, N_i^T S N_k
-        add(s.slave, s.slave, s.stiffness, matrix_.value);
-        for (std::size_t i = 0; i < s.masters.size(); ++i) {
-            const Mat3 by_master = -s.stiffness * s.follow[i];
-            add(s.slave, s.masters[i], by_master, matrix_.value);
-            add(s.masters[i], s.slave, by_master.transpose(), matrix_.value);
-            for (std::size_t k = 0; k < s.masters.size(); ++k)
-                add(s.masters[k], s.masters[i], -s.follow[k].transpose() * by_master, matrix_.value);
-        }
-    }
+    for (const Spring& s : springs)
+        for_each_block(s, [&](Index row, Index column, const Mat3& block) { add(row, column, block, matrix_.value); });
     ++matrix_.revision;
 }
 

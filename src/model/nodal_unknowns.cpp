@@ -6,20 +6,24 @@ namespace osculate::model {
 
 solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraints& constraints) {
     solve::NodalUnknowns result;
-    Index moving = 0;
-    for (Index node = 0; node < model.nodes(); ++node) moving += constraints.free_components(node) > 0;
-    result.near_kernel.setZero(3 * moving, 6);
+    for (Index node = 0; node < model.nodes(); ++node)
+        if (constraints.free_components(node) > 0) result.node.push_back(node);
+    result.near_kernel.resize(3 * static_cast<Index>(result.node.size()), 6);
     for (const Body& body : model.bodies) {
         const Index last = body.first_node + body.nodes();
         const auto [centre, radius] = extent(body, model.X);
-        for (Index node = body.first_node; node < last; ++node)
-            for (int k = 0; k < 3 && constraints.free_components(node) > 0; ++k) {
-                const Index e = constraints.equation(node, k), row = static_cast<Index>(result.equation.size());
+        for (Index node = body.first_node; node < last; ++node) {
+            if (constraints.free_components(node) == 0) continue;
+            const auto row = static_cast<Index>(result.equation.size());
+            result.frame.push_back(constraints.frame(node));
+            for (int k = 0; k < 3; ++k) {
+                const Index e = constraints.equation(node, k);
                 result.equation.push_back(e == linear::Constraints::held ? -1 : e);
-                if (e == linear::Constraints::held) continue;
-                const Vec3 d = constraints.frame(node).col(k);
-                result.near_kernel.row(row) << d.transpose(), (model.X[node] - centre).cross(d).transpose() / radius;
+                const Vec3 d = Vec3::Unit(k);
+                result.near_kernel.row(row + k) << d.transpose(),
+                    (model.X[node] - centre).cross(d).transpose() / radius;
             }
+        }
     }
     return result;
 }

@@ -2,6 +2,7 @@
 /// Sparse matrix of 3 x 3 blocks over the nodes of all bodies.
 
 #include "osculate/core/field.hpp"
+#include "osculate/solve/nodal_matrix.hpp"
 
 #include <vector>
 
@@ -32,6 +33,7 @@ public:
     void set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B);
     void set_zero();
     [[nodiscard]] bool empty() const { return block_.empty(); }
+    [[nodiscard]] solve::NodalMatrix view() const { return {row_start_, column_, block_}; }
     /// y += A x over 3-vectors per node.
     void multiply_add(const Field& x, Field& y, int threads) const;
     /// y_i += A_ij (x_j - x_i), which is A x if the blocks of each row sum to zero, as in a stiffness: a translation of

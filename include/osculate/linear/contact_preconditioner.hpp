@@ -23,13 +23,20 @@ class ContactPreconditioner {
 public:
     /// @param K           stiffness of the bodies in a step; it must outlive this object
     /// @param multigrid   used instead of the factorisation; null: factorise
-    /// @param undeformed  stiffness of the undeformed bodies, in the pattern of K: multigrid builds its grids from it
+    /// @param undeformed  stiffness of the undeformed bodies, in the pattern of K: multigrid chooses its grids by it; null: this K
     ContactPreconditioner(const Constraints& constraints, const BlockMatrix& K,
                           std::unique_ptr<solve::Multigrid> multigrid, std::function<BlockMatrix()> undeformed);
     /// Takes over new values of K.
-    void stiffness_changed() { stiffness_.stiffness_changed(); }
+    void stiffness_changed() {
+        stiffness_.stiffness_changed();
+        changed_ = true;
+    }
     /// Uses another matrix of the same pattern instead of K; it must outlive this object.
-    void use(const BlockMatrix& K) { stiffness_.use(K); }
+    void use(const BlockMatrix& K) {
+        K_ = &K;
+        stiffness_.use(K);
+        changed_ = true;
+    }
     void keep_pattern() { stiffness_.keep_pattern(); }
     void restore_pattern() { stiffness_.restore_pattern(); }
     [[nodiscard]] std::optional<std::vector<Spring>> kept_pattern() const { return stiffness_.kept_pattern(); }
@@ -49,8 +56,12 @@ public:
     [[nodiscard]] solve::CondensingSolver& factors() { return *solver_; }
 
 private:
+    [[nodiscard]] solve::FactorStatus couple(const std::vector<Spring>& springs);
+
     const Constraints& constraints_;
+    const BlockMatrix *K_, *first_; ///< now, and at first
     std::function<BlockMatrix()> undeformed_;
+    bool coarsened_ = false, changed_ = false; ///< of multigrid: whether it has grids, and not the values of K
     PenaltyStiffness stiffness_;
     std::unique_ptr<solve::CondensingSolver> solver_; ///< one of these two
     std::unique_ptr<solve::Multigrid> multigrid_;

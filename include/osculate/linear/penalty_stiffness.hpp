@@ -19,6 +19,18 @@ struct Spring {
     Mat3 stiffness = Mat3::Zero();
 };
 
+/// Calls each(row, column, block) for the blocks S, -S N_i, N_i^T S N_k of a spring.
+void for_each_block(const Spring& spring, auto&& each) {
+    each(spring.slave, spring.slave, spring.stiffness);
+    for (std::size_t i = 0; i < spring.masters.size(); ++i) {
+        const Mat3 by_master = -spring.stiffness * spring.follow[i];
+        each(spring.slave, spring.masters[i], by_master);
+        each(spring.masters[i], spring.slave, Mat3(by_master.transpose()));
+        for (std::size_t k = 0; k < spring.masters.size(); ++k)
+            each(spring.masters[k], spring.masters[i], Mat3(-spring.follow[k].transpose() * by_master));
+    }
+}
+
 class PenaltyStiffness {
 public:
     PenaltyStiffness(const Constraints& constraints, const BlockMatrix& K);

@@ -7,8 +7,7 @@
 
 namespace osculate::model {
 
-/// Equations of all nodes with a free component, by local component, and the rigid motions of every body, zero along
-/// held components.
+/// Equations of all nodes with a free component, by local component, and the rigid motions of every body.
 [[nodiscard]] solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraints& constraints);
 
 } // namespace osculate::model

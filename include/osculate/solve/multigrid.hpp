@@ -2,31 +2,35 @@
 /// Algebraic multigrid for the stiffness of elastic bodies.
 
 #include "osculate/solve/direct_solver.hpp"
+#include "osculate/solve/nodal_matrix.hpp"
 
-#include <functional>
 #include <memory>
 #include <vector>
 
 namespace osculate::solve {
 
-/// What multigrid needs to know of a matrix besides its entries.
+/// What multigrid needs to know of the unknowns.
 struct NodalUnknowns {
-    std::vector<SparseIndex> equation; ///< (3 nodes) of each component, ascending; -1: held, at most two per node
-    Matrix near_kernel;                ///< (3 nodes x 6) motions without strain, body by body in the same columns
+    std::vector<Index> node;           ///< (n) those with a free component, ascending
+    std::vector<SparseIndex> equation; ///< (3 n) of each local component; -1: held
+    std::vector<Mat3> frame;           ///< (n) columns: the axes of the local components
+    Matrix near_kernel;                ///< (3 n x 6) motions without strain, in global components, held ones included
 };
 
-/// V-cycles of smoothed aggregation, PETSc's GAMG. Grids are built once from matrices of uncoupled bodies, so that no
-/// coarse unknown joins two bodies; the coupling enters only the coarse matrices.
+/// V-cycles of smoothed aggregation. Grids are chosen once, for bodies without their coupling, so that no coarse unknown
+/// joins two bodies; the coupling enters only the matrices.
 class Multigrid {
 public:
     virtual ~Multigrid() = default;
-    /// @param A      symmetric positive definite; must stay alive and unchanged until the last cycle()
-    /// @param apart  called when the pattern of A is new, for the values (nonzeros of A) from which grids are built:
-    ///               without the coupling of bodies, and the same at every call, so that a solution does not depend on
-    ///               the time of the call
-    [[nodiscard]] virtual FactorStatus factorise(const SparseMatrix& A,
-                                                 const std::function<std::vector<double>()>& apart) = 0;
-    /// x approximates A^-1 b: linear and symmetric in b; b and x (rows) must not overlap.
+    /// Chooses the grids, and takes the values of the bodies.
+    /// @param undeformed  stiffness; always the same, so that a solution does not depend on the time of the call
+    virtual void coarsen(const NodalMatrix& undeformed) = 0;
+    /// Takes other values in the pattern of coarsen().
+    virtual void take(const NodalMatrix& bodies) = 0;
+    /// Makes the matrices for the sum of bodies and coupling, positive definite on the free components.
+    /// @param coupling  a sum of springs, each between at most `most_nodes` nodes
+    [[nodiscard]] virtual FactorStatus couple(std::span<const NodalBlock> coupling, Index most_nodes) = 0;
+    /// x approximates A^-1 b: linear and symmetric in b; b and x (equations) must not overlap.
     virtual void cycle(const double* b, double* x) = 0;
 };
 

@@ -1,0 +1,155 @@
+#include "multigrid/coarse_matrix.hpp"
+
+#include <algorithm>
+
+namespace osculate::solve {
+namespace {
+
+constexpr Index modes = Prolongation::modes;
+
+void make_unique(std::vector<Index>& list) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+} // namespace
+
+CoarseMatrix::CoarseMatrix(const FreeNodes& nodes, const Prolongation& P, const NodalMatrix& bodies)
+    : nodes_(nodes), P_(P) {
+    // a node's aggregates meet those of its neighbours
+    Neighbours neighbours(static_cast<std::size_t>(P.aggregates()));
+    std::vector<Index> reached;
+    for (Index i = 0; i < nodes.size(); ++i) {
+        reached.clear();
+        nodes.for_row(bodies, i, [&](Index j, const Mat3&) {
+            for (Index k = P.row_begin(j); k < P.row_end(j); ++k) reached.push_back(P.aggregate(k));
+        });
+        make_unique(reached);
+        for (Index k = P.row_begin(i); k < P.row_end(i); ++k) {
+            std::vector<Index>& list = neighbours[P.aggregate(k)];
+            if (std::ranges::includes(list, reached)) continue;
+            list.insert(list.end(), reached.begin(), reached.end());
+            make_unique(list);
+        }
+    }
+    lay_out(neighbours);
+    take(bodies);
+}
+
+void CoarseMatrix::lay_out(const Neighbours& neighbours) {
+    start_.assign(1, 0);
+    neighbour_.clear();
+    row_start_.assign(1, 0);
+    column_.clear();
+    for (const std::vector<Index>& row : neighbours) {
+        neighbour_.insert(neighbour_.end(), row.begin(), row.end());
+        start_.push_back(neighbour_.size());
+        for (Index r = 0; r < modes; ++r) {
+            for (const Index a : row)
+                for (Index m = 0; m < modes; ++m) column_.push_back(modes * a + m);
+            row_start_.push_back(static_cast<PetscInt>(column_.size()));
+        }
+    }
+    bodies_.assign(column_.size(), 0.0);
+}
+
+std::size_t CoarseMatrix::slot(Index row, Index column) const {
+    const auto begin = neighbour_.begin() + static_cast<std::ptrdiff_t>(start_[row]),
+               end = neighbour_.begin() + static_cast<std::ptrdiff_t>(start_[row + 1]);
+    return static_cast<std::size_t>(std::lower_bound(begin, end, column) - neighbour_.begin());
+}
+
+void CoarseMatrix::add(Index row, std::size_t slot, const Square& block, std::vector<double>& to) const {
+    const std::size_t length = modes * (start_[row + 1] - start_[row]);
+    double* first = to.data() + modes * modes * start_[row] + modes * (slot - start_[row]);
+    for (Index r = 0; r < modes; ++r, first += length)
+        for (Index m = 0; m < modes; ++m) first[m] += block(r, m);
+}
+
+void CoarseMatrix::take(const NodalMatrix& bodies) {
+    std::ranges::fill(bodies_, 0.0);
+    std::vector<Index> place(static_cast<std::size_t>(P_.aggregates()), -1), reached;
+    std::vector<Prolongation::Block> product; // (A P)_i
+    for (Index i = 0; i < nodes_.size(); ++i) {
+        reached.clear();
+        product.clear();
+        nodes_.for_row(bodies, i, [&](Index j, const Mat3& block) {
+            for (Index k = P_.row_begin(j); k < P_.row_end(j); ++k) {
+                Index& at = place[P_.aggregate(k)];
+                if (at < 0) {
+                    at = static_cast<Index>(reached.size());
+                    reached.push_back(P_.aggregate(k));
+                    product.emplace_back(Prolongation::Block::Zero());
+                }
+                product[at].noalias() += block * P_.block(j, k);
+            }
+        });
+        for (Index k = P_.row_begin(i); k < P_.row_end(i); ++k) {
+            const Index row = P_.aggregate(k);
+            const auto transposed = P_.block(i, k).transpose().eval();
+            for (std::size_t n = 0; n < reached.size(); ++n)
+                add(row, slot(row, reached[n]), transposed * product[n], bodies_);
+        }
+        for (const Index a : reached) place[a] = -1;
+    }
+}
+
+bool CoarseMatrix::couple(std::span<const NodalBlock> coupling) {
+    const auto for_each = [&](auto&& each) {
+        for (const NodalBlock& b : coupling) {
+            const Index i = nodes_.number(b.row), j = nodes_.number(b.column);
+            for (Index k = i < 0 || j < 0 ? 0 : P_.row_begin(i); k < (i < 0 || j < 0 ? 0 : P_.row_end(i)); ++k)
+                for (Index n = P_.row_begin(j); n < P_.row_end(j); ++n) each(b, i, k, j, n);
+        }
+    };
+    Neighbours more(static_cast<std::size_t>(P_.aggregates()));
+    bool grown = false;
+    for_each([&](const NodalBlock&, Index, Index k, Index, Index n) {
+        const Index row = P_.aggregate(k), column = P_.aggregate(n);
+        if (const std::size_t at = slot(row, column); at < start_[row + 1] && neighbour_[at] == column) return;
+        more[row].push_back(column);
+        grown = true;
+    });
+    if (grown) {
+        const std::vector<std::size_t> start = start_;
+        const std::vector<double> values = std::move(bodies_);
+        for (Index a = 0; a < P_.aggregates(); ++a) {
+            more[a].insert(more[a].end(), neighbour_.begin() + static_cast<std::ptrdiff_t>(start[a]),
+                           neighbour_.begin() + static_cast<std::ptrdiff_t>(start[a + 1]));
+            make_unique(more[a]);
+        }
+        const std::vector<Index> old = neighbour_;
+        lay_out(more);
+        for (Index a = 0; a < P_.aggregates(); ++a)
+            for (std::size_t k = start[a]; k < start[a + 1]; ++k) {
+                const double* from = values.data() + modes * modes * start[a] + modes * (k - start[a]);
+                Square block;
+                for (Index r = 0; r < modes; ++r, from += modes * (start[a + 1] - start[a]))
+                    for (Index m = 0; m < modes; ++m) block(r, m) = from[m];
+                add(a, slot(a, old[k]), block, bodies_);
+            }
+    }
+    value_ = bodies_;
+    for_each([&](const NodalBlock& b, Index i, Index k, Index j, Index n) {
+        const Index row = P_.aggregate(k);
+        add(row, slot(row, P_.aggregate(n)), P_.block(i, k).transpose() * (b.value * P_.block(j, n)), value_);
+    });
+    mend();
+    return grown;
+}
+
+void CoarseMatrix::mend() {
+    constexpr double empty = 1e-14;
+    std::vector<double*> diagonal;
+    double largest = 0;
+    for (PetscInt i = 0; i < rows(); ++i)
+        for (PetscInt k = row_start_[i]; k < row_start_[i + 1]; ++k)
+            if (column_[k] == i) {
+                diagonal.push_back(&value_[k]);
+                largest = std::max(largest, value_[k]);
+            }
+    for (double* d : diagonal)
+        if (*d <= empty * largest) *d += largest;
+}
+
+} // namespace osculate::solve

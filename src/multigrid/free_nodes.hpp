@@ -1,0 +1,37 @@
+#pragma once
+/// Nodes with free components, numbered one after the other, and the free part of vectors and blocks over them.
+
+#include "osculate/solve/multigrid.hpp"
+
+namespace osculate::solve {
+
+class FreeNodes {
+public:
+    explicit FreeNodes(const NodalUnknowns& unknowns);
+
+    [[nodiscard]] Index size() const { return static_cast<Index>(node_.size()); }
+    /// Its number in the matrix.
+    [[nodiscard]] Index node(Index i) const { return node_[i]; }
+    /// Number here of a node of the matrix, -1: all its components are held.
+    [[nodiscard]] Index number(Index node) const {
+        return static_cast<std::size_t>(node) < number_.size() ? number_[node] : -1;
+    }
+    [[nodiscard]] bool whole(Index i) const { return whole_[i]; } ///< no component is held
+    /// Projection on the free directions, in global components.
+    [[nodiscard]] const Mat3& projection(Index i) const { return projection_[i]; }
+    [[nodiscard]] Mat3 projected(Index i, Index j, const Mat3& block) const {
+        return whole_[i] && whole_[j] ? block : Mat3(projection_[i] * block * projection_[j]);
+    }
+    /// Calls each(j, block) for the projected blocks of row i.
+    void for_row(const NodalMatrix& A, Index i, auto&& each) const {
+        for (Index k = A.row_start[node_[i]]; k < A.row_start[node_[i] + 1]; ++k)
+            if (const Index j = number(A.column[k]); j >= 0) each(j, projected(i, j, A.block[k]));
+    }
+
+private:
+    std::vector<Index> node_, number_;
+    std::vector<char> whole_;
+    std::vector<Mat3> projection_;
+};
+
+} // namespace osculate::solve

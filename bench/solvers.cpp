@@ -78,7 +78,7 @@ void factor_multigrid(benchmark::State& state) {
     measure(state, block, [&] {
         const auto multigrid = solve::make_multigrid(unknowns);
         multigrid->coarsen(block.model.K.view());
-        (void)multigrid->couple({}, 1);
+        (void)multigrid->couple({});
     });
 }
 

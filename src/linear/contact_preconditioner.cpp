@@ -56,16 +56,13 @@ solve::FactorStatus ContactPreconditioner::couple(const std::vector<Spring>& spr
     if (changed_) multigrid_->take(K_->view());
     changed_ = false;
     std::vector<solve::NodalBlock> blocks;
-    Index most = 1;
-    for (const Spring& s : springs) {
+    for (const Spring& s : springs)
         for_each_block(s, [&](Index row, Index column, const Mat3& block) { blocks.push_back({row, column, block}); });
-        most = std::max(most, static_cast<Index>(s.masters.size()) + 1);
-    }
-    return multigrid_->couple(blocks, most);
+    return multigrid_->couple(blocks);
 }
 
 double ContactPreconditioner::effort() const {
-    constexpr double of_multigrid = 60; // cycles
+    constexpr double of_multigrid = 15; // cycles
     constexpr double least = 10;        // what of a factorisation does not grow with its operations
     constexpr double most = 100;        // an iteration is more than a solution
     return multigrid_ ? of_multigrid : std::min(least + solver_->effort(), most);

@@ -3,6 +3,7 @@
 
 #include "multigrid/free_nodes.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace osculate::solve {
@@ -21,21 +22,21 @@ public:
     void multiply(const double* x, double* y) const;
     /// y = D^-1 x, where D is the block diagonal of A
     void scale(const double* x, double* y) const;
-    /// Estimate of the largest eigenvalue of D_K^-1 K for the bodies alone.
-    [[nodiscard]] double largest_of_bodies() const { return largest_of_bodies_; }
-    /// A bound for that of D^-1 A, if the former is right and the coupling consists of springs between at most `most_nodes`:
-    /// the energy K is at most that factor of the energy D_K, and that of a spring at most `most_nodes` times that of its
-    /// diagonal blocks, so the sum at most the largest of the mixed factors of single nodes.
-    [[nodiscard]] double largest(Index most_nodes) const;
+    /// Estimate of the largest eigenvalue of D^-1 A: that of the bodies alone, or of coupled nodes and their neighbours.
+    [[nodiscard]] double largest_eigenvalue() const { return std::max(largest_of_bodies_, largest_of_coupled_); }
 
     [[nodiscard]] Index size() const { return nodes_.size(); }
     [[nodiscard]] const Mat3& inverse_diagonal(Index i) const { return inverse_[i]; }
 
 private:
-    void estimate();
+    /// y = A x at nodes of a list, of the bodies alone
+    void multiply_rows(std::span<const Index> rows, const double* x, double* y) const;
+    void add_coupling(const double* x, double* y) const;
+    /// Of the rows and columns of some nodes.
+    [[nodiscard]] double estimate(std::span<const Index> rows) const;
 
     const FreeNodes& nodes_;
-    double largest_of_bodies_ = 0;
+    double largest_of_bodies_ = 0, largest_of_coupled_ = 0;
     std::vector<Index> start_, node_; ///< (n + 1) of blocks, (blocks) column
     std::vector<float> value_;        ///< (9 blocks, and one) by columns
     std::vector<Mat3> diagonal_;      ///< (n) D_K

@@ -49,7 +49,7 @@ Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const F
             tentative[members[a][m]] = B.middleRows<3>(3 * static_cast<Index>(m));
     }
 
-    const double w = 4.0 / 3.0 / grid.largest_of_bodies();
+    const double w = 4.0 / 3.0 / grid.largest_eigenvalue();
     std::vector<Index> reached;
     std::vector<Block> row;
     for (Index i = 0; i < nodes.size(); ++i) {

@@ -80,7 +80,7 @@ struct Blocks {
             linear::for_each_block(s, [&](Index row, Index column, const Mat3& block) {
                 blocks.push_back({row, column, Mat3(times * block)});
             });
-        return multigrid->couple(blocks, 2);
+        return multigrid->couple(blocks);
     }
     [[nodiscard]] Vector cycle(const Vector& b) const {
         Vector x(b.size());

@@ -28,8 +28,7 @@ public:
     /// Takes other values in the pattern of coarsen().
     virtual void take(const NodalMatrix& bodies) = 0;
     /// Makes the matrices for the sum of bodies and coupling, positive definite on the free components.
-    /// @param coupling  a sum of springs, each between at most `most_nodes` nodes
-    [[nodiscard]] virtual FactorStatus couple(std::span<const NodalBlock> coupling, Index most_nodes) = 0;
+    [[nodiscard]] virtual FactorStatus couple(std::span<const NodalBlock> coupling) = 0;
     /// x approximates A^-1 b: linear and symmetric in b; b and x (equations) must not overlap.
     virtual void cycle(const double* b, double* x) = 0;
 };

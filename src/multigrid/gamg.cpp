@@ -31,8 +31,9 @@ void begin_petsc() {
     (void)begun;
 }
 
-constexpr PetscInt sweeps = 2;             // of a smoother, before and after
-constexpr double lower = 0.3, upper = 1.1; // what it damps, over the largest eigenvalue: 0.1 costs a fifth more iterations
+constexpr PetscInt sweeps = 2; // of a smoother, before and after
+constexpr double lower = 0.3,
+                 upper = 1.1; // what it damps, over the largest eigenvalue: 0.1 costs a fifth more iterations
 
 /// Calls act(x, y) with the values of two vectors. PETSc, which is C, calls these: errors go back as codes.
 PetscErrorCode with_values(Vec from, Vec to, auto&& act) noexcept {
@@ -63,6 +64,7 @@ public:
         wrap_coarse();
         choose_grids();
         wrap_fine();
+        make_cycle();
     }
 
     void take(const NodalMatrix& bodies) override {
@@ -73,10 +75,13 @@ public:
     FactorStatus couple(std::span<const NodalBlock> coupling) override {
         fine_->couple(coupling);
         changed(smoothed_);
+        const bool grown = coarse_->couple(coupling);
+        if (grown) {
+            wrap_coarse();
+            make_cycle(); // that of another pattern keeps some of it
+        }
         const double largest = fine_->largest_eigenvalue();
         check(KSPChebyshevSetEigenvalues(smoother_, upper * largest, lower * largest));
-        const bool grown = coarse_->couple(coupling);
-        if (grown) wrap_coarse();
         changed(below_.back());
         for (std::size_t level = below_.size(); level-- > 0;) {
             Mat& A = below_[level];
@@ -224,7 +229,7 @@ private:
         below_.insert(below_.begin(), interpolation_.size(), nullptr);
     }
 
-    /// The shells of the finest grid, and cycles over all grids.
+    /// The finest grid and the interpolation to it in shells.
     void wrap_fine() {
         const PetscInt n = 3 * nodes_.size(), coarse = coarse_->rows();
         check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &*fine_, &smoothed_));
@@ -234,7 +239,10 @@ private:
         check(MatCreateShell(PETSC_COMM_SELF, n, coarse, n, coarse, &*P_, &to_fine_));
         check(MatShellSetOperation(to_fine_, MATOP_MULT, reinterpret_cast<void (*)()>(interpolate)));
         check(MatShellSetOperation(to_fine_, MATOP_MULT_TRANSPOSE, reinterpret_cast<void (*)()>(restrict)));
+    }
 
+    void make_cycle() {
+        PCDestroy(&cycle_);
         const auto levels = static_cast<PetscInt>(below_.size()) + 1;
         check(PCCreate(PETSC_COMM_SELF, &cycle_));
         check(PCSetType(cycle_, PCMG));

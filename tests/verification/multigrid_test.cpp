@@ -142,6 +142,16 @@ TEST_F(Multigrid, TakesHardlyMoreIterationsOnFinerMeshes) {
     EXPECT_LT(fine, 40);
 }
 
+TEST_F(Multigrid, CouplesBodiesThatWereApart) {
+    const Blocks apart(12, 1), at_once(12, 1);
+    const Vector b = Vector::Ones(apart.size());
+    ASSERT_EQ(apart.multigrid->couple({}), solve::FactorStatus::ok);
+    ASSERT_TRUE(apart.cycle(b).allFinite());
+    ASSERT_EQ(apart.couple(), solve::FactorStatus::ok);
+    ASSERT_EQ(at_once.couple(), solve::FactorStatus::ok);
+    EXPECT_EQ(apart.cycle(b), at_once.cycle(b));
+}
+
 TEST_F(Multigrid, FollowsNewValuesOnTheSameGrids) {
     Blocks blocks(6, 1);
     ASSERT_EQ(blocks.couple(), solve::FactorStatus::ok);

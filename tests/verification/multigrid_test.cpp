@@ -143,7 +143,7 @@ TEST_F(Multigrid, TakesHardlyMoreIterationsOnFinerMeshes) {
 }
 
 TEST_F(Multigrid, CouplesBodiesThatWereApart) {
-    const Blocks apart(12, 1), at_once(12, 1);
+    const Blocks apart(24, 1), at_once(24, 1);
     const Vector b = Vector::Ones(apart.size());
     ASSERT_EQ(apart.multigrid->couple({}), solve::FactorStatus::ok);
     ASSERT_TRUE(apart.cycle(b).allFinite());

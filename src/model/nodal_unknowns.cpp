@@ -9,12 +9,14 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
     for (Index node = 0; node < model.nodes(); ++node)
         if (constraints.free_components(node) > 0) result.node.push_back(node);
     result.near_kernel.resize(3 * static_cast<Index>(result.node.size()), 6);
-    for (const Body& body : model.bodies) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const Body& body = model.bodies[b];
         const Index last = body.first_node + body.nodes();
         const auto [centre, radius] = extent(body, model.X);
         for (Index node = body.first_node; node < last; ++node) {
             if (constraints.free_components(node) == 0) continue;
             const auto row = static_cast<Index>(result.equation.size());
+            result.body.push_back(static_cast<Index>(b));
             result.frame.push_back(constraints.frame(node));
             for (int k = 0; k < 3; ++k) {
                 const Index e = constraints.equation(node, k);

@@ -1,5 +1,6 @@
 #include "multigrid/coarse_matrix.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 namespace osculate::solve {
@@ -15,7 +16,9 @@ void make_unique(std::vector<Index>& list) {
 } // namespace
 
 CoarseMatrix::CoarseMatrix(const FreeNodes& nodes, const Prolongation& P, const NodalMatrix& bodies)
-    : nodes_(nodes), P_(P) {
+    : nodes_(nodes), P_(P), body_(static_cast<std::size_t>(P.aggregates()), 0) {
+    for (Index i = 0; i < nodes.size(); ++i) // no aggregate joins bodies
+        for (Index k = P.row_begin(i); k < P.row_end(i); ++k) body_[P.aggregate(k)] = nodes.body(i);
     // a node's aggregates meet those of its neighbours
     Neighbours neighbours(static_cast<std::size_t>(P.aggregates()));
     std::vector<Index> reached;
@@ -136,6 +139,34 @@ bool CoarseMatrix::couple(std::span<const NodalBlock> coupling) {
     });
     mend();
     return grown;
+}
+
+bool CoarseMatrix::loose() const {
+    constexpr double nothing = 1e-12; // P, in single precision, leaves a motion without strain some 1e-14
+    const Matrix& R = P_.near_kernel();
+    const Index bodies = body_.empty() ? 0 : *std::ranges::max_element(body_) + 1;
+    Matrix energy = Matrix::Zero(modes * bodies, modes * bodies);
+    Vector diagonal = Vector::Zero(modes * bodies);
+    std::vector<Vec6> force(static_cast<std::size_t>(bodies), Vec6::Zero()); // on a row by the motions of each body
+    for (Index a = 0; a < P_.aggregates(); ++a)
+        for (Index row = modes * a; row < modes * (a + 1); ++row) {
+            const Vec6 motion = R.row(row).transpose();
+            for (PetscInt k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+                force[body_[column_[k] / modes]] += value_[k] * R.row(column_[k]).transpose();
+                if (column_[k] == row) diagonal.segment<modes>(modes * body_[a]) += value_[k] * motion.cwiseAbs2();
+            }
+            for (std::size_t k = start_[a]; k < start_[a + 1]; ++k) {
+                const Index other = body_[neighbour_[k]];
+                energy.block<modes, modes>(modes * body_[a], modes * other) += motion * force[other].transpose();
+                force[other].setZero();
+            }
+        }
+    const Vector scale = (diagonal.array() > 0).select(diagonal.array().max(1e-300).rsqrt(), 0.0);
+    energy = (scale.asDiagonal() * (energy + energy.transpose()) * scale.asDiagonal() / 2).eval();
+    for (Index i = 0; i < scale.size(); ++i)
+        if (scale(i) == 0) energy(i, i) = 1; // held by supports alone
+    return energy.size() > 0 &&
+           Eigen::SelfAdjointEigenSolver<Matrix>(energy, Eigen::EigenvaluesOnly).eigenvalues()(0) < nothing;
 }
 
 void CoarseMatrix::mend() {

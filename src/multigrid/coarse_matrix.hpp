@@ -18,6 +18,9 @@ public:
     /// Sum of the bodies' last values and a coupling.
     /// @returns  whether the pattern has grown
     bool couple(std::span<const NodalBlock> coupling);
+    /// Whether some motion of bodies without strain costs no energy. Only such a motion can: the energy of the bodies and that of
+    /// their coupling are never negative.
+    [[nodiscard]] bool loose() const;
 
     [[nodiscard]] PetscInt rows() const { return static_cast<PetscInt>(row_start_.size()) - 1; }
     [[nodiscard]] PetscInt* row_start() { return row_start_.data(); }
@@ -37,6 +40,7 @@ private:
 
     const FreeNodes& nodes_;
     const Prolongation& P_;
+    std::vector<Index> body_;        ///< (aggregates)
     std::vector<std::size_t> start_; ///< (aggregates + 1) of blocks
     std::vector<Index> neighbour_;   ///< (blocks) ascending in a row
     std::vector<PetscInt> row_start_, column_;

@@ -2,7 +2,7 @@
 
 namespace osculate::solve {
 
-FreeNodes::FreeNodes(const NodalUnknowns& unknowns) : node_(unknowns.node) {
+FreeNodes::FreeNodes(const NodalUnknowns& unknowns) : node_(unknowns.node), body_(unknowns.body) {
     number_.assign(node_.empty() ? 0 : static_cast<std::size_t>(node_.back()) + 1, -1);
     for (std::size_t i = 0; i < node_.size(); ++i) {
         number_[node_[i]] = static_cast<Index>(i);

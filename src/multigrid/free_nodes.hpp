@@ -16,6 +16,7 @@ public:
     [[nodiscard]] Index number(Index node) const {
         return static_cast<std::size_t>(node) < number_.size() ? number_[node] : -1;
     }
+    [[nodiscard]] Index body(Index i) const { return body_[i]; }
     [[nodiscard]] bool whole(Index i) const { return whole_[i]; } ///< no component is held
     /// Projection on the free directions, in global components.
     [[nodiscard]] const Mat3& projection(Index i) const { return projection_[i]; }
@@ -29,7 +30,7 @@ public:
     }
 
 private:
-    std::vector<Index> node_, number_;
+    std::vector<Index> node_, body_, number_;
     std::vector<char> whole_;
     std::vector<Mat3> projection_;
 };

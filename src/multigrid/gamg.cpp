@@ -80,6 +80,7 @@ public:
             wrap_coarse();
             make_cycle(); // that of another pattern keeps some of it
         }
+        if (coarse_->loose()) return FactorStatus::singular;
         const double largest = fine_->largest_eigenvalue();
         check(KSPChebyshevSetEigenvalues(smoother_, upper * largest, lower * largest));
         changed(below_.back());

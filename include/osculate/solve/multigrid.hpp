@@ -12,6 +12,7 @@ namespace osculate::solve {
 /// What multigrid needs to know of the unknowns.
 struct NodalUnknowns {
     std::vector<Index> node;           ///< (n) those with a free component, ascending
+    std::vector<Index> body;           ///< (n) the body of each
     std::vector<SparseIndex> equation; ///< (3 n) of each local component; -1: held
     std::vector<Mat3> frame;           ///< (n) columns: the axes of the local components
     Matrix near_kernel;                ///< (3 n x 6) motions without strain, in global components, held ones included
@@ -27,7 +28,8 @@ public:
     virtual void coarsen(const NodalMatrix& undeformed) = 0;
     /// Takes other values in the pattern of coarsen().
     virtual void take(const NodalMatrix& bodies) = 0;
-    /// Makes the matrices for the sum of bodies and coupling, positive definite on the free components.
+    /// Makes the matrices for the sum of bodies and coupling.
+    /// @returns  singular: some motion of bodies without strain is not held
     [[nodiscard]] virtual FactorStatus couple(std::span<const NodalBlock> coupling) = 0;
     /// x approximates A^-1 b: linear and symmetric in b; b and x (equations) must not overlap.
     virtual void cycle(const double* b, double* x) = 0;

@@ -10,7 +10,9 @@
 #include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 
 namespace osculate {
 namespace {
@@ -73,11 +75,11 @@ struct Blocks {
         multigrid->coarsen(plan.model.K.view());
     }
     [[nodiscard]] Index size() const { return constraints->equations(); }
-    /// Couples the blocks by their springs, each `times` as stiff.
-    [[nodiscard]] solve::FactorStatus couple(double times = 1) const {
+    /// Couples the blocks by the first `count` of their springs, each `times` as stiff.
+    [[nodiscard]] solve::FactorStatus couple(double times = 1, std::size_t count = all) const {
         std::vector<solve::NodalBlock> blocks;
-        for (const linear::Spring& s : springs_)
-            linear::for_each_block(s, [&](Index row, Index column, const Mat3& block) {
+        for (std::size_t i = 0; i < std::min(count, springs_.size()); ++i)
+            linear::for_each_block(springs_[i], [&](Index row, Index column, const Mat3& block) {
                 blocks.push_back({row, column, Mat3(times * block)});
             });
         return multigrid->couple(blocks);
@@ -105,6 +107,7 @@ struct Blocks {
     std::unique_ptr<solve::Multigrid> multigrid;
 
 private:
+    static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
     std::vector<linear::Spring> springs_;
 };
 
@@ -142,14 +145,23 @@ TEST_F(Multigrid, TakesHardlyMoreIterationsOnFinerMeshes) {
     EXPECT_LT(fine, 40);
 }
 
-TEST_F(Multigrid, CouplesBodiesThatWereApart) {
-    const Blocks apart(24, 1), at_once(24, 1);
-    const Vector b = Vector::Ones(apart.size());
-    ASSERT_EQ(apart.multigrid->couple({}), solve::FactorStatus::ok);
-    ASSERT_TRUE(apart.cycle(b).allFinite());
-    ASSERT_EQ(apart.couple(), solve::FactorStatus::ok);
+TEST_F(Multigrid, TakesMoreSpringsThanBefore) {
+    const Blocks one_by_one(24, 1), at_once(24, 1);
+    const Vector b = Vector::Ones(one_by_one.size());
+    ASSERT_EQ(one_by_one.couple(1, 12), solve::FactorStatus::ok); // of 25, in rows of five
+    ASSERT_TRUE(one_by_one.cycle(b).allFinite());
+    ASSERT_EQ(one_by_one.couple(), solve::FactorStatus::ok);
     ASSERT_EQ(at_once.couple(), solve::FactorStatus::ok);
-    EXPECT_EQ(apart.cycle(b), at_once.cycle(b));
+    EXPECT_EQ(one_by_one.cycle(b), at_once.cycle(b));
+}
+
+/// A row of springs leaves the upper block a turn about it.
+TEST_F(Multigrid, SaysThatABodyIsHeldByTooLittle) {
+    const Blocks blocks(6, 1);
+    EXPECT_EQ(blocks.couple(1, 0), solve::FactorStatus::singular);
+    EXPECT_EQ(blocks.couple(1, 5), solve::FactorStatus::singular);
+    EXPECT_EQ(blocks.couple(1, 6), solve::FactorStatus::ok);
+    EXPECT_EQ(blocks.couple(1e-6), solve::FactorStatus::ok);
 }
 
 TEST_F(Multigrid, FollowsNewValuesOnTheSameGrids) {

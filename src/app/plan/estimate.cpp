@@ -83,7 +83,7 @@ bool grows(const Plan& plan) {
 
 double bytes(const Plan& plan, bool multigrid, bool condensed) {
     constexpr double program = 2.8e7;     // libraries, before anything is read
-    constexpr double by_multigrid = 5300; // an unknown, PETSc's copies and all
+    constexpr double by_multigrid = 2200; // an unknown: blocks in single precision, coarser grids, GMRES
     constexpr double element = 2000;      // mesh, surfaces, search
     double sum = program;
     for (const PlanItem& item : plan.items)

@@ -86,7 +86,7 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
         : couplings   ? "unsymmetric tangent of couplings under moments"
         : unsymmetric ? "unsymmetric tangent of finite strain in dynamics"
                       : "the tangent is symmetric");
-    constexpr double copies = 5; // of the stiffness: with springs and without, PETSc's, coarser ones
+    constexpr double copies = 2; // of the stiffness: blocks in single precision, interpolation, coarser ones
     list.set_cost("multigrid", {copies * bytes_of(plan.model.K), 0, {}});
     list.set_cost("condensation", {cost.bytes, cost.condensed, "operations once"});
     list.set_cost("Cholesky factorisation", {0, cost.factorising, "operations each"});

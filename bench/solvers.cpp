@@ -54,8 +54,8 @@ void assemble(benchmark::State& state) {
 
 void residual(benchmark::State& state) {
     const Block block(static_cast<int>(state.range(0)));
-    const std::vector<Vec3> u(block.model.X.size(), Vec3::Ones());
-    std::vector<Vec3> f(u.size(), Vec3::Zero());
+    const Field u(block.model.X.size(), Vec3::Ones());
+    Field f(u.size());
     measure(state, block, [&] { block.model.K.multiply_add(u, f, 1); });
 }
 
@@ -103,7 +103,8 @@ void apply_condensed(benchmark::State& state) {
 void apply_multigrid(benchmark::State& state) {
     const Block block(static_cast<int>(state.range(0)));
     const auto solver = solve::make_multigrid(model::nodal_unknowns(block.model, *block.constraints));
-    (void)solver->factorise(block.stiffness->matrix(), [&] { return block.stiffness->values_of(block.model.K); });
+    solver->coarsen(block.model.K.view());
+    (void)solver->couple({});
     const Vector b = Vector::Ones(block.constraints->equations());
     Vector x(b.size());
     measure(state, block, [&] { solver->cycle(b.data(), x.data()); });

@@ -125,27 +125,18 @@ public:
     }
 
 private:
-    static PetscErrorCode multiply(Mat matrix, Vec from, Vec to) noexcept {
-        FineGrid* grid = nullptr;
-        const PetscErrorCode code = MatShellGetContext(matrix, &grid);
-        return code != 0 ? code : with_values(from, to, [&](const double* x, double* y) { grid->multiply(x, y); });
+    /// A shell's product, by a member of the object that it wraps.
+    template <class Wrapped, void (Wrapped::*act)(const double*, double*) const>
+    static PetscErrorCode product(Mat matrix, Vec from, Vec to) noexcept {
+        Wrapped* wrapped = nullptr;
+        const PetscErrorCode code = MatShellGetContext(matrix, &wrapped);
+        return code != 0 ? code : with_values(from, to, [&](const double* x, double* y) { (wrapped->*act)(x, y); });
     }
     static PetscErrorCode scale(PC scaling, Vec from, Vec to) noexcept {
         FineGrid* grid = nullptr;
         const PetscErrorCode code = PCShellGetContext(scaling, &grid);
         return code != 0 ? code : with_values(from, to, [&](const double* x, double* y) { grid->scale(x, y); });
     }
-    static PetscErrorCode interpolate(Mat matrix, Vec from, Vec to) noexcept {
-        Prolongation* P = nullptr;
-        const PetscErrorCode code = MatShellGetContext(matrix, &P);
-        return code != 0 ? code : with_values(from, to, [&](const double* c, double* x) { P->to_fine(c, x); });
-    }
-    static PetscErrorCode restrict(Mat matrix, Vec from, Vec to) noexcept {
-        Prolongation* P = nullptr;
-        const PetscErrorCode code = MatShellGetContext(matrix, &P);
-        return code != 0 ? code : with_values(from, to, [&](const double* x, double* c) { P->to_coarse(x, c); });
-    }
-
     static void changed(Mat matrix) {
         check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
         check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
@@ -234,12 +225,15 @@ private:
     void wrap_fine() {
         const PetscInt n = 3 * nodes_.size(), coarse = coarse_->rows();
         check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &*fine_, &smoothed_));
-        check(MatShellSetOperation(smoothed_, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+        check(MatShellSetOperation(smoothed_, MATOP_MULT,
+                                   reinterpret_cast<void (*)()>(product<FineGrid, &FineGrid::multiply>)));
         check(MatSetOption(smoothed_, MAT_SPD, PETSC_TRUE));
         check(MatCreateVecs(smoothed_, &x_, &b_));
         check(MatCreateShell(PETSC_COMM_SELF, n, coarse, n, coarse, &*P_, &to_fine_));
-        check(MatShellSetOperation(to_fine_, MATOP_MULT, reinterpret_cast<void (*)()>(interpolate)));
-        check(MatShellSetOperation(to_fine_, MATOP_MULT_TRANSPOSE, reinterpret_cast<void (*)()>(restrict)));
+        check(MatShellSetOperation(to_fine_, MATOP_MULT,
+                                   reinterpret_cast<void (*)()>(product<Prolongation, &Prolongation::to_fine>)));
+        check(MatShellSetOperation(to_fine_, MATOP_MULT_TRANSPOSE,
+                                   reinterpret_cast<void (*)()>(product<Prolongation, &Prolongation::to_coarse>)));
     }
 
     void make_cycle() {

@@ -97,17 +97,18 @@ void CoarseMatrix::take(const NodalMatrix& bodies) {
     }
 }
 
-bool CoarseMatrix::couple(std::span<const NodalBlock> coupling) {
+bool CoarseMatrix::couple(const Coupling& coupling) {
     const auto for_each = [&](auto&& each) {
-        for (const NodalBlock& b : coupling) {
-            const Index i = nodes_.number(b.row), j = nodes_.number(b.column);
-            for (Index k = i < 0 || j < 0 ? 0 : P_.row_begin(i); k < (i < 0 || j < 0 ? 0 : P_.row_end(i)); ++k)
-                for (Index n = P_.row_begin(j); n < P_.row_end(j); ++n) each(b, i, k, j, n);
-        }
+        for (Index r = 0; r < coupling.rows(); ++r)
+            for (Index b = coupling.begin(r); b < coupling.end(r); ++b) {
+                const Index i = coupling.row(r), j = coupling.column(b);
+                for (Index k = P_.row_begin(i); k < P_.row_end(i); ++k)
+                    for (Index n = P_.row_begin(j); n < P_.row_end(j); ++n) each(coupling.block(b), i, k, j, n);
+            }
     };
     Neighbours more(static_cast<std::size_t>(P_.aggregates()));
     bool grown = false;
-    for_each([&](const NodalBlock&, Index, Index k, Index, Index n) {
+    for_each([&](const Mat3&, Index, Index k, Index, Index n) {
         const Index row = P_.aggregate(k), column = P_.aggregate(n);
         if (const std::size_t at = slot(row, column); at < start_[row + 1] && neighbour_[at] == column) return;
         more[row].push_back(column);
@@ -133,9 +134,9 @@ bool CoarseMatrix::couple(std::span<const NodalBlock> coupling) {
             }
     }
     value_ = bodies_;
-    for_each([&](const NodalBlock& b, Index i, Index k, Index j, Index n) {
+    for_each([&](const Mat3& block, Index i, Index k, Index j, Index n) {
         const Index row = P_.aggregate(k);
-        add(row, slot(row, P_.aggregate(n)), P_.block(i, k).transpose() * (b.value * P_.block(j, n)), value_);
+        add(row, slot(row, P_.aggregate(n)), P_.block(i, k).transpose() * (block * P_.block(j, n)), value_);
     });
     mend();
     return grown;

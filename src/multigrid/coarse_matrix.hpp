@@ -17,7 +17,7 @@ public:
     void take(const NodalMatrix& bodies);
     /// Sum of the bodies' last values and a coupling.
     /// @returns  whether the pattern has grown
-    bool couple(std::span<const NodalBlock> coupling);
+    bool couple(const Coupling& coupling);
     /// Whether some motion of bodies without strain costs no energy. Only such a motion can: the energy of the bodies and that of
     /// their coupling are never negative.
     [[nodiscard]] bool loose() const;

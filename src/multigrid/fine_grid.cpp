@@ -3,14 +3,68 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
+#include <utility>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 namespace osculate::solve {
 namespace {
 
-using Four [[gnu::vector_size(32)]] = double;
-using FourSingle [[gnu::vector_size(16)]] = float;
+auto at(auto* x, Index i) {
+    using Map = std::conditional_t<std::is_const_v<std::remove_pointer_t<decltype(x)>>, const Vec3, Vec3>;
+    return Eigen::Map<Map>(x + 3 * static_cast<std::size_t>(i));
+}
+
+/// Some rows of a matrix in single precision.
+struct Rows {
+    const Index *begin, *end; ///< where each starts, and where the last ends
+    const Index* column;      ///< of all rows
+    const float* value;
+};
+
+/// to_i = (A x)_i of these rows, one after the other.
+void multiply_by_one(const Rows& A, const double* x, double* to) {
+    for (const Index* start = A.begin; start != A.end; ++start, to += 3) {
+        double sum[3] = {};
+        for (Index k = start[0]; k < start[1]; ++k) {
+            const double* from = x + 3 * static_cast<std::size_t>(A.column[k]);
+            const float* value = A.value + 9 * static_cast<std::size_t>(k);
+            for (std::size_t c = 0; c < 3; ++c, value += 3)
+                for (std::size_t r = 0; r < 3; ++r) sum[r] += static_cast<double>(value[r]) * from[c];
+        }
+        std::copy(sum, sum + 3, to);
+    }
+}
+
+#if defined(__x86_64__)
+/// The same sums, three at a time.
+[[gnu::target("avx2")]] void multiply_by_four(const Rows& A, const double* x, double* to) {
+    for (const Index* start = A.begin; start != A.end; ++start, to += 3) {
+        __m256d sum = _mm256_setzero_pd();
+        const float* value = A.value + 9 * static_cast<std::size_t>(start[0]);
+        for (Index k = start[0]; k < start[1]; ++k) {
+            const double* from = x + 3 * static_cast<std::size_t>(A.column[k]);
+            for (std::size_t c = 0; c < 3; ++c, value += 3) // the fourth value is the next column's
+                sum = _mm256_add_pd(sum,
+                                    _mm256_mul_pd(_mm256_cvtps_pd(_mm_loadu_ps(value)), _mm256_broadcast_sd(from + c)));
+        }
+        _mm_storeu_pd(to, _mm256_castpd256_pd128(sum));
+        _mm_store_sd(to + 2, _mm256_extractf128_pd(sum, 1));
+    }
+}
+#endif
+
+void multiply(const Rows& A, const double* x, double* to) {
+#if defined(__x86_64__)
+    static const auto by_this_processor = __builtin_cpu_supports("avx2") ? multiply_by_four : multiply_by_one;
+    by_this_processor(A, x, to);
+#else
+    multiply_by_one(A, x, to);
+#endif
+}
 
 } // namespace
 
@@ -41,86 +95,73 @@ void FineGrid::take(const NodalMatrix& bodies) {
     largest_of_bodies_ = estimate(all);
 }
 
-void FineGrid::couple(std::span<const NodalBlock> coupling) {
-    coupling_.clear();
+void FineGrid::couple(Coupling coupling) {
+    coupling_ = std::move(coupling);
     inverse_ = diagonal_;
-    for (const NodalBlock& b : coupling) {
-        const Index i = nodes_.number(b.row), j = nodes_.number(b.column);
-        if (i < 0 || j < 0) continue;
-        coupling_.push_back({i, j, nodes_.projected(i, j, b.value)});
-        if (i == j) inverse_[i] += coupling_.back().value;
+    std::vector<char> is_near(static_cast<std::size_t>(size()),
+                              0); // stiff springs show in their nodes and next to them
+    for (Index r = 0; r < coupling_.rows(); ++r) {
+        const Index i = coupling_.row(r);
+        for (Index k = coupling_.begin(r); k < coupling_.end(r); ++k)
+            if (coupling_.column(k) == i) inverse_[i] += coupling_.block(k);
+        for (Index k = start_[i]; k < start_[i + 1]; ++k) is_near[node_[k]] = 1;
     }
     for (Mat3& D : inverse_) D = D.inverse().eval();
 
-    std::vector<Index> near; // stiff springs show in their nodes and next to them
-    for (const NodalBlock& b : coupling_)
-        near.insert(near.end(), node_.begin() + start_[b.row], node_.begin() + start_[b.row + 1]);
-    std::ranges::sort(near);
-    near.erase(std::unique(near.begin(), near.end()), near.end());
+    std::vector<Index> near;
+    for (Index i = 0; i < size(); ++i)
+        if (is_near[i] != 0) near.push_back(i);
     largest_of_coupled_ = near.empty() ? 0 : estimate(near);
 }
 
-namespace {
-
-/// The next row of a matrix times x; `value` goes on to the row after it.
-[[gnu::always_inline]] inline void multiply_row(std::span<const Index> nodes, const float*& value, const double* x,
-                                                double* y) {
-    Four sum{};
-    for (const Index node : nodes) {
-        const double* from = x + 3 * static_cast<std::size_t>(node);
-        for (std::size_t k = 0; k < 3; ++k, value += 3) {
-            FourSingle column;
-            std::memcpy(&column, value, sizeof column); // the fourth is the next column's
-            sum += __builtin_convertvector(column, Four) * from[k];
-        }
-    }
-    for (std::size_t k = 0; k < 3; ++k) y[k] = sum[k];
-}
-
-} // namespace
-
-[[gnu::target_clones("avx2", "default")]] void FineGrid::multiply(const double* x, double* y) const {
-    const float* value = value_.data();
-    for (std::size_t i = 0; i + 1 < start_.size(); ++i)
-        multiply_row({node_.data() + start_[i], node_.data() + start_[i + 1]}, value, x, y + 3 * i);
-    add_coupling(x, y);
-}
-
-void FineGrid::multiply_rows(std::span<const Index> rows, const double* x, double* y) const {
-    for (const Index i : rows) {
-        const float* value = value_.data() + 9 * static_cast<std::size_t>(start_[i]);
-        multiply_row({node_.data() + start_[i], node_.data() + start_[i + 1]}, value, x,
-                     y + 3 * static_cast<std::size_t>(i));
+template <class Each> void FineGrid::for_rows(const double* x, Each&& each) const {
+    constexpr Index at_once = 128; // their products stay in the cache
+    double product[3 * at_once];
+    Index r = 0;
+    for (Index first = 0; first < size(); first += at_once) {
+        const Index last = std::min(first + at_once, size());
+        multiply({start_.data() + first, start_.data() + last, node_.data(), value_.data()}, x, product);
+        for (; r < coupling_.rows() && coupling_.row(r) < last; ++r)
+            for (Index k = coupling_.begin(r); k < coupling_.end(r); ++k)
+                at(product, coupling_.row(r) - first) += coupling_.block(k) * at(x, coupling_.column(k));
+        for (Index i = first; i < last; ++i) each(i, at(std::as_const(product), i - first));
     }
 }
 
-void FineGrid::add_coupling(const double* x, double* y) const {
-    for (const NodalBlock& b : coupling_)
-        Eigen::Map<Vec3>(y + 3 * static_cast<std::size_t>(b.row)) +=
-            b.value * Eigen::Map<const Vec3>(x + 3 * static_cast<std::size_t>(b.column));
+void FineGrid::residual(const double* b, const double* x, double* r) const {
+    for_rows(x, [&](Index i, const Vec3& Ax) { at(r, i) = at(b, i) - Ax; });
 }
 
-void FineGrid::scale(const double* x, double* y) const {
-    for (std::size_t i = 0; i < inverse_.size(); ++i)
-        Eigen::Map<Vec3>(y + 3 * i) = inverse_[i] * Eigen::Map<const Vec3>(x + 3 * i);
+void FineGrid::sweep(const double* b, const double* x, const double* before, double momentum, double step,
+                     double* to) const {
+    for_rows(x, [&](Index i, const Vec3& Ax) {
+        const Vec3 moved = before == nullptr ? Vec3(at(x, i)) : Vec3(at(x, i) - at(before, i));
+        at(to, i) = at(x, i) + momentum * moved + step * (inverse_[i] * (at(b, i) - Ax));
+    });
+}
+
+void FineGrid::first_sweep(const double* b, double step, double* to) const {
+    for (Index i = 0; i < size(); ++i) at(to, i) = step * (inverse_[i] * at(b, i));
 }
 
 double FineGrid::estimate(std::span<const Index> rows) const {
     constexpr int iterations = 12;
     constexpr double short_of_it = 1.1; // what these iterations lack
     Vector x = Vector::Zero(3 * size()), y(x.size());
-    const auto at = [](Vector& v, Index i) { return v.segment<3>(3 * i); };
     for (const Index i : rows)
-        for (Index k = 0; k < 3; ++k) at(x, i)(k) = std::sin(1.0 + 7.0 * (3 * i + k)); // rich in all frequencies
+        for (Index k = 0; k < 3; ++k) at(x.data(), i)(k) = std::sin(1.0 + 7.0 * (3 * i + k)); // rich in all frequencies
     double largest = 0;
     for (int iteration = 0; iteration < iterations; ++iteration) {
         double squares = 0;
-        for (const Index i : rows) squares += at(x, i).squaredNorm();
+        for (const Index i : rows) squares += at(x.data(), i).squaredNorm();
         largest = std::sqrt(squares);
-        for (const Index i : rows) at(x, i) /= largest;
-        multiply_rows(rows, x.data(), y.data());
-        add_coupling(x.data(), y.data());
-        for (const Index i : rows) at(x, i) = inverse_[i] * at(y, i);
+        for (const Index i : rows) at(x.data(), i) /= largest;
+        for (const Index i : rows)
+            multiply({&start_[i], &start_[i] + 1, node_.data(), value_.data()}, x.data(), &at(y.data(), i)(0));
+        for (Index r = 0; r < coupling_.rows(); ++r)
+            for (Index k = coupling_.begin(r); k < coupling_.end(r); ++k)
+                at(y.data(), coupling_.row(r)) += coupling_.block(k) * at(x.data(), coupling_.column(k));
+        for (const Index i : rows) at(x.data(), i) = inverse_[i] * at(y.data(), i);
     }
     return short_of_it * largest;
 }

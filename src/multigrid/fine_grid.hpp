@@ -1,7 +1,7 @@
 #pragma once
 /// The matrix of the finest grid and its smoother's preconditioner.
 
-#include "multigrid/free_nodes.hpp"
+#include "multigrid/coupling.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -17,11 +17,15 @@ public:
     FineGrid(const FreeNodes& nodes, const NodalMatrix& bodies);
     /// Takes the values of the bodies.
     void take(const NodalMatrix& bodies);
-    void couple(std::span<const NodalBlock> coupling);
-    /// y = A x over (3 n) global components
-    void multiply(const double* x, double* y) const;
-    /// y = D^-1 x, where D is the block diagonal of A
-    void scale(const double* x, double* y) const;
+    void couple(Coupling coupling);
+    /// r = b - A x over (3 n) global components
+    void residual(const double* b, const double* x, double* r) const;
+    /// One sweep of a smoother, with one reading of A: to = x + momentum (x - before) + step D^-1 (b - A x), where D is the
+    /// block diagonal of A.
+    /// @param before  may be `to`; null: zeros
+    void sweep(const double* b, const double* x, const double* before, double momentum, double step, double* to) const;
+    /// The first sweep from zero: to = step D^-1 b
+    void first_sweep(const double* b, double step, double* to) const;
     /// Estimate of the largest eigenvalue of D^-1 A: that of the bodies alone, or of coupled nodes and their neighbours.
     [[nodiscard]] double largest_eigenvalue() const { return std::max(largest_of_bodies_, largest_of_coupled_); }
 
@@ -29,10 +33,9 @@ public:
     [[nodiscard]] const Mat3& inverse_diagonal(Index i) const { return inverse_[i]; }
 
 private:
-    /// y = A x at nodes of a list, of the bodies alone
-    void multiply_rows(std::span<const Index> rows, const double* x, double* y) const;
-    void add_coupling(const double* x, double* y) const;
-    /// Of the rows and columns of some nodes.
+    /// Calls each(i, (A x)_i) for all rows.
+    template <class Each> void for_rows(const double* x, Each&& each) const;
+    /// Of the rows and columns of some nodes, ascending.
     [[nodiscard]] double estimate(std::span<const Index> rows) const;
 
     const FreeNodes& nodes_;
@@ -41,7 +44,7 @@ private:
     std::vector<float> value_;        ///< (9 blocks, and one) by columns
     std::vector<Mat3> diagonal_;      ///< (n) D_K
     std::vector<Mat3> inverse_;       ///< (n) D^-1, D of the sum
-    std::vector<NodalBlock> coupling_;
+    Coupling coupling_;
 };
 
 } // namespace osculate::solve

@@ -35,19 +35,7 @@ constexpr PetscInt sweeps = 2; // of a smoother, before and after
 constexpr double lower = 0.3,
                  upper = 1.1; // what it damps, over the largest eigenvalue: 0.1 costs a fifth more iterations
 
-/// Calls act(x, y) with the values of two vectors. PETSc, which is C, calls these: errors go back as codes.
-PetscErrorCode with_values(Vec from, Vec to, auto&& act) noexcept {
-    const double* x = nullptr;
-    double* y = nullptr;
-    PetscErrorCode code = VecGetArrayRead(from, &x);
-    if (code == 0) code = VecGetArrayWrite(to, &y);
-    if (code != 0) return code;
-    act(x, y);
-    code = VecRestoreArrayWrite(to, &y);
-    return code != 0 ? code : VecRestoreArrayRead(from, &x);
-}
-
-/// The finest grid and the next are ours, in blocks of nodes; PETSc's GAMG goes on from there, and cycles over all.
+/// The finest grid and the next are ours, in blocks of nodes; PETSc's GAMG goes on from there.
 class Gamg final : public Multigrid {
 public:
     explicit Gamg(NodalUnknowns unknowns) : unknowns_(std::move(unknowns)), nodes_(unknowns_) { begin_petsc(); }
@@ -63,8 +51,8 @@ public:
         coarse_->couple({});
         wrap_coarse();
         choose_grids();
-        wrap_fine();
         make_cycle();
+        for (Vector* v : {&b_, &x_, &other_}) v->resize(3 * nodes_.size());
     }
 
     void take(const NodalMatrix& bodies) override {
@@ -72,17 +60,15 @@ public:
         coarse_->take(bodies);
     }
 
-    FactorStatus couple(std::span<const NodalBlock> coupling) override {
-        fine_->couple(coupling);
-        changed(smoothed_);
+    FactorStatus couple(std::span<const NodalBlock> blocks) override {
+        Coupling coupling(nodes_, blocks);
         const bool grown = coarse_->couple(coupling);
+        fine_->couple(std::move(coupling));
         if (grown) {
             wrap_coarse();
             make_cycle(); // that of another pattern keeps some of it
         }
         if (coarse_->loose()) return FactorStatus::singular;
-        const double largest = fine_->largest_eigenvalue();
-        check(KSPChebyshevSetEigenvalues(smoother_, upper * largest, lower * largest));
         changed(below_.back());
         for (std::size_t level = below_.size(); level-- > 0;) {
             Mat& A = below_[level];
@@ -96,46 +82,49 @@ public:
             check(PCMGGetSmoother(cycle_, static_cast<PetscInt>(level), &smoother));
             check(KSPSetOperators(smoother, A, A));
         }
-        check(PCSetOperators(cycle_, smoothed_, smoothed_));
+        check(PCSetOperators(cycle_, below_.back(), below_.back()));
         const PetscErrorCode code = PCSetUp(cycle_);
         if (code == PETSC_ERR_MAT_LU_ZRPVT || code == PETSC_ERR_MAT_CH_ZRPVT) return FactorStatus::singular;
         check(code);
         return FactorStatus::ok;
     }
 
+    /// Chebyshev's polynomial of the second degree before and after the coarser grids (Saad, Iterative Methods, algorithm 12.1).
     void cycle(const double* b, double* x) override {
-        double* from = nullptr;
-        const double* to = nullptr;
-        check(VecGetArrayWrite(b_, &from));
+        const double largest = fine_->largest_eigenvalue(), centre = (upper + lower) / 2 * largest,
+                     half = (upper - lower) / 2 * largest, rho = 1 / (2 * centre / half - half / centre);
+        const double first = 1 / centre, momentum = rho * half / centre, second = 2 * rho / half;
         for (std::size_t i = 0; i < unknowns_.node.size(); ++i) {
             Vec3 local = Vec3::Zero();
             for (std::size_t k = 0; k < 3; ++k)
                 if (const SparseIndex e = unknowns_.equation[3 * i + k]; e >= 0) local(static_cast<Index>(k)) = b[e];
-            Eigen::Map<Vec3>(from + 3 * i) = unknowns_.frame[i] * local;
+            b_.segment<3>(3 * static_cast<Index>(i)) = unknowns_.frame[i] * local;
         }
-        check(VecRestoreArrayWrite(b_, &from));
-        check(PCApply(cycle_, b_, x_));
-        check(VecGetArrayRead(x_, &to));
+        fine_->first_sweep(b_.data(), first, x_.data());
+        fine_->sweep(b_.data(), x_.data(), nullptr, momentum, second, other_.data());
+        fine_->residual(b_.data(), other_.data(), x_.data());
+        correct(x_, other_);
+        fine_->sweep(b_.data(), other_.data(), other_.data(), 0, first, x_.data());
+        fine_->sweep(b_.data(), x_.data(), other_.data(), momentum, second, other_.data());
         for (std::size_t i = 0; i < unknowns_.node.size(); ++i) {
-            const Vec3 local = unknowns_.frame[i].transpose() * Eigen::Map<const Vec3>(to + 3 * i);
+            const Vec3 local = unknowns_.frame[i].transpose() * other_.segment<3>(3 * static_cast<Index>(i));
             for (std::size_t k = 0; k < 3; ++k)
                 if (const SparseIndex e = unknowns_.equation[3 * i + k]; e >= 0) x[e] = local(static_cast<Index>(k));
         }
-        check(VecRestoreArrayRead(x_, &to));
     }
 
 private:
-    /// A shell's product, by a member of the object that it wraps.
-    template <class Wrapped, void (Wrapped::*act)(const double*, double*) const>
-    static PetscErrorCode product(Mat matrix, Vec from, Vec to) noexcept {
-        Wrapped* wrapped = nullptr;
-        const PetscErrorCode code = MatShellGetContext(matrix, &wrapped);
-        return code != 0 ? code : with_values(from, to, [&](const double* x, double* y) { (wrapped->*act)(x, y); });
-    }
-    static PetscErrorCode scale(PC scaling, Vec from, Vec to) noexcept {
-        FineGrid* grid = nullptr;
-        const PetscErrorCode code = PCShellGetContext(scaling, &grid);
-        return code != 0 ? code : with_values(from, to, [&](const double* x, double* y) { grid->scale(x, y); });
+    /// x += P of the coarser grids' answer to a residual.
+    void correct(const Vector& residual, Vector& x) {
+        double* to = nullptr;
+        check(VecGetArrayWrite(coarse_residual_, &to));
+        P_->to_coarse(residual.data(), to);
+        check(VecRestoreArrayWrite(coarse_residual_, &to));
+        check(PCApply(cycle_, coarse_residual_, correction_));
+        const double* from = nullptr;
+        check(VecGetArrayRead(correction_, &from));
+        P_->add_to_fine(from, x.data());
+        check(VecRestoreArrayRead(correction_, &from));
     }
     static void changed(Mat matrix) {
         check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -190,6 +179,8 @@ private:
             std::copy(Q.col(c).data(), Q.col(c).data() + Q.rows(), to);
             check(VecRestoreArrayWrite(v, &to));
         }
+        check(VecDuplicate(like, &coarse_residual_));
+        check(VecDuplicate(like, &correction_));
         check(VecDestroy(&like));
         MatNullSpace space = nullptr;
         check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, static_cast<PetscInt>(basis.size()), basis.data(),
@@ -221,24 +212,10 @@ private:
         below_.insert(below_.begin(), interpolation_.size(), nullptr);
     }
 
-    /// The finest grid and the interpolation to it in shells.
-    void wrap_fine() {
-        const PetscInt n = 3 * nodes_.size(), coarse = coarse_->rows();
-        check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &*fine_, &smoothed_));
-        check(MatShellSetOperation(smoothed_, MATOP_MULT,
-                                   reinterpret_cast<void (*)()>(product<FineGrid, &FineGrid::multiply>)));
-        check(MatSetOption(smoothed_, MAT_SPD, PETSC_TRUE));
-        check(MatCreateVecs(smoothed_, &x_, &b_));
-        check(MatCreateShell(PETSC_COMM_SELF, n, coarse, n, coarse, &*P_, &to_fine_));
-        check(MatShellSetOperation(to_fine_, MATOP_MULT,
-                                   reinterpret_cast<void (*)()>(product<Prolongation, &Prolongation::to_fine>)));
-        check(MatShellSetOperation(to_fine_, MATOP_MULT_TRANSPOSE,
-                                   reinterpret_cast<void (*)()>(product<Prolongation, &Prolongation::to_coarse>)));
-    }
-
+    /// Of all grids but the finest.
     void make_cycle() {
         PCDestroy(&cycle_);
-        const auto levels = static_cast<PetscInt>(below_.size()) + 1;
+        const auto levels = static_cast<PetscInt>(below_.size());
         check(PCCreate(PETSC_COMM_SELF, &cycle_));
         check(PCSetType(cycle_, PCMG));
         check(PCMGSetLevels(cycle_, levels, nullptr));
@@ -256,15 +233,8 @@ private:
             }
             check(KSPSetType(smoother, KSPCHEBYSHEV));
             check(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, sweeps));
-            const bool finest = level == levels - 1;
-            check(PCMGSetInterpolation(cycle_, level,
-                                       finest ? to_fine_ : interpolation_[static_cast<std::size_t>(level - 1)]));
-            check(PCSetType(pc, finest ? PCSHELL : PCPBJACOBI));
-            if (!finest) continue;
-            smoother_ = smoother;
-            check(PCShellSetContext(pc, &*fine_));
-            check(PCShellSetApply(pc, scale));
-            check(KSPSetOperators(smoother, smoothed_, smoothed_));
+            check(PCMGSetInterpolation(cycle_, level, interpolation_[static_cast<std::size_t>(level - 1)]));
+            check(PCSetType(pc, PCPBJACOBI));
         }
     }
 
@@ -274,10 +244,8 @@ private:
         for (Mat& A : below_) MatDestroy(&A);
         interpolation_.clear();
         below_.clear();
-        VecDestroy(&b_);
-        VecDestroy(&x_);
-        MatDestroy(&to_fine_);
-        MatDestroy(&smoothed_);
+        VecDestroy(&coarse_residual_);
+        VecDestroy(&correction_);
         coarse_.reset();
         P_.reset();
         fine_.reset();
@@ -288,12 +256,11 @@ private:
     std::optional<FineGrid> fine_;
     std::optional<Prolongation> P_;
     std::optional<CoarseMatrix> coarse_;
-    Mat smoothed_ = nullptr, to_fine_ = nullptr; ///< of fine_ and P_
     std::vector<Mat> below_;         ///< by level, 0 the coarsest, without the finest grid; last that of coarse_
     std::vector<Mat> interpolation_; ///< from level i to i + 1 of these
     PC cycle_ = nullptr;
-    KSP smoother_ = nullptr; ///< of the finest grid, cycle_ owns it
-    Vec b_ = nullptr, x_ = nullptr;
+    Vec coarse_residual_ = nullptr, correction_ = nullptr;
+    Vector b_, x_, other_; ///< (3 n)
 };
 
 } // namespace

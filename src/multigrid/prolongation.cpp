@@ -72,7 +72,7 @@ Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const F
     }
 }
 
-void Prolongation::to_fine(const double* c, double* x) const {
+void Prolongation::add_to_fine(const double* c, double* x) const {
     const float* value = value_.data();
     for (Index i = 0; i < nodes_.size(); ++i) {
         Vec3 sum = Vec3::Zero();
@@ -81,7 +81,7 @@ void Prolongation::to_fine(const double* c, double* x) const {
             for (Index r = 0; r < 3; ++r)
                 for (Index m = 0; m < modes; ++m) sum(r) += static_cast<double>(*value++) * from[m];
         }
-        Eigen::Map<Vec3>(x + 3 * static_cast<std::size_t>(i)) =
+        Eigen::Map<Vec3>(x + 3 * static_cast<std::size_t>(i)) +=
             nodes_.whole(i) ? sum : Vec3(nodes_.projection(i) * sum);
     }
 }

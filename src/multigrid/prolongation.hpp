@@ -29,8 +29,8 @@ public:
             Eigen::Map<const Stored>(value_.data() + stored * static_cast<std::size_t>(entry)).cast<double>();
         return nodes_.whole(i) ? value : Block(nodes_.projection(i) * value);
     }
-    /// x = P c, x (3 n) in global components
-    void to_fine(const double* c, double* x) const;
+    /// x += P c, x (3 n) in global components
+    void add_to_fine(const double* c, double* x) const;
     /// c = P^T x
     void to_coarse(const double* x, double* c) const;
 

@@ -77,8 +77,9 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
         progress_.dt = stage.duration / stage.steps; // not end - begin: round-off would make every step another one
     }
     if (dynamics_ && progress_.state.v.empty())
-        start_motion(context_, stage, constraints_,
-                     load_at(model, stage, constraints_, progress_.displacement_start, 0), progress_);
+        start_motion(
+            context_, stage, constraints_, load_at(model, stage, constraints_, progress_.displacement_start, 0),
+            machinery_->choice.multigrid ? MassSolution::by_conjugate_gradients : MassSolution::by_factors, progress_);
     else if (dynamics_ && from == nullptr)
         revalue_interfaces(progress_.ledger, model, progress_.state);
     if (dynamics_) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);

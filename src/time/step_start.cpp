@@ -3,7 +3,6 @@
 #include "osculate/core/error.hpp"
 #include "osculate/core/rounded_sum.hpp"
 #include "osculate/equilibrium/coupling_start.hpp"
-#include "osculate/linear/folded_matrix.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 
@@ -236,69 +235,8 @@ StabilisationOptions stabilisation_options(RunContext& context, const model::Sta
     return how;
 }
 
-namespace {
-Field initial_acceleration(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
-                           const model::State& state, const Field& force) {
-    const model::Model& model = context.model;
-    const equilibrium::Dynamics& dynamics = *stage.dynamics;
-    const linear::BlockMatrix& all_mass = model.mass(dynamics.lumped_mass);
-    const auto n = static_cast<std::size_t>(model.nodes());
-    const Field own = equilibrium::body_forces(model, dynamics, state, context.options.threads);
-    const Field x = sum(model.X, state.u);
-    Field f = force;
-    f.add(-1, own);
-    for (std::size_t p = 0; p < state.contact.size(); ++p) {
-        model::ContactEvaluation evaluation(*state.contact[p].pair);
-        evaluation.begin_step(x, state.contact[p], context.timings, context.options.threads);
-        evaluation.evaluate(x, context.timings, context.options.threads);
-        for (Index j = 0; j < evaluation.pair().size(); ++j)
-            evaluation.for_each_force(j, state.contact[p].lambda[j],
-                                      [&](Index node, const Vec3& own_force) { f[node] += own_force; });
-    }
-    const linear::Dependence coupled = equilibrium::coupled_nodes(model, state);
-    const Field turning = equilibrium::centripetal(model, state);
-    std::optional<linear::FoldedMatrix> folded;
-    if (!coupled.empty()) {
-        Field for_turning(n);
-        all_mass.multiply_add(turning, for_turning, context.options.threads);
-        f.add(-1, for_turning);
-        coupled.fold(f);
-        folded.emplace(coupled, all_mass);
-        folded->fold(all_mass);
-    }
-    const linear::BlockMatrix& M = folded ? folded->matrix() : all_mass;
-    linear::PenaltyStiffness free_mass(constraints, M);
-    free_mass.set_springs({});
-    const auto solver = solve::make_cholesky();
-    // nodes without mass have no acceleration of their own
-    solve::SparseMatrix matrix = free_mass.matrix();
-    const double heaviest = matrix.value.empty() ? 0 : *std::ranges::max_element(matrix.value);
-    std::vector<char> empty(static_cast<std::size_t>(constraints.equations()), 0);
-    for (solve::SparseIndex i = 0; i < matrix.rows(); ++i)
-        for (solve::SparseIndex k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
-            if (matrix.column[k] == i && matrix.value[k] == 0) {
-                matrix.value[k] = heaviest > 0 ? heaviest : 1;
-                empty[static_cast<std::size_t>(i)] = 1;
-            }
-    if (solver->factorise(matrix) != solve::FactorStatus::ok)
-        throw RunFailure("stage '" + stage.name + "': the mass matrix is not positive definite");
-    Vector right(constraints.equations()), a(constraints.equations());
-    constraints.gather(f, right);
-    for (Index i = 0; i < right.size(); ++i)
-        if (empty[static_cast<std::size_t>(i)] != 0) right(i) = 0;
-    solver->solve(right.data(), a.data());
-    Field result(n);
-    constraints.scatter(a, Field(n), result);
-    if (!coupled.empty()) {
-        coupled.move(result);
-        result.add(1, turning);
-    }
-    return result;
-}
-} // namespace
-
 void start_motion(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
-                  equilibrium::StepLoad load, Progress& progress) {
+                  equilibrium::StepLoad load, MassSolution mass, Progress& progress) {
     const model::Model& model = context.model;
     model::State& state = progress.state;
     // a later one, after statics, starts at rest
@@ -314,7 +252,7 @@ void start_motion(RunContext& context, const Stage& stage, const linear::Constra
     model::move_tied(model, state.v);
     equilibrium::start_couplings(model, constraints, state);
     equilibrium::add_follower_forces(load.pressures, model, state.u, load.force);
-    state.a = initial_acceleration(context, stage, constraints, state, load.force);
+    state.a = initial_acceleration(context, stage, constraints, state, load.force, mass);
     equilibrium::take_accelerations(model, state);
     if (!model.rigid.empty()) {
         if (!moved)

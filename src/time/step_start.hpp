@@ -5,6 +5,7 @@
 #include "osculate/time/progress.hpp"
 #include "osculate/time/solve_ladder.hpp"
 #include "osculate/time/stage.hpp"
+#include "time/initial_acceleration.hpp"
 #include "time/run_context.hpp"
 
 namespace osculate::time {
@@ -30,10 +31,9 @@ void predict(const model::Model& model, const linear::Constraints& constraints, 
 /// @param equilibrium  a throw-away: it is left evaluated
 [[nodiscard]] double imbalance(equilibrium::Equilibrium& equilibrium, const Vector& z,
                                const equilibrium::Statuses& statuses, bool forced);
-/// Velocities, accelerations and ledger at the start of the first dynamic stage after statics, or at all:
-/// M a = f - K u - C v + contact forces of the state, a = 0 along held directions.
+/// Velocities, accelerations and ledger at the start of the first dynamic stage after statics, or at all.
 void start_motion(RunContext& context, const Stage& stage, const linear::Constraints& constraints,
-                  equilibrium::StepLoad load, Progress& progress);
+                  equilibrium::StepLoad load, MassSolution mass, Progress& progress);
 /// Of the last rung of an attempt from a state, which must outlive them, that starts from displacements u.
 [[nodiscard]] StabilisationOptions stabilisation_options(RunContext& context, const model::State& state,
                                                          const Field& u);

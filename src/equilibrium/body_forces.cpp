@@ -133,6 +133,17 @@ model::WorstElement BodyForces::evaluate(const Field& u, Field& f) const {
 
 void BodyForces::add_terms(const Field& u, Field& terms) const {
     const linear::BlockMatrix& A = tangent();
+    if (shared()) {
+        Field own(terms.size());
+        add_own_terms(A, u, own);
+        model_.share->replicate(own);
+        terms.add(1, own);
+    } else {
+        add_own_terms(A, u, terms);
+    }
+}
+
+void BodyForces::add_own_terms(const linear::BlockMatrix& A, const Field& u, Field& terms) const {
     for (Index i = 0; i < A.rows(); ++i) {
         Vec3& sum = terms[static_cast<std::size_t>(i)];
         for (Index k = A.row_begin(i); k < A.row_end(i); ++k)

@@ -26,6 +26,7 @@ FrictionStep::FrictionStep(const linear::Constraints& constraints, const linear:
       stiffness_(constraints, bodies.bodies().tangent()) {}
 
 bool FrictionStep::factorise(const Iterate& at) {
+    if (bodies_.bodies().shared()) return false; // no process has the whole matrix
     (void)bodies_.update_stiffness(at);
     if (folded_) folded_->fold(bodies_.bodies().tangent());
     stiffness_.use(folded_ ? folded_->matrix() : bodies_.bodies().tangent());

@@ -58,6 +58,7 @@ namespace {
 bool goes_by_multigrid(const model::Model& model, LinearSolver asked, bool condensable) {
     constexpr Index many = 20000;      // nodes from which cycles cost less than factors that serve one step
     constexpr Index very_many = 50000; // and less than those that condensation makes once
+    if (model.share) return true;      // no process has the whole matrix
     if (asked != LinearSolver::automatic) return asked == LinearSolver::multigrid;
     return model.nodes() > (condensable ? very_many : many);
 }
@@ -80,7 +81,7 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     const bool contact = !pairs.empty();
     TangentChoice choice;
     choice.multigrid = !model.has_dependent_nodes() && goes_by_multigrid(model, asked, pays);
-    choice.factorisable = !choice.multigrid || model.nodes() <= most;
+    choice.factorisable = !choice.multigrid || (model.nodes() <= most && !model.share);
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned =
         choice.multigrid ||

@@ -7,25 +7,27 @@
 
 namespace osculate::linear {
 
-BlockMatrix::BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements) {
-    std::vector<std::vector<Index>> neighbours(static_cast<std::size_t>(nodes));
+std::vector<std::vector<Index>> neighbours(Index nodes, const std::vector<std::vector<Index>>& elements) {
+    std::vector<std::vector<Index>> rows(static_cast<std::size_t>(nodes));
     for (const auto& element : elements)
-        for (const Index i : element) neighbours[i].insert(neighbours[i].end(), element.begin(), element.end());
-    row_start_.assign(1, 0);
-    row_start_.reserve(static_cast<std::size_t>(nodes) + 1);
-    for (auto& row : neighbours) {
+        for (const Index i : element) rows[i].insert(rows[i].end(), element.begin(), element.end());
+    for (auto& row : rows) {
         std::sort(row.begin(), row.end());
         row.erase(std::unique(row.begin(), row.end()), row.end());
-        column_.insert(column_.end(), row.begin(), row.end());
-        row_start_.push_back(static_cast<Index>(column_.size()));
-        std::vector<Index>().swap(row);
+        row.shrink_to_fit();
     }
-    block_.assign(column_.size(), Mat3::Zero());
+    return rows;
 }
 
-BlockMatrix::BlockMatrix(const std::vector<std::vector<Index>>& columns) {
-    for (const std::vector<Index>& row : columns) {
-        column_.insert(column_.end(), row.begin(), row.end());
+BlockMatrix::BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements)
+    : BlockMatrix(neighbours(nodes, elements)) {}
+
+BlockMatrix::BlockMatrix(const std::vector<std::vector<Index>>& columns, std::shared_ptr<const Share> share)
+    : share_(std::move(share)) {
+    row_start_.reserve(columns.size() + 1);
+    for (std::size_t row = 0; row < columns.size(); ++row) {
+        if (share_ == nullptr || share_->owns(static_cast<Index>(row)))
+            column_.insert(column_.end(), columns[row].begin(), columns[row].end());
         row_start_.push_back(static_cast<Index>(column_.size()));
     }
     set_zero();
@@ -45,7 +47,8 @@ Index BlockMatrix::slot(Index row, Index column) const {
 void BlockMatrix::add(const std::vector<Index>& nodes, const Matrix& element) {
     const auto n = static_cast<Index>(nodes.size());
     for (Index i = 0; i < n; ++i)
-        for (Index j = 0; j < n; ++j) block_[slot(nodes[i], nodes[j])] += element.block<3, 3>(3 * i, 3 * j);
+        for (Index j = 0; j < n && row_begin(nodes[i]) < row_end(nodes[i]); ++j)
+            block_[slot(nodes[i], nodes[j])] += element.block<3, 3>(3 * i, 3 * j);
 }
 
 void BlockMatrix::set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B) {
@@ -53,6 +56,7 @@ void BlockMatrix::set_combination(double a, const BlockMatrix& A, double b, cons
         row_start_ = A.row_start_;
         column_ = A.column_;
         block_.resize(column_.size());
+        share_ = A.share_;
     }
     if (B.empty()) {
         for (std::size_t k = 0; k < block_.size(); ++k) block_[k] = a * A.block_[k];
@@ -62,24 +66,31 @@ void BlockMatrix::set_combination(double a, const BlockMatrix& A, double b, cons
     for (std::size_t k = 0; k < block_.size(); ++k) block_[k] = a * A.block_[k] + b * B.block_[k];
 }
 
-void BlockMatrix::multiply_add(const Field& x, Field& y, int threads) const {
+template <class Row> void BlockMatrix::add_rows(Field& y, int threads, Row&& row) const {
+    Field product(share_ != nullptr ? y.size() : 0);
+    Field& to = share_ != nullptr ? product : y;
     parallel_for(threads, rows(), [&](Index begin, Index end) {
-        for (Index row = begin; row < end; ++row) {
-            Vec3 sum = Vec3::Zero();
-            for (Index k = row_start_[row]; k < row_start_[row + 1]; ++k) sum.noalias() += block_[k] * x[column_[k]];
-            y[row] += sum;
-        }
+        for (Index i = begin; i < end; ++i) to[i] += row(i);
+    });
+    if (share_ == nullptr) return;
+    share_->replicate(product);
+    y.add(1, product);
+}
+
+void BlockMatrix::multiply_add(const Field& x, Field& y, int threads) const {
+    add_rows(y, threads, [&](Index row) {
+        Vec3 sum = Vec3::Zero();
+        for (Index k = row_start_[row]; k < row_start_[row + 1]; ++k) sum.noalias() += block_[k] * x[column_[k]];
+        return sum;
     });
 }
 
 void BlockMatrix::multiply_add_relative(const Field& x, Field& y, int threads) const {
-    parallel_for(threads, rows(), [&](Index begin, Index end) {
-        for (Index row = begin; row < end; ++row) {
-            Vec3 sum = Vec3::Zero();
-            for (Index k = row_start_[row]; k < row_start_[row + 1]; ++k)
-                sum.noalias() += block_[k] * (x[column_[k]] - x[row]);
-            y[row] += sum;
-        }
+    add_rows(y, threads, [&](Index row) {
+        Vec3 sum = Vec3::Zero();
+        for (Index k = row_start_[row]; k < row_start_[row + 1]; ++k)
+            sum.noalias() += block_[k] * (x[column_[k]] - x[row]);
+        return sum;
     });
 }
 

@@ -36,8 +36,7 @@ template <class F> void for_each_element(const Body& body, F&& f) {
 
 } // namespace
 
-namespace {
-linear::BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
+std::vector<std::vector<Index>> neighbours(const std::vector<Body>& bodies, Index nodes) {
     std::vector<std::vector<Index>> elements;
     Index last = 0;
     for (const Body& body : bodies) {
@@ -48,9 +47,8 @@ linear::BlockMatrix pattern_of(const std::vector<Body>& bodies, Index nodes) {
             for_each_element(body, [&](const Element& one) { elements.push_back(one.nodes); });
     }
     for (Index r = last; r + 1 < nodes; r += 2) elements.push_back({r, r + 1}); // of rigid bodies and couplings
-    return {nodes, elements};
+    return linear::neighbours(nodes, elements);
 }
-} // namespace
 
 namespace {
 
@@ -129,7 +127,7 @@ std::optional<std::vector<double>> redistribution(const Body& body, bool lumped,
 
 AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
                             const std::vector<char>& massless) {
-    AssembledMass assembled{pattern_of(bodies, nodes), {}};
+    AssembledMass assembled{linear::BlockMatrix(neighbours(bodies, nodes)), {}};
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const Body& body = bodies[b];
         if (body.rigid) continue;
@@ -159,14 +157,16 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
     return assembled;
 }
 
-linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes) {
-    linear::BlockMatrix K = pattern_of(bodies, nodes);
+linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes,
+                                       const std::shared_ptr<const Share>& share) {
+    linear::BlockMatrix K(neighbours(bodies, nodes), share);
     for (const Body& body : bodies) {
         if (body.rigid) continue;
         Matrix Ke;
         for_each_element(body, [&](const Element& one) {
             const auto& [kernel, density, element, X] = one;
             if (!kernel.linear()) return;
+            if (share && std::ranges::none_of(element, [&](Index node) { return share->owns(node); })) return;
             Ke.resize(3 * kernel.nodes(), 3 * kernel.nodes());
             kernel.stiffness(X, Ke);
             K.add(element, Ke);
@@ -205,6 +205,7 @@ double largest_stiffness(const Model& model) {
     for (Index i = 0; i < model.K.rows(); ++i) // nodes of skins have no elements, and empty rows
         if (model.K.row_begin(i) < model.K.row_end(i))
             largest = std::max(largest, model.K.block(model.K.slot(i, i)).diagonal().maxCoeff());
+    if (model.share) largest = model.share->ranks().largest(largest);
     return largest;
 }
 

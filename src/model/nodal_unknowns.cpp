@@ -27,6 +27,12 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
             }
         }
     }
+    if (!model.share) return result;
+    for (const Index node : result.node) result.owner.push_back(model.share->owner()[static_cast<std::size_t>(node)]);
+    for (const auto& pair : model.pairs) {
+        result.coupled.insert(result.coupled.end(), pair->slaves().node.begin(), pair->slaves().node.end());
+        result.coupled.insert(result.coupled.end(), pair->master_nodes().begin(), pair->master_nodes().end());
+    }
     return result;
 }
 

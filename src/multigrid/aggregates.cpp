@@ -12,6 +12,7 @@ Aggregates aggregate(const FreeNodes& nodes, const NodalMatrix& A) {
         neighbours.assign(1, i);
         bool all_left = true;
         nodes.for_row(A, i, [&](Index j, const Mat3&) {
+            if (j >= nodes.size()) return;
             neighbours.push_back(j);
             all_left = all_left && result.of[j] == none;
         });
@@ -24,7 +25,7 @@ Aggregates aggregate(const FreeNodes& nodes, const NodalMatrix& A) {
         if (first[i] != none) continue;
         double most = -1;
         nodes.for_row(A, i, [&](Index j, const Mat3& block) {
-            if (first[j] == none || block.squaredNorm() <= most) return;
+            if (j >= nodes.size() || first[j] == none || block.squaredNorm() <= most) return;
             most = block.squaredNorm();
             result.of[i] = first[j];
         });

@@ -22,16 +22,20 @@ public:
     /// their coupling are never negative.
     [[nodiscard]] bool loose() const;
 
-    [[nodiscard]] PetscInt rows() const { return static_cast<PetscInt>(row_start_.size()) - 1; }
+    /// Of one's own aggregates; columns are numbered over those of all processes.
+    [[nodiscard]] PetscInt rows() const { return Prolongation::modes * P_.aggregates(); }
     [[nodiscard]] PetscInt* row_start() { return row_start_.data(); }
     [[nodiscard]] PetscInt* column() { return column_.data(); }
     [[nodiscard]] double* value() { return value_.data(); }
 
 private:
     using Square = Eigen::Matrix<double, Prolongation::modes, Prolongation::modes, Eigen::RowMajor>;
-    using Neighbours = std::vector<std::vector<Index>>; ///< of each aggregate, ascending
+    using Neighbours = std::vector<std::vector<Index>>; ///< numbers for each aggregate here, ascending
 
-    void lay_out(const Neighbours& neighbours);
+    /// @param neighbours  also of copied aggregates; one's own get what other processes have for them
+    void lay_out(Neighbours& neighbours);
+    /// Adds what other processes have for one's own rows.
+    void take_from_others(std::vector<double>& values) const;
     /// Position of a block among all.
     [[nodiscard]] std::size_t slot(Index row, Index column) const;
     void add(Index row, std::size_t slot, const Square& block, std::vector<double>& to) const;
@@ -40,9 +44,9 @@ private:
 
     const FreeNodes& nodes_;
     const Prolongation& P_;
-    std::vector<Index> body_;        ///< (aggregates)
-    std::vector<std::size_t> start_; ///< (aggregates + 1) of blocks
-    std::vector<Index> neighbour_;   ///< (blocks) ascending in a row
+    std::vector<std::size_t> start_;    ///< (aggregates here + 1) of blocks
+    std::vector<Neighbours> of_others_; ///< (ranks) what each has for the rows that it copies
+    std::vector<Index> neighbour_;      ///< (blocks) ascending in a row
     std::vector<PetscInt> row_start_, column_;
     std::vector<double> value_, bodies_;
 };

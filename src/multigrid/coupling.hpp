@@ -7,7 +7,7 @@
 
 namespace osculate::solve {
 
-/// In rows of free nodes, those with blocks alone. Many springs have the same masters, so that one block stands for several.
+/// In rows of one's own free nodes, those with blocks alone. Many springs have the same masters, so that one block stands for several.
 class Coupling {
 public:
     Coupling() = default;

@@ -90,7 +90,7 @@ void FineGrid::take(const NodalMatrix& bodies) {
             for (Index k = 0; k < 9; ++k) *to++ = static_cast<float>(block(k));
         });
     couple({});
-    std::vector<Index> all(static_cast<std::size_t>(size()));
+    std::vector<Index> all(static_cast<std::size_t>(nodes_.size()));
     std::iota(all.begin(), all.end(), 0);
     largest_of_bodies_ = estimate(all);
 }
@@ -98,7 +98,7 @@ void FineGrid::take(const NodalMatrix& bodies) {
 void FineGrid::couple(Coupling coupling) {
     coupling_ = std::move(coupling);
     inverse_ = diagonal_;
-    std::vector<char> is_near(static_cast<std::size_t>(size()),
+    std::vector<char> is_near(static_cast<std::size_t>(nodes_.with_copies()),
                               0); // stiff springs show in their nodes and next to them
     for (Index r = 0; r < coupling_.rows(); ++r) {
         const Index i = coupling_.row(r);
@@ -108,18 +108,24 @@ void FineGrid::couple(Coupling coupling) {
     }
     for (Mat3& D : inverse_) D = D.inverse().eval();
 
+    if (!nodes_.exchange().alone()) { // a node may be near by the coupling of another process
+        std::vector<double> marks(is_near.begin(), is_near.end());
+        nodes_.exchange().add(marks.data(), 1);
+        for (Index i = 0; i < nodes_.size(); ++i) is_near[i] = marks[i] > 0 ? 1 : 0;
+    }
     std::vector<Index> near;
-    for (Index i = 0; i < size(); ++i)
+    for (Index i = 0; i < nodes_.size(); ++i)
         if (is_near[i] != 0) near.push_back(i);
-    largest_of_coupled_ = near.empty() ? 0 : estimate(near);
+    largest_of_coupled_ = estimate(near);
 }
 
-template <class Each> void FineGrid::for_rows(const double* x, Each&& each) const {
+template <class Each> void FineGrid::for_rows(double* x, Each&& each) const {
+    nodes_.exchange().fill(x, 3);
     constexpr Index at_once = 128; // their products stay in the cache
     double product[3 * at_once];
     Index r = 0;
-    for (Index first = 0; first < size(); first += at_once) {
-        const Index last = std::min(first + at_once, size());
+    for (Index first = 0; first < nodes_.size(); first += at_once) {
+        const Index last = std::min(first + at_once, nodes_.size());
         multiply({start_.data() + first, start_.data() + last, node_.data(), value_.data()}, x, product);
         for (; r < coupling_.rows() && coupling_.row(r) < last; ++r)
             for (Index k = coupling_.begin(r); k < coupling_.end(r); ++k)
@@ -128,12 +134,11 @@ template <class Each> void FineGrid::for_rows(const double* x, Each&& each) cons
     }
 }
 
-void FineGrid::residual(const double* b, const double* x, double* r) const {
+void FineGrid::residual(const double* b, double* x, double* r) const {
     for_rows(x, [&](Index i, const Vec3& Ax) { at(r, i) = at(b, i) - Ax; });
 }
 
-void FineGrid::sweep(const double* b, const double* x, const double* before, double momentum, double step,
-                     double* to) const {
+void FineGrid::sweep(const double* b, double* x, const double* before, double momentum, double step, double* to) const {
     for_rows(x, [&](Index i, const Vec3& Ax) {
         const Vec3 moved = before == nullptr ? Vec3(at(x, i)) : Vec3(at(x, i) - at(before, i));
         at(to, i) = at(x, i) + momentum * moved + step * (inverse_[i] * (at(b, i) - Ax));
@@ -141,21 +146,25 @@ void FineGrid::sweep(const double* b, const double* x, const double* before, dou
 }
 
 void FineGrid::first_sweep(const double* b, double step, double* to) const {
-    for (Index i = 0; i < size(); ++i) at(to, i) = step * (inverse_[i] * at(b, i));
+    for (Index i = 0; i < nodes_.size(); ++i) at(to, i) = step * (inverse_[i] * at(b, i));
 }
 
 double FineGrid::estimate(std::span<const Index> rows) const {
     constexpr int iterations = 12;
     constexpr double short_of_it = 1.1; // what these iterations lack
-    Vector x = Vector::Zero(3 * size()), y(x.size());
+    Vector x = Vector::Zero(3 * nodes_.with_copies()), y(x.size());
     for (const Index i : rows)
-        for (Index k = 0; k < 3; ++k) at(x.data(), i)(k) = std::sin(1.0 + 7.0 * (3 * i + k)); // rich in all frequencies
+        for (Index k = 0; k < 3; ++k)
+            at(x.data(), i)(k) = std::sin(1.0 + 7.0 * (3 * nodes_.place(i) + k)); // rich in all frequencies
     double largest = 0;
     for (int iteration = 0; iteration < iterations; ++iteration) {
         double squares = 0;
         for (const Index i : rows) squares += at(x.data(), i).squaredNorm();
+        if (!nodes_.exchange().alone()) squares = sum_over_ranks({squares}).front();
+        if (squares == 0) return 0; // no rows
         largest = std::sqrt(squares);
         for (const Index i : rows) at(x.data(), i) /= largest;
+        nodes_.exchange().fill(x.data(), 3);
         for (const Index i : rows)
             multiply({&start_[i], &start_[i] + 1, node_.data(), value_.data()}, x.data(), &at(y.data(), i)(0));
         for (Index r = 0; r < coupling_.rows(); ++r)

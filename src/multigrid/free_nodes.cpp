@@ -1,22 +1,56 @@
 #include "multigrid/free_nodes.hpp"
 
+#include <algorithm>
+
 namespace osculate::solve {
 
-FreeNodes::FreeNodes(const NodalUnknowns& unknowns) : node_(unknowns.node), body_(unknowns.body) {
-    number_.assign(node_.empty() ? 0 : static_cast<std::size_t>(node_.back()) + 1, -1);
-    for (std::size_t i = 0; i < node_.size(); ++i) {
-        number_[node_[i]] = static_cast<Index>(i);
-        Mat3 projection = Mat3::Zero();
-        bool whole = true;
-        for (std::size_t k = 0; k < 3; ++k)
-            if (unknowns.equation[3 * i + k] >= 0) {
-                const Vec3 axis = unknowns.frame[i].col(static_cast<Index>(k));
-                projection += axis * axis.transpose();
-            } else
-                whole = false;
-        whole_.push_back(whole ? 1 : 0);
-        projection_.push_back(whole ? Mat3(Mat3::Identity()) : projection);
+FreeNodes::FreeNodes(const NodalUnknowns& unknowns, const NodalMatrix& A) {
+    const auto n = static_cast<Index>(unknowns.node.size());
+    number_.assign(n == 0 ? 0 : static_cast<std::size_t>(unknowns.node.back()) + 1, -1);
+    if (unknowns.owner.empty()) {
+        for (Index place = 0; place < n; ++place) add(unknowns, place);
+        own_ = n;
+        return;
     }
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    for (Index place = 0; place < n; ++place)
+        if (unknowns.owner[place] == rank) add(unknowns, place);
+    own_ = static_cast<Index>(node_.size());
+    std::vector<Index> copied;
+    const auto want = [&](Index node) {
+        const auto at = std::ranges::lower_bound(unknowns.node, node);
+        if (at == unknowns.node.end() || *at != node) return; // held
+        if (const auto place = static_cast<Index>(at - unknowns.node.begin()); unknowns.owner[place] != rank)
+            copied.push_back(place);
+    };
+    for (Index i = 0; i < own_; ++i)
+        for (Index k = A.row_start[node_[i]]; k < A.row_start[node_[i] + 1]; ++k) want(A.column[k]);
+    for (const Index node : unknowns.coupled) want(node);
+    std::ranges::sort(copied, {}, [&](Index place) { return std::pair(unknowns.owner[place], place); });
+    copied.erase(std::unique(copied.begin(), copied.end()), copied.end());
+    std::vector<int> owner;
+    for (const Index place : copied) {
+        add(unknowns, place);
+        owner.push_back(unknowns.owner[place]);
+    }
+    exchange_ = Exchange({place_.begin(), place_.begin() + own_}, copied, owner);
+}
+
+void FreeNodes::add(const NodalUnknowns& unknowns, Index place) {
+    number_[unknowns.node[place]] = static_cast<Index>(node_.size());
+    node_.push_back(unknowns.node[place]);
+    place_.push_back(place);
+    Mat3 projection = Mat3::Zero();
+    bool whole = true;
+    for (Index k = 0; k < 3; ++k)
+        if (unknowns.equation[3 * static_cast<std::size_t>(place) + static_cast<std::size_t>(k)] >= 0) {
+            const Vec3 axis = unknowns.frame[place].col(k);
+            projection += axis * axis.transpose();
+        } else
+            whole = false;
+    whole_.push_back(whole ? 1 : 0);
+    projection_.push_back(whole ? Mat3(Mat3::Identity()) : projection);
 }
 
 } // namespace osculate::solve

@@ -1,38 +1,48 @@
 #pragma once
 /// Nodes with free components, numbered one after the other, and the free part of vectors and blocks over them.
 
+#include "multigrid/exchange.hpp"
 #include "osculate/solve/multigrid.hpp"
 
 namespace osculate::solve {
 
+/// One's own, then copies: neighbours of one's own nodes, and nodes that may be coupled, where other processes own them.
 class FreeNodes {
 public:
-    explicit FreeNodes(const NodalUnknowns& unknowns);
+    /// @param A  with rows of one's own nodes
+    FreeNodes(const NodalUnknowns& unknowns, const NodalMatrix& A);
 
-    [[nodiscard]] Index size() const { return static_cast<Index>(node_.size()); }
+    [[nodiscard]] Index size() const { return own_; }
+    [[nodiscard]] Index with_copies() const { return static_cast<Index>(node_.size()); }
     /// Its number in the matrix.
     [[nodiscard]] Index node(Index i) const { return node_[i]; }
-    /// Number here of a node of the matrix, -1: all its components are held.
+    /// Its number among all free nodes, of all processes.
+    [[nodiscard]] Index place(Index i) const { return place_[i]; }
+    /// Number here of a node of the matrix, -1: all its components are held, or it is not here.
     [[nodiscard]] Index number(Index node) const {
         return static_cast<std::size_t>(node) < number_.size() ? number_[node] : -1;
     }
-    [[nodiscard]] Index body(Index i) const { return body_[i]; }
     [[nodiscard]] bool whole(Index i) const { return whole_[i]; } ///< no component is held
     /// Projection on the free directions, in global components.
     [[nodiscard]] const Mat3& projection(Index i) const { return projection_[i]; }
     [[nodiscard]] Mat3 projected(Index i, Index j, const Mat3& block) const {
         return whole_[i] && whole_[j] ? block : Mat3(projection_[i] * block * projection_[j]);
     }
-    /// Calls each(j, block) for the projected blocks of row i.
+    /// Calls each(j, block) for the projected blocks of row i, one's own.
     void for_row(const NodalMatrix& A, Index i, auto&& each) const {
         for (Index k = A.row_start[node_[i]]; k < A.row_start[node_[i] + 1]; ++k)
             if (const Index j = number(A.column[k]); j >= 0) each(j, projected(i, j, A.block[k]));
     }
+    [[nodiscard]] const Exchange& exchange() const { return exchange_; }
 
 private:
-    std::vector<Index> node_, body_, number_;
+    void add(const NodalUnknowns& unknowns, Index place);
+
+    Index own_ = 0;
+    std::vector<Index> node_, place_, number_;
     std::vector<char> whole_;
     std::vector<Mat3> projection_;
+    Exchange exchange_;
 };
 
 } // namespace osculate::solve

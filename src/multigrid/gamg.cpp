@@ -2,12 +2,17 @@
 
 #include "multigrid/coarse_matrix.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/ranks.hpp"
 #include "osculate/solve/multigrid.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <numeric>
 #include <optional>
 #include <petscksp.h>
+#include <thread>
 
 namespace osculate::solve {
 namespace {
@@ -38,21 +43,28 @@ constexpr double lower = 0.3,
 /// The finest grid and the next are ours, in blocks of nodes; PETSc's GAMG goes on from there.
 class Gamg final : public Multigrid {
 public:
-    explicit Gamg(NodalUnknowns unknowns) : unknowns_(std::move(unknowns)), nodes_(unknowns_) { begin_petsc(); }
+    explicit Gamg(NodalUnknowns unknowns)
+        : unknowns_(std::move(unknowns)), alone_(unknowns_.owner.empty()),
+          comm_(alone_ ? PETSC_COMM_SELF : PETSC_COMM_WORLD) {
+        begin_petsc();
+    }
     ~Gamg() override { clear(); }
     Gamg(const Gamg&) = delete;
     Gamg& operator=(const Gamg&) = delete;
 
     void coarsen(const NodalMatrix& undeformed) override {
         clear();
-        fine_.emplace(nodes_, undeformed);
-        P_.emplace(nodes_, undeformed, *fine_, unknowns_.near_kernel);
-        coarse_.emplace(nodes_, *P_, undeformed);
+        const FreeNodes& nodes = nodes_.emplace(unknowns_, undeformed);
+        fine_.emplace(nodes, undeformed);
+        P_.emplace(nodes, undeformed, *fine_, unknowns_);
+        coarse_.emplace(nodes, *P_, undeformed);
         coarse_->couple({});
         wrap_coarse();
         choose_grids();
         make_cycle();
-        for (Vector* v : {&b_, &x_, &other_}) v->resize(3 * nodes_.size());
+        for (Vector* v : {&b_, &x_, &other_}) v->setZero(3 * nodes.with_copies());
+        c_.setZero(Prolongation::modes * P_->with_copies());
+        order_equations();
     }
 
     void take(const NodalMatrix& bodies) override {
@@ -61,7 +73,7 @@ public:
     }
 
     FactorStatus couple(std::span<const NodalBlock> blocks) override {
-        Coupling coupling(nodes_, blocks);
+        Coupling coupling(*nodes_, blocks);
         const bool grown = coarse_->couple(coupling);
         fine_->couple(std::move(coupling));
         if (grown) {
@@ -69,7 +81,10 @@ public:
             make_cycle(); // that of another pattern keeps some of it
         }
         if (coarse_->loose()) return FactorStatus::singular;
-        changed(below_.back());
+        if (alone_)
+            changed(below_.back());
+        else
+            check(MatUpdateMPIAIJWithArray(below_.back(), coarse_->value()));
         for (std::size_t level = below_.size(); level-- > 0;) {
             Mat& A = below_[level];
             if (level + 1 < below_.size()) {
@@ -94,37 +109,80 @@ public:
         const double largest = fine_->largest_eigenvalue(), centre = (upper + lower) / 2 * largest,
                      half = (upper - lower) / 2 * largest, rho = 1 / (2 * centre / half - half / centre);
         const double first = 1 / centre, momentum = rho * half / centre, second = 2 * rho / half;
-        for (std::size_t i = 0; i < unknowns_.node.size(); ++i) {
+        for_own_nodes([&](Index i, Index place) {
             Vec3 local = Vec3::Zero();
-            for (std::size_t k = 0; k < 3; ++k)
-                if (const SparseIndex e = unknowns_.equation[3 * i + k]; e >= 0) local(static_cast<Index>(k)) = b[e];
-            b_.segment<3>(3 * static_cast<Index>(i)) = unknowns_.frame[i] * local;
-        }
+            for_equations(place, [&](Index k, SparseIndex e) { local(k) = b[e]; });
+            b_.segment<3>(3 * i) = unknowns_.frame[place] * local;
+        });
         fine_->first_sweep(b_.data(), first, x_.data());
         fine_->sweep(b_.data(), x_.data(), nullptr, momentum, second, other_.data());
         fine_->residual(b_.data(), other_.data(), x_.data());
         correct(x_, other_);
         fine_->sweep(b_.data(), other_.data(), other_.data(), 0, first, x_.data());
         fine_->sweep(b_.data(), x_.data(), other_.data(), momentum, second, other_.data());
-        for (std::size_t i = 0; i < unknowns_.node.size(); ++i) {
-            const Vec3 local = unknowns_.frame[i].transpose() * other_.segment<3>(3 * static_cast<Index>(i));
-            for (std::size_t k = 0; k < 3; ++k)
-                if (const SparseIndex e = unknowns_.equation[3 * i + k]; e >= 0) x[e] = local(static_cast<Index>(k));
-        }
+        for_own_nodes([&](Index i, Index place) {
+            const Vec3 local = unknowns_.frame[place].transpose() * other_.segment<3>(3 * i);
+            for_equations(place, [&](Index k, SparseIndex e) { x[e] = local(k); });
+        });
+        replicate(x);
     }
 
 private:
+    void for_own_nodes(auto&& each) const {
+        for (Index i = 0; i < nodes_->size(); ++i) each(i, nodes_->place(i));
+    }
+    /// Calls each(local component, equation) of a node.
+    void for_equations(Index place, auto&& each) const {
+        for (Index k = 0; k < 3; ++k)
+            if (const SparseIndex e =
+                    unknowns_.equation[3 * static_cast<std::size_t>(place) + static_cast<std::size_t>(k)];
+                e >= 0)
+                each(k, e);
+    }
+    /// Equations of rank 0, of rank 1, ...
+    void order_equations() {
+        if (alone_) return;
+        const std::size_t ranks = nodes_->exchange().ranks();
+        std::vector<std::vector<SparseIndex>> of_rank(ranks);
+        for (std::size_t place = 0; place < unknowns_.node.size(); ++place)
+            for_equations(static_cast<Index>(place), [&](Index, SparseIndex e) {
+                of_rank[static_cast<std::size_t>(unknowns_.owner[place])].push_back(e);
+            });
+        equations_.clear();
+        count_.clear();
+        begin_.assign(1, 0);
+        for (const auto& list : of_rank) {
+            equations_.insert(equations_.end(), list.begin(), list.end());
+            count_.push_back(static_cast<int>(list.size()));
+            begin_.push_back(begin_.back() + count_.back());
+        }
+    }
+    /// Takes what other processes have found for their equations.
+    void replicate(double* x) const {
+        if (alone_) return;
+        int rank = 0;
+        MPI_Comm_rank(comm_, &rank);
+        const auto r = static_cast<std::size_t>(rank);
+        std::vector<double> own, all(equations_.size());
+        for (int k = begin_[r]; k < begin_[r + 1]; ++k) own.push_back(x[equations_[static_cast<std::size_t>(k)]]);
+        MPI_Allgatherv(own.data(), count_[r], MPI_DOUBLE, all.data(), count_.data(), begin_.data(), MPI_DOUBLE, comm_);
+        for (std::size_t k = 0; k < all.size(); ++k) x[equations_[k]] = all[k];
+    }
+
     /// x += P of the coarser grids' answer to a residual.
     void correct(const Vector& residual, Vector& x) {
+        const Index own = coarse_->rows();
+        P_->to_coarse(residual.data(), c_.data());
         double* to = nullptr;
         check(VecGetArrayWrite(coarse_residual_, &to));
-        P_->to_coarse(residual.data(), to);
+        std::copy_n(c_.data(), own, to);
         check(VecRestoreArrayWrite(coarse_residual_, &to));
         check(PCApply(cycle_, coarse_residual_, correction_));
         const double* from = nullptr;
         check(VecGetArrayRead(correction_, &from));
-        P_->add_to_fine(from, x.data());
+        std::copy_n(from, own, c_.data());
         check(VecRestoreArrayRead(correction_, &from));
+        P_->add_to_fine(c_.data(), x.data());
     }
     static void changed(Mat matrix) {
         check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -139,12 +197,12 @@ private:
         check(MatGetDiagonal(coarse, diagonal));
         PetscReal largest = 0;
         check(VecMax(diagonal, nullptr, &largest));
-        PetscInt n = 0;
+        PetscInt first = 0, end = 0;
         const double* d = nullptr;
-        check(VecGetSize(diagonal, &n));
+        check(VecGetOwnershipRange(diagonal, &first, &end));
         check(VecGetArrayRead(diagonal, &d));
-        for (PetscInt i = 0; i < n; ++i)
-            if (d[i] <= empty * largest) check(MatSetValue(coarse, i, i, largest, ADD_VALUES));
+        for (PetscInt i = first; i < end; ++i)
+            if (d[i - first] <= empty * largest) check(MatSetValue(coarse, i, i, largest, ADD_VALUES));
         check(VecRestoreArrayRead(diagonal, &d));
         check(VecDestroy(&diagonal));
         changed(coarse);
@@ -154,8 +212,12 @@ private:
     void wrap_coarse() {
         if (below_.empty()) below_.push_back(nullptr);
         check(MatDestroy(&below_.back()));
-        check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, coarse_->rows(), coarse_->rows(), coarse_->row_start(),
-                                        coarse_->column(), coarse_->value(), &below_.back()));
+        if (alone_)
+            check(MatCreateSeqAIJWithArrays(comm_, coarse_->rows(), coarse_->rows(), coarse_->row_start(),
+                                            coarse_->column(), coarse_->value(), &below_.back()));
+        else
+            check(MatCreateMPIAIJWithArrays(comm_, coarse_->rows(), coarse_->rows(), PETSC_DETERMINE, PETSC_DETERMINE,
+                                            coarse_->row_start(), coarse_->column(), coarse_->value(), &below_.back()));
         check(MatSetBlockSize(below_.back(), Prolongation::modes));
         check(MatSetOption(below_.back(), MAT_SPD, PETSC_TRUE));
     }
@@ -176,21 +238,20 @@ private:
             check(VecDuplicate(like, &v));
             double* to = nullptr;
             check(VecGetArrayWrite(v, &to));
-            std::copy(Q.col(c).data(), Q.col(c).data() + Q.rows(), to);
+            std::copy_n(Q.col(c).data() + Prolongation::modes * P_->first_number(), coarse_->rows(), to);
             check(VecRestoreArrayWrite(v, &to));
         }
         check(VecDuplicate(like, &coarse_residual_));
         check(VecDuplicate(like, &correction_));
         check(VecDestroy(&like));
         MatNullSpace space = nullptr;
-        check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, static_cast<PetscInt>(basis.size()), basis.data(),
-                                 &space));
+        check(MatNullSpaceCreate(comm_, PETSC_FALSE, static_cast<PetscInt>(basis.size()), basis.data(), &space));
         check(MatSetNearNullSpace(A, space));
         check(MatNullSpaceDestroy(&space));
         for (Vec& v : basis) check(VecDestroy(&v));
 
         PC grids = nullptr;
-        check(PCCreate(PETSC_COMM_SELF, &grids));
+        check(PCCreate(comm_, &grids));
         check(PCSetOperators(grids, A, A));
         check(PCSetType(grids, PCGAMG));
         check(PCSetOptionsPrefix(grids, "osculate_grids_"));
@@ -216,7 +277,7 @@ private:
     void make_cycle() {
         PCDestroy(&cycle_);
         const auto levels = static_cast<PetscInt>(below_.size());
-        check(PCCreate(PETSC_COMM_SELF, &cycle_));
+        check(PCCreate(comm_, &cycle_));
         check(PCSetType(cycle_, PCMG));
         check(PCMGSetLevels(cycle_, levels, nullptr));
         check(PCMGSetGalerkin(cycle_, PC_MG_GALERKIN_NONE));
@@ -227,6 +288,13 @@ private:
             check(KSPGetPC(smoother, &pc));
             if (level == 0) {
                 check(KSPSetType(smoother, KSPPREONLY));
+                if (!alone_) { // every process factorises it
+                    check(PCSetType(pc, PCREDUNDANT));
+                    KSP own = nullptr;
+                    check(KSPSetOperators(smoother, below_.front(), below_.front()));
+                    check(PCRedundantGetKSP(pc, &own));
+                    check(KSPGetPC(own, &pc));
+                }
                 check(PCSetType(pc, PCLU));
                 check(PCFactorSetShiftType(pc, MAT_SHIFT_INBLOCKS));
                 continue;
@@ -249,10 +317,13 @@ private:
         coarse_.reset();
         P_.reset();
         fine_.reset();
+        nodes_.reset();
     }
 
     NodalUnknowns unknowns_;
-    FreeNodes nodes_;
+    bool alone_;
+    MPI_Comm comm_;
+    std::optional<FreeNodes> nodes_;
     std::optional<FineGrid> fine_;
     std::optional<Prolongation> P_;
     std::optional<CoarseMatrix> coarse_;
@@ -260,11 +331,66 @@ private:
     std::vector<Mat> interpolation_; ///< from level i to i + 1 of these
     PC cycle_ = nullptr;
     Vec coarse_residual_ = nullptr, correction_ = nullptr;
-    Vector b_, x_, other_; ///< (3 n)
+    Vector b_, x_, other_;               ///< (3 n) with copies
+    Vector c_;                           ///< of aggregates, with copies
+    std::vector<SparseIndex> equations_; ///< see order_equations(); of several processes alone
+    std::vector<int> count_, begin_;     ///< of each rank in these
+};
+
+class MpiRanks final : public Ranks {
+public:
+    MpiRanks() {
+        begin_petsc();
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+        MPI_Comm_size(MPI_COMM_WORLD, &count_);
+        MPI_Comm_dup(MPI_COMM_WORLD, &at_the_end_);
+        // other ways to the products of coarse grids depend on which message comes first
+        check(PetscOptionsSetValue(nullptr, "-matptap_via", "allatonce"));
+    }
+    ~MpiRanks() override {
+        MPI_Comm_free(&at_the_end_);
+        PetscFinalize();
+    }
+    MpiRanks(const MpiRanks&) = delete;
+    MpiRanks& operator=(const MpiRanks&) = delete;
+
+    [[nodiscard]] int rank() const override { return rank_; }
+    [[nodiscard]] int count() const override { return count_; }
+    void gather(std::span<const double> own, std::span<const int> sizes, double* all) override {
+        std::vector<int> begin(sizes.size(), 0);
+        std::partial_sum(sizes.begin(), sizes.end() - 1, begin.begin() + 1);
+        MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all, sizes.data(), begin.data(),
+                       MPI_DOUBLE, MPI_COMM_WORLD);
+    }
+
+    [[nodiscard]] bool agree_on_end(int code, double patience) override {
+        std::vector<int> all(static_cast<std::size_t>(count_));
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Iallgather(&code, 1, MPI_INT, all.data(), 1, MPI_INT, at_the_end_, &request);
+        constexpr std::chrono::milliseconds pause(10);
+        const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
+        for (int done = 0; done == 0; std::this_thread::sleep_for(pause)) {
+            MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+            if (done == 0 && std::chrono::steady_clock::now() > until) return false;
+        }
+        return std::ranges::all_of(all, [&](int other) { return other == code; });
+    }
+    [[noreturn]] void abort(int code) override {
+        MPI_Abort(MPI_COMM_WORLD, code);
+        std::abort();
+    }
+
+private:
+    int rank_ = 0, count_ = 1;
+    MPI_Comm at_the_end_ = MPI_COMM_NULL;
 };
 
 } // namespace
 } // namespace osculate::solve
+
+extern "C" osculate::Ranks* osculate_join_ranks() {
+    return new osculate::solve::MpiRanks;
+}
 
 extern "C" osculate::solve::Multigrid* osculate_make_multigrid(osculate::solve::NodalUnknowns* unknowns) {
     return new osculate::solve::Gamg(std::move(*unknowns));

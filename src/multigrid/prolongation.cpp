@@ -31,48 +31,142 @@ void orthonormalise(Matrix& B, Eigen::Ref<Matrix> R) {
 } // namespace
 
 Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const FineGrid& grid,
-                           const Matrix& near_kernel)
+                           const NodalUnknowns& unknowns)
     : nodes_(nodes) {
+    constexpr Index width = 1 + 3 * modes; // number of its aggregate, and motions
     const Aggregates aggregates = solve::aggregate(nodes, A);
     aggregates_ = aggregates.count;
+    std::vector<Index> first_of_rank{0, aggregates_};
+    if (!nodes.exchange().alone()) {
+        int rank = 0;
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+        std::vector<double> counts(nodes.exchange().ranks(), 0.0);
+        counts[static_cast<std::size_t>(rank)] = aggregates_;
+        first_of_rank.assign(1, 0);
+        for (const double count : sum_over_ranks(counts))
+            first_of_rank.push_back(first_of_rank.back() + static_cast<Index>(count));
+        first_number_ = first_of_rank[static_cast<std::size_t>(rank)];
+    }
     std::vector<std::vector<Index>> members(static_cast<std::size_t>(aggregates_));
     for (Index i = 0; i < nodes.size(); ++i) members[aggregates.of[i]].push_back(i);
-    near_kernel_.resize(modes * aggregates_, near_kernel.cols());
-    std::vector<Block> tentative(static_cast<std::size_t>(nodes.size()));
+    Matrix motions(modes * aggregates_, unknowns.near_kernel.cols());
+    std::vector<Index> body(static_cast<std::size_t>(aggregates_));
+    Matrix tentative(width, nodes.with_copies());
     for (Index a = 0; a < aggregates_; ++a) {
         Matrix B(3 * static_cast<Index>(members[a].size()), modes);
         for (std::size_t m = 0; m < members[a].size(); ++m)
             B.middleRows<3>(3 * static_cast<Index>(m)) =
-                nodes.projection(members[a][m]) * near_kernel.middleRows<3>(3 * members[a][m]);
-        orthonormalise(B, near_kernel_.middleRows<modes>(modes * a));
-        for (std::size_t m = 0; m < members[a].size(); ++m)
-            tentative[members[a][m]] = B.middleRows<3>(3 * static_cast<Index>(m));
+                nodes.projection(members[a][m]) * unknowns.near_kernel.middleRows<3>(3 * nodes.place(members[a][m]));
+        body[a] = unknowns.body[nodes.place(members[a].front())];
+        orthonormalise(B, motions.middleRows<modes>(modes * a));
+        for (std::size_t m = 0; m < members[a].size(); ++m) {
+            auto column = tentative.col(members[a][m]);
+            column(0) = first_number_ + a;
+            Eigen::Map<Block>(&column(1)) = B.middleRows<3>(3 * static_cast<Index>(m));
+        }
     }
+    nodes.exchange().fill(tentative.data(), width);
+    const auto aggregate_of = [&](Index i) { return static_cast<Index>(tentative(0, i)); };
+    const auto tentative_of = [&](Index i) { return Eigen::Map<const Block>(&tentative(1, i)); };
 
     const double w = 4.0 / 3.0 / grid.largest_eigenvalue();
+    Rows rows(static_cast<std::size_t>(nodes.with_copies()));
     std::vector<Index> reached;
     std::vector<Block> row;
     for (Index i = 0; i < nodes.size(); ++i) {
-        reached.assign(1, aggregates.of[i]);
-        nodes.for_row(A, i, [&](Index j, const Mat3&) { reached.push_back(aggregates.of[j]); });
+        reached.assign(1, aggregate_of(i));
+        nodes.for_row(A, i, [&](Index j, const Mat3&) { reached.push_back(aggregate_of(j)); });
         std::ranges::sort(reached);
         reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
         const auto place = [&](Index a) { return std::ranges::lower_bound(reached, a) - reached.begin(); };
         row.assign(reached.size(), Block::Zero());
         const Mat3 D = w * grid.inverse_diagonal(i);
-        row[place(aggregates.of[i])] = tentative[i];
+        row[place(aggregate_of(i))] = tentative_of(i);
         nodes.for_row(A, i, [&](Index j, const Mat3& block) {
-            row[place(aggregates.of[j])].noalias() -= D * (block * tentative[j]);
+            row[place(aggregate_of(j))].noalias() -= D * (block * tentative_of(j));
         });
-        for (std::size_t k = 0; k < reached.size(); ++k) {
-            aggregate_.push_back(reached[k]);
-            for (Index e = 0; e < row[k].size(); ++e) value_.push_back(static_cast<float>(row[k].data()[e]));
+        for (std::size_t k = 0; k < reached.size(); ++k) rows[i].emplace_back(reached[k], row[k].cast<float>());
+    }
+    add_copied_rows(rows);
+    store(rows, first_of_rank);
+    gather_motions(motions, body);
+}
+
+void Prolongation::add_copied_rows(Rows& rows) const {
+    const Exchange& exchange = nodes_.exchange();
+    if (exchange.alone()) return;
+    std::vector<std::vector<double>> lists(exchange.ranks());
+    for (std::size_t r = 0; r < lists.size(); ++r)
+        for (const Index i : exchange.sent_to(r)) {
+            lists[r].push_back(static_cast<double>(rows[i].size()));
+            for (const auto& [aggregate, block] : rows[i]) {
+                lists[r].push_back(aggregate);
+                lists[r].insert(lists[r].end(), block.data(), block.data() + stored);
+            }
+        }
+    const auto received = send_to_each(lists);
+    for (std::size_t r = 0; r < received.size(); ++r) {
+        const double* from = received[r].data();
+        for (Index i = exchange.first_from(r); i < exchange.end_from(r); ++i)
+            for (auto left = static_cast<Index>(*from++); left > 0; --left, from += 1 + stored)
+                rows[i].emplace_back(static_cast<Index>(from[0]), Eigen::Map<const Block>(from + 1).cast<float>());
+    }
+}
+
+void Prolongation::store(const Rows& rows, const std::vector<Index>& first_of_rank) {
+    const auto own = [&](Index number) { return number >= first_number_ && number < first_number_ + aggregates_; };
+    std::vector<Index> copied;
+    for (const auto& row : rows)
+        for (const auto& entry : row)
+            if (!own(entry.first)) copied.push_back(entry.first);
+    std::ranges::sort(copied);
+    copied.erase(std::unique(copied.begin(), copied.end()), copied.end());
+    for (Index a = 0; a < aggregates_; ++a) number_.push_back(first_number_ + a);
+    if (!nodes_.exchange().alone()) {
+        std::vector<int> owner;
+        for (const Index number : copied)
+            owner.push_back(static_cast<int>(std::ranges::upper_bound(first_of_rank, number) - first_of_rank.begin()) -
+                            1);
+        exchange_ = Exchange(number_, copied, owner);
+    }
+    number_.insert(number_.end(), copied.begin(), copied.end());
+    for (const auto& row : rows) {
+        for (const auto& [number, block] : row) {
+            aggregate_.push_back(
+                own(number)
+                    ? number - first_number_
+                    : aggregates_ + static_cast<Index>(std::ranges::lower_bound(copied, number) - copied.begin()));
+            value_.insert(value_.end(), block.data(), block.data() + stored);
         }
         start_.push_back(static_cast<Index>(aggregate_.size()));
     }
 }
 
-void Prolongation::add_to_fine(const double* c, double* x) const {
+void Prolongation::gather_motions(const Matrix& own, const std::vector<Index>& body) {
+    near_kernel_ = own;
+    body_ = body;
+    if (nodes_.exchange().alone()) return;
+    constexpr Index width = 1 + modes * modes;
+    std::vector<double> list;
+    for (Index a = 0; a < aggregates_; ++a) {
+        list.push_back(body[a]);
+        for (Index k = 0; k < modes; ++k)
+            for (Index c = 0; c < modes; ++c) list.push_back(own(modes * a + k, c));
+    }
+    body_.clear();
+    std::vector<double> all;
+    for (const auto& one : send_to_each(std::vector<std::vector<double>>(nodes_.exchange().ranks(), list)))
+        all.insert(all.end(), one.begin(), one.end());
+    near_kernel_.resize(modes * static_cast<Index>(all.size()) / width, modes);
+    for (std::size_t a = 0; a < all.size() / width; ++a) {
+        body_.push_back(static_cast<Index>(all[width * a]));
+        near_kernel_.middleRows<modes>(modes * static_cast<Index>(a)) =
+            Eigen::Map<const Eigen::Matrix<double, modes, modes, Eigen::RowMajor>>(&all[width * a + 1]);
+    }
+}
+
+void Prolongation::add_to_fine(double* c, double* x) const {
+    exchange_.fill(c, modes);
     const float* value = value_.data();
     for (Index i = 0; i < nodes_.size(); ++i) {
         Vec3 sum = Vec3::Zero();
@@ -87,7 +181,7 @@ void Prolongation::add_to_fine(const double* c, double* x) const {
 }
 
 void Prolongation::to_coarse(const double* x, double* c) const {
-    std::fill_n(c, modes * static_cast<std::size_t>(aggregates_), 0.0);
+    std::fill_n(c, modes * number_.size(), 0.0);
     const float* value = value_.data();
     for (Index i = 0; i < nodes_.size(); ++i) {
         Vec3 from = Eigen::Map<const Vec3>(x + 3 * static_cast<std::size_t>(i));
@@ -98,6 +192,7 @@ void Prolongation::to_coarse(const double* x, double* c) const {
                 for (Index m = 0; m < modes; ++m) to[m] += static_cast<double>(*value++) * from(r);
         }
     }
+    exchange_.add(c, modes);
 }
 
 } // namespace osculate::solve

@@ -309,6 +309,9 @@ Attempt StageRun::row_of(const StepAttempt& attempt) {
 }
 
 void StageRun::commit(StepAttempt& attempt) {
+    if (const auto& share = context_.model.share; share && !share->agree(attempt.next.u))
+        throw RunFailure(
+            "the processes do not hold the same displacements any more; do they run on processors of one kind?");
     equilibrium().commit();
     const double moved = context_.model.general ? largest_distance(attempt.next.u, progress_.state.u).value : 0;
     attempt.next.scope = progress_.state.scope;

@@ -1,4 +1,5 @@
 #include "block_systems.hpp"
+#include "support/thread_ranks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -92,6 +93,38 @@ TEST(BlockMatrix, TakesNoNoticeOfATranslationInRelativeProducts) {
 
 TEST(BlockMatrix, IsEmptyAtFirst) {
     EXPECT_EQ(BlockMatrix{}.rows(), 0);
+}
+
+TEST(BlockMatrix, MultipliesAsOneWhereProcessesShareItsRows) {
+    Random random(67);
+    const auto elements = some_elements();
+    BlockMatrix whole(9, elements);
+    std::vector<Matrix> matrices;
+    for (const auto& element : elements) {
+        matrices.push_back(random_matrix(3 * static_cast<Index>(element.size()), random));
+        whole.add(element, matrices.back());
+    }
+    Field x(9), expected(9, Vec3(1, 2, 3)), expected_relative(9, Vec3(1, 2, 3));
+    for (Vec3& value : x) value = Vec3(random.uniform(), random.uniform(), random.uniform());
+    whole.multiply_add(x, expected, 1);
+    whole.multiply_add_relative(x, expected_relative, 1);
+    osculate::testing::on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {
+        const auto share = std::make_shared<const Share>(ranks, std::vector<int>{0, 1, 2, 2, 0, 1, 1, 0, 2});
+        BlockMatrix own(neighbours(9, elements), share);
+        for (std::size_t e = 0; e < elements.size(); ++e) own.add(elements[e], matrices[e]);
+        for (Index row = 0; row < 9; ++row) {
+            if (!share->owns(row)) {
+                EXPECT_EQ(own.row_begin(row), own.row_end(row));
+            }
+        }
+        Field y(9, Vec3(1, 2, 3)), relative(9, Vec3(1, 2, 3));
+        own.multiply_add(x, y, 1);
+        own.multiply_add_relative(x, relative, 1);
+        for (std::size_t i = 0; i < 9; ++i) {
+            EXPECT_LT((y[i] - expected[i]).norm(), 1e-14);
+            EXPECT_LT((relative[i] - expected_relative[i]).norm(), 1e-14);
+        }
+    });
 }
 
 } // namespace

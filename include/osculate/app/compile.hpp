@@ -71,9 +71,11 @@ struct Plan {
 /// Builds all objects that the scene needs. Throws SceneError with every fault found: names without nodes or facets,
 /// bodies without support, initial overlaps, elements turned inside out.
 /// @param meshes  one per body; build_meshes(scene), or the same bodies with another numbering
-[[nodiscard]] Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings);
+/// @param ranks   processes that share the run, each of which compiles it; null: one
+[[nodiscard]] Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings,
+                           std::shared_ptr<Ranks> ranks = nullptr);
 
 /// Builds the meshes, compiles, and writes into the scene what its pairs left to the program.
-[[nodiscard]] Plan compile(scene::Scene& scene, int threads, Timings& timings);
+[[nodiscard]] Plan compile(scene::Scene& scene, int threads, Timings& timings, std::shared_ptr<Ranks> ranks = nullptr);
 
 } // namespace osculate::app

@@ -16,8 +16,9 @@ struct LoadedScene {
 };
 
 /// Reads and compiles a scene file.
+/// @param ranks  processes that share the run; null: one
 /// @throws SceneError with file, line and column for every fault that has a place in the file
 [[nodiscard]] LoadedScene load(const std::string& path, const std::vector<scene::Override>& overrides, int threads,
-                               Timings& timings);
+                               Timings& timings, const std::shared_ptr<Ranks>& ranks = nullptr);
 
 } // namespace osculate::app

@@ -3,6 +3,7 @@
 
 #include "osculate/app/load.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/ranks.hpp"
 #include "osculate/output/output_folder.hpp"
 #include "osculate/output/summary.hpp"
 #include "osculate/scene/reader.hpp"
@@ -48,6 +49,7 @@ struct RunOptions {
     bool heed_signals =
         true; ///< SIGINT and SIGTERM end the run between two steps; false: the caller has to handle these signals
     FolderOptions folder{};
+    std::shared_ptr<Ranks> ranks{}; ///< processes that share the run, each of which makes this call; null: one
     std::function<void(const std::filesystem::path&)>
         entered{}; ///< called with the folder before the first step; may be empty
 };

@@ -69,6 +69,8 @@ public:
     [[nodiscard]] const linear::BlockMatrix& tangent() const {
         return dynamics_ || varies() || stabilised() ? tangent_ : model_.K;
     }
+    /// Whether several processes share the rows of tangent().
+    [[nodiscard]] bool shared() const { return model_.share != nullptr; }
     [[nodiscard]] bool dynamic() const { return dynamics_ != nullptr; }
     /// Factor (1 - alpha_m) da/du of M in the tangent of the attempt, 1/s^2; 0 in statics.
     [[nodiscard]] double mass_factor() const {
@@ -96,6 +98,8 @@ private:
     [[nodiscard]] model::BodyStep step_to(const Field& u) const { return {u_start_, u, history_start_, mean_}; }
     /// f += factor times the forces of the pressures, with their values at the start or the end of the step.
     void add_pressures(double factor, bool end, const Field& u, Field& f) const;
+    /// add_terms() of the rows that A has.
+    void add_own_terms(const linear::BlockMatrix& A, const Field& u, Field& terms) const;
     void add_springs(linear::BlockMatrix& tangent) const;
     /// Adds the tangent of a pressure on a face to that of all forces.
     void add_pressure_tangent(const mesh::SurfaceFace& face, const Field& x, double pressure);

@@ -1,7 +1,7 @@
 #pragma once
 /// Sparse matrix of 3 x 3 blocks over the nodes of all bodies.
 
-#include "osculate/core/field.hpp"
+#include "osculate/core/ranks.hpp"
 #include "osculate/solve/nodal_matrix.hpp"
 
 #include <vector>
@@ -17,7 +17,8 @@ public:
     BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements);
     /// Pattern of given rows.
     /// @param columns  of each row, ascending
-    explicit BlockMatrix(const std::vector<std::vector<Index>>& columns);
+    /// @param share    rows of others' nodes stay empty; null: there is one process. Products are of all rows on all processes
+    explicit BlockMatrix(const std::vector<std::vector<Index>>& columns, std::shared_ptr<const Share> share = nullptr);
 
     [[nodiscard]] Index rows() const { return static_cast<Index>(row_start_.size()) - 1; }
     [[nodiscard]] Index row_begin(Index row) const { return row_start_[row]; }
@@ -27,7 +28,7 @@ public:
     [[nodiscard]] Mat3& block(Index slot) { return block_[slot]; }
     /// Position of the block of a pair of nodes. @pre the pattern has it
     [[nodiscard]] Index slot(Index row, Index column) const;
-    /// Adds an element matrix (3n x 3n) at its nodes.
+    /// Adds an element matrix (3n x 3n) at its nodes, where they have rows.
     void add(const std::vector<Index>& nodes, const Matrix& element);
     /// *this = a A + b B, where B has the same pattern or is empty.
     void set_combination(double a, const BlockMatrix& A, double b, const BlockMatrix& B);
@@ -40,10 +41,20 @@ public:
     /// all nodes causes no further loss of digits than in x itself.
     void multiply_add_relative(const Field& x, Field& y, int threads) const;
 
+    /// Who has which rows; null: there is one process.
+    [[nodiscard]] const Share* share() const { return share_.get(); }
+
 private:
+    /// y += the product whose row is row(i), y_i for those that it has.
+    template <class Row> void add_rows(Field& y, int threads, Row&& row) const;
+
     std::vector<Index> row_start_{0};
     std::vector<Index> column_;
     std::vector<Mat3> block_;
+    std::shared_ptr<const Share> share_;
 };
+
+/// Nodes that share an element with each node, itself included, ascending; none for nodes without elements.
+[[nodiscard]] std::vector<std::vector<Index>> neighbours(Index nodes, const std::vector<std::vector<Index>>& elements);
 
 } // namespace osculate::linear

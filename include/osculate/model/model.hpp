@@ -109,6 +109,7 @@ struct Model {
     std::vector<Set> sets;
     ContactPairs pairs;                            ///< those that a scene names
     std::shared_ptr<const GeneralContact> general; ///< contact of all surfaces; null: none
+    std::shared_ptr<const Share> share;            ///< of nodes among processes; null: there is one
     linear::BlockMatrix K;                         ///< constant stiffness of the linear elements, in the pattern of all
     std::unique_ptr<NonlinearElements> nonlinear;  ///< the other elements; null if there are none
     linear::BlockMatrix consistent_mass,
@@ -147,7 +148,11 @@ void move_tied(const Model& model, Field& u);
 /// Stiffness of all undeformed bodies, in the pattern of K.
 [[nodiscard]] linear::BlockMatrix undeformed_stiffness(const Model& model, int threads);
 /// Stiffness of the linear bodies, in the pattern of all bodies.
-[[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes);
+[[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes,
+                                                     const std::shared_ptr<const Share>& share = nullptr);
+
+/// Nodes that share an element, see linear::neighbours.
+[[nodiscard]] std::vector<std::vector<Index>> neighbours(const std::vector<Body>& bodies, Index nodes);
 struct AssembledMass {
     linear::BlockMatrix M;
     std::vector<Index> kept; ///< bodies that keep the mass of marked nodes: nothing else has their moments

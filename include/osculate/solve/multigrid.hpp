@@ -16,6 +16,8 @@ struct NodalUnknowns {
     std::vector<SparseIndex> equation; ///< (3 n) of each local component; -1: held
     std::vector<Mat3> frame;           ///< (n) columns: the axes of the local components
     Matrix near_kernel;                ///< (3 n x 6) motions without strain, in global components, held ones included
+    std::vector<int> owner;            ///< (n) the process of each, see Share; empty: there is one process
+    std::vector<Index> coupled;        ///< nodes that may be coupled, ascending; of several processes alone
 };
 
 /// V-cycles of smoothed aggregation. Grids are chosen once, for bodies without their coupling, so that no coarse unknown

@@ -5,6 +5,7 @@
 #include "app/command/mesh_command.hpp"
 #include "app/command/study_command.hpp"
 #include "app/command/surface_command.hpp"
+#include "app/run/distributed.hpp"
 #include "osculate/app/diary.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/report.hpp"
@@ -25,6 +26,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <new>
+#include <optional>
 #include <thread>
 
 namespace osculate::app {
@@ -38,7 +40,7 @@ struct Arguments {
     std::vector<std::string> changes;
     FolderOptions folder;
     int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    bool quiet = false;
+    bool quiet = false, distributed = false;
     SurfaceOptions surface;
     StudyOptions study;
     bool formulas = false, list = false, json = false;
@@ -238,7 +240,8 @@ std::string schema(const std::string& kind) {
     return kind == "template" ? scene::template_schema() : scene::scene_schema();
 }
 
-ExitCode run_command(int argc, char** argv) {
+/// @param together  made where the command is one of several processes
+ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together) {
     Arguments arguments;
     CLI::App program("Deformable bodies in frictional contact on smooth surfaces.", "osculate");
     program.set_version_flag("--version", std::string("osculate ") + version);
@@ -246,6 +249,7 @@ ExitCode run_command(int argc, char** argv) {
     CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
     add_folder(run, arguments, "Folder of the run's files [out/<scene name>]");
     add_run_options(run, arguments);
+    run->add_flag("--distributed", arguments.distributed, "Share the run among the processes that mpirun has started");
     CLI::App* resume = program.add_subcommand("resume", "Continue a run from its last checkpoint");
     resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     resume->add_option("--from", arguments.from, "Start from this checkpoint instead of DIR/checkpoint/state")
@@ -308,6 +312,11 @@ ExitCode run_command(int argc, char** argv) {
 
     if (*run) {
         RunOptions options = arguments.run_options();
+        if (arguments.distributed) {
+            const Distributed& all = together.emplace();
+            options.ranks = all.ranks();
+            if (!all.first()) options.directory = all.scratch();
+        }
         options.entered = [&](const std::filesystem::path& folder) { show_numbered(arguments, folder); };
         show_run(app::run(arguments.scene, arguments.overrides(), options), arguments);
     } else if (*resume) {
@@ -349,9 +358,12 @@ ExitCode run_command(int argc, char** argv) {
 
 } // namespace
 
-int command_line(int argc, char** argv) {
+namespace {
+
+/// @param surprise  set for a failure that has nothing to do with the scene
+int guarded_command(int argc, char** argv, std::optional<Distributed>& together, bool& surprise) {
     try {
-        return run_command(argc, argv);
+        return run_command(argc, argv, together);
     } catch (const SceneError& error) {
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
         return bad_scene;
@@ -368,6 +380,7 @@ int command_line(int argc, char** argv) {
         fmt::print(stderr, "the run gave up: {}\n", error.what());
         return gave_up;
     } catch (const std::bad_alloc&) {
+        surprise = true;
         fmt::print(stderr, "the run gave up: there is not enough memory for a scene of this size\n");
         return gave_up;
     } catch (const std::exception& error) {
@@ -375,7 +388,18 @@ int command_line(int argc, char** argv) {
     } catch (...) {
         fmt::print(stderr, "a bug in osculate {}, please report it with the scene\n", version);
     }
+    surprise = true;
     return bug;
+}
+
+} // namespace
+
+int command_line(int argc, char** argv) {
+    std::optional<Distributed> together;
+    bool surprise = false;
+    const int code = guarded_command(argc, argv, together, surprise);
+    if (together) together->leave(code, surprise);
+    return code;
 }
 
 } // namespace osculate::app

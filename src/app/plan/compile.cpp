@@ -2,6 +2,7 @@
 
 #include "app/fault.hpp"
 #include "app/plan/draft.hpp"
+#include "app/plan/draft_share.hpp"
 #include "app/plan/plan_items.hpp"
 #include "app/plan/planned_probe.hpp"
 #include "app/plan/settle_pairs.hpp"
@@ -51,9 +52,11 @@ const model::ContactScope* Plan::scope() const {
     return scope_at_start ? &*scope_at_start : nullptr;
 }
 
-Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings) {
+Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int threads, Timings& timings,
+             std::shared_ptr<Ranks> ranks) {
     require(meshes.size() == scene.bodies.size(), "compile: one mesh per body");
     Draft draft{scene, threads, timings};
+    draft.ranks = std::move(ranks);
     add_bodies(draft, std::move(meshes));
     throw_faults(draft); // nothing below can be trusted on a broken mesh
     add_sets(draft);
@@ -85,6 +88,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft);
     check_plots(scene, draft.plan, draft.faults);
     throw_faults(draft);
+    if (draft.ranks) check_distributed(draft);
+    throw_faults(draft);
     add_matrices(draft);
     throw_faults(draft);
     choose_tangents(draft);
@@ -98,10 +103,10 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     return std::move(draft.plan);
 }
 
-Plan compile(scene::Scene& scene, int threads, Timings& timings) {
+Plan compile(scene::Scene& scene, int threads, Timings& timings, std::shared_ptr<Ranks> ranks) {
     std::vector<std::string> notes;
     std::vector<mesh::Mesh> meshes = build_meshes(scene, &notes);
-    Plan plan = compile(std::as_const(scene), std::move(meshes), threads, timings);
+    Plan plan = compile(std::as_const(scene), std::move(meshes), threads, timings, std::move(ranks));
     plan.mesh_notes = std::move(notes);
     scene.contact = plan.contact;
     scene.general = plan.general;

@@ -2,6 +2,7 @@
 
 #include "app/fault.hpp"
 #include "app/plan/draft.hpp"
+#include "app/plan/draft_share.hpp"
 #include "app/plan/draft_slices.hpp"
 #include "osculate/model/general_contact.hpp"
 
@@ -135,7 +136,8 @@ void add_gravity(Draft& draft) {
 void add_matrices(Draft& draft) {
     const ScopedTimer timer(draft.timings, Part::assembly);
     model::Model& model = draft.plan.model;
-    model.K = model::assemble_stiffness(model.bodies, model.nodes());
+    if (draft.ranks) model.share = share_nodes(draft);
+    model.K = model::assemble_stiffness(model.bodies, model.nodes(), model.share);
     if (draft.any_kernel([](const fe::ElementKernel& kernel) { return !kernel.linear(); }))
         model.nonlinear = std::make_unique<model::NonlinearElements>(model.bodies, model.K);
     add_mass(draft);

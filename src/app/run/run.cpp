@@ -154,7 +154,8 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
                     const RunOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
-    LoadedScene loaded = load(scene_path, overrides, options.threads, timings);
+    LoadedScene loaded = load(scene_path, overrides, options.threads, timings, options.ranks);
+    if (options.ranks && options.ranks->rank() > 0) loaded.scene.output.report = false; // one is enough
     OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
                         RunRecorder::files(loaded.scene, loaded.plan));
     if (options.entered) options.entered(folder.path());

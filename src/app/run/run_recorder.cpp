@@ -226,7 +226,9 @@ void RunRecorder::write_probes(const output::Snapshot& snapshot, bool last) {
 }
 
 void RunRecorder::between_steps(const std::function<time::Checkpoint()>& checkpoint) {
-    const int signal = settings_.interruption != nullptr ? settings_.interruption->signal() : 0;
+    int signal = settings_.interruption != nullptr ? settings_.interruption->signal() : 0;
+    const Share* share = plan_.model.share.get();
+    if (share != nullptr) signal = static_cast<int>(share->ranks().largest(signal)); // it may reach one process alone
     const CheckpointEvery& every = settings_.checkpoint_every;
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - checkpoint_time_;
     if (signal == 0 && (every.steps == 0 || summary_.steps.accepted - checkpoint_step_ < every.steps) &&

@@ -1,0 +1,54 @@
+#pragma once
+/// Processes that run one simulation together.
+
+#include "osculate/core/field.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace osculate {
+
+/// What processes do together. All calls are collective: every process makes them, in the same order.
+class Ranks {
+public:
+    virtual ~Ranks() = default;
+    [[nodiscard]] virtual int rank() const = 0;
+    [[nodiscard]] virtual int count() const = 0;
+    /// Gives all processes the numbers of each.
+    /// @param sizes  (count) how many each has
+    /// @param all    those of rank 0, then those of rank 1, ...
+    virtual void gather(std::span<const double> own, std::span<const int> sizes, double* all) = 0;
+    /// Ends the run of all processes once each has called this, with the exit code of its own.
+    /// @returns  false where some process still works after `patience` s, or has another code: nothing can be done together then
+    [[nodiscard]] virtual bool agree_on_end(int code, double patience) = 0;
+    /// Ends all processes, whatever they do.
+    [[noreturn]] virtual void abort(int code) = 0;
+
+    /// The largest of a value of each process.
+    [[nodiscard]] double largest(double own);
+};
+
+/// Which process owns which node. Every process holds the values of all nodes and takes all decisions from them, so that all
+/// take the same. What takes far more memory or time than that, matrices above all, has rows at own nodes only.
+class Share {
+public:
+    /// @param owner  (nodes) a rank; the same on all processes
+    Share(std::shared_ptr<Ranks> ranks, std::vector<int> owner);
+
+    [[nodiscard]] Ranks& ranks() const { return *ranks_; }
+    [[nodiscard]] const std::vector<int>& owner() const { return owner_; }
+    [[nodiscard]] bool owns(Index node) const { return owner_[static_cast<std::size_t>(node)] == ranks_->rank(); }
+    /// Takes the values of all nodes from their owners.
+    void replicate(Field& field) const;
+    /// Whether all processes hold the same bits.
+    [[nodiscard]] bool agree(const Field& field) const;
+
+private:
+    std::shared_ptr<Ranks> ranks_;
+    std::vector<int> owner_;
+    std::vector<Index> by_owner_; ///< nodes of rank 0, of rank 1, ...
+    std::vector<int> begin_;      ///< (ranks + 1) in by_owner_
+};
+
+} // namespace osculate

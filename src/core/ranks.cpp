@@ -1,0 +1,52 @@
+#include "osculate/core/ranks.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <numeric>
+
+namespace osculate {
+
+Share::Share(std::shared_ptr<Ranks> ranks, std::vector<int> owner)
+    : ranks_(std::move(ranks)), owner_(std::move(owner)), by_owner_(owner_.size()),
+      begin_(static_cast<std::size_t>(ranks_->count()) + 1, 0) {
+    std::iota(by_owner_.begin(), by_owner_.end(), 0);
+    std::ranges::stable_sort(by_owner_, {}, [&](Index node) { return owner_[static_cast<std::size_t>(node)]; });
+    for (const int rank : owner_) ++begin_[static_cast<std::size_t>(rank) + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+}
+
+void Share::replicate(Field& field) const {
+    const auto place = [](Index node) { return static_cast<std::size_t>(node); };
+    std::vector<int> sizes;
+    for (std::size_t r = 0; r + 1 < begin_.size(); ++r) sizes.push_back(3 * (begin_[r + 1] - begin_[r]));
+    const auto rank = static_cast<std::size_t>(ranks_->rank());
+    std::vector<double> own, all(3 * by_owner_.size());
+    own.reserve(static_cast<std::size_t>(sizes[rank]));
+    for (int k = begin_[rank]; k < begin_[rank + 1]; ++k) {
+        const Vec3& value = field[place(by_owner_[place(k)])];
+        own.insert(own.end(), value.data(), value.data() + 3);
+    }
+    ranks_->gather(own, sizes, all.data());
+    for (std::size_t k = 0; k < by_owner_.size(); ++k) field[place(by_owner_[k])] = Eigen::Map<const Vec3>(&all[3 * k]);
+}
+
+bool Share::agree(const Field& field) const {
+    std::uint64_t hash = 14695981039346656037U; // Fowler, Noll and Vo's
+    for (const Vec3& value : field)
+        for (const double component : value) hash = (hash ^ std::bit_cast<std::uint64_t>(component)) * 1099511628211U;
+    for (const std::uint64_t half : {hash >> 32U, hash & 0xffffffffU}) { // exact as a number
+        const auto own = static_cast<double>(half);
+        if (ranks_->largest(own) != -ranks_->largest(-own)) return false;
+    }
+    return true;
+}
+
+double Ranks::largest(double own) {
+    std::vector<double> all(static_cast<std::size_t>(count()));
+    const std::vector<int> sizes(all.size(), 1);
+    gather({&own, 1}, sizes, all.data());
+    return *std::ranges::max_element(all);
+}
+
+} // namespace osculate

@@ -1,0 +1,47 @@
+#include "osculate/core/ranks.hpp"
+
+#include "support/thread_ranks.hpp"
+
+#include <gtest/gtest.h>
+
+namespace osculate {
+namespace {
+
+const std::vector<int> owner{2, 0, 1, 1, 0, 2, 2};
+
+Field some_field() {
+    Field field(owner.size());
+    for (std::size_t i = 0; i < field.size(); ++i) field[i] = Vec3(1, 10, 100) * (static_cast<double>(i) + 1.0 / 3);
+    return field;
+}
+
+TEST(Share, GivesEveryProcessTheValuesOfOwners) {
+    testing::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+        const Share share(ranks, owner);
+        Field field = some_field();
+        for (std::size_t i = 0; i < field.size(); ++i)
+            if (!share.owns(static_cast<Index>(i))) field[i].setConstant(-7);
+        share.replicate(field);
+        EXPECT_EQ(field, some_field());
+    });
+}
+
+TEST(Share, SeesASingleBit) {
+    testing::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+        const Share share(ranks, owner);
+        Field field = some_field();
+        EXPECT_TRUE(share.agree(field));
+        if (ranks->rank() == 1) field[4].y() = std::nextafter(field[4].y(), 0);
+        EXPECT_FALSE(share.agree(field));
+    });
+}
+
+TEST(Ranks, FindTheLargestOfAll) {
+    testing::on_ranks(4, [](const std::shared_ptr<Ranks>& ranks) {
+        EXPECT_EQ(ranks->largest(ranks->rank() == 2 ? 5 : -ranks->rank()), 5);
+        EXPECT_EQ(ranks->largest(-1 - ranks->rank()), -1);
+    });
+}
+
+} // namespace
+} // namespace osculate

@@ -1,0 +1,46 @@
+#pragma once
+/// Ranks that are threads of the test.
+
+#include "osculate/core/ranks.hpp"
+
+#include <algorithm>
+#include <barrier>
+#include <functional>
+#include <stdexcept>
+#include <thread>
+
+namespace osculate::testing {
+
+/// Calls body(ranks) on `count` threads that are processes to each other.
+inline void on_ranks(int count, const std::function<void(std::shared_ptr<Ranks>)>& body) {
+    struct Shared {
+        explicit Shared(int n) : all_here(n), own(static_cast<std::size_t>(n)) {}
+        std::barrier<> all_here;
+        std::vector<std::vector<double>> own;
+    };
+    class ThreadRank final : public Ranks {
+    public:
+        ThreadRank(Shared& shared, int rank, int count) : shared_(shared), rank_(rank), count_(count) {}
+        [[nodiscard]] int rank() const override { return rank_; }
+        [[nodiscard]] int count() const override { return count_; }
+        void gather(std::span<const double> own, std::span<const int>, double* all) override {
+            shared_.own[static_cast<std::size_t>(rank_)].assign(own.begin(), own.end());
+            shared_.all_here.arrive_and_wait();
+            for (const std::vector<double>& one : shared_.own) all = std::ranges::copy(one, all).out;
+            shared_.all_here.arrive_and_wait();
+        }
+        [[nodiscard]] bool agree_on_end(int, double) override { return true; }
+        [[noreturn]] void abort(int) override { throw std::logic_error("aborted"); }
+
+    private:
+        Shared& shared_;
+        int rank_, count_;
+    };
+    Shared shared(count);
+    std::vector<std::thread> threads;
+    for (int rank = 0; rank < count; ++rank)
+        threads.emplace_back([&, rank] { body(std::make_shared<ThreadRank>(shared, rank, count)); });
+    for (std::thread& thread : threads) thread.join();
+}
+
+} // namespace osculate::testing

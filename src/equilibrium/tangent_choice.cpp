@@ -56,7 +56,7 @@ CondensationCost condensation_cost(const model::Model& model, const std::vector<
 
 namespace {
 bool goes_by_multigrid(const model::Model& model, LinearSolver asked, bool condensable) {
-    constexpr Index many = 20000;      // nodes from which cycles cost less than factors that serve one step
+    constexpr Index many = 10000;      // nodes from which cycles cost less than factors that serve one step
     constexpr Index very_many = 50000; // and less than those that condensation makes once
     if (model.share) return true;      // no process has the whole matrix
     if (asked != LinearSolver::automatic) return asked == LinearSolver::multigrid;

@@ -29,7 +29,7 @@ void describe(Visitor& v, Solver& solver) {
               "How Newton's linear systems are solved. condensed: on the contact nodes alone, with bodies factorised "
               "once; iterative or multigrid: by GMRES with the whole tangent, preconditioned by a factorisation or by "
               "multigrid; direct: by a factorisation of the tangent in every iteration. automatic: multigrid above 50 "
-              "000 nodes, else condensed if it costs less, else multigrid above 20 000 nodes, else iterative."},
+              "000 nodes, else condensed if it costs less, else multigrid above 10 000 nodes, else iterative."},
          linear_solvers, solver.linear_solver);
     v.flag({.name = "stabilisation",
             .meaning = "In statics, springs hold bodies that nothing else holds, until contact does; no step is "

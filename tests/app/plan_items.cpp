@@ -59,10 +59,10 @@ mirror images                . . . . . . . . . . . . . .
 averaged forces              . . . . . x x x x . . x x x
 interpenetration control     x x x x x x x x x x x x x x
 collision check              x x x x x . . . . x x . . .
-multigrid                    . . . . . . . . . . . . . .
+multigrid                    . . . . . x x x . . . . . .
 condensation                 x x x . x . . . x x x x x x
 LU factorisation             . . . . . . . . . . . . . .
-Cholesky factorisation       x x x x x x x x x x x x x x
+Cholesky factorisation       x x x x x . . . x x x x x x
 GMRES                        x x x x x x x x x x x x x x
 stabilisation springs        . . . . . . . . . . . . . .
 audit of geometry            x x x x x x x x x x x x x x

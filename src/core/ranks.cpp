@@ -42,6 +42,17 @@ bool Share::agree(const Field& field) const {
     return true;
 }
 
+void Ranks::sum(std::span<double> values) {
+    const auto n = values.size(), ranks = static_cast<std::size_t>(count());
+    std::vector<double> all(n * ranks);
+    const std::vector<int> sizes(ranks, static_cast<int>(n));
+    gather(values, sizes, all.data());
+    for (std::size_t k = 0; k < n; ++k) {
+        values[k] = all[k];
+        for (std::size_t r = 1; r < ranks; ++r) values[k] += all[r * n + k];
+    }
+}
+
 double Ranks::largest(double own) {
     std::vector<double> all(static_cast<std::size_t>(count()));
     const std::vector<int> sizes(all.size(), 1);

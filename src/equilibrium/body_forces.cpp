@@ -34,6 +34,10 @@ BodyForces::BodyForces(const model::Model& model, const Dynamics* dynamics, bool
     : model_(model), dynamics_(dynamics), follower_pressure_(follower_pressure), threads_(threads) {
     if (dynamics_ != nullptr || varies()) tangent_ = model_.K;
     if (varies()) constant_ = model_.K;
+    if (dynamics_ == nullptr) return;
+    Field sums(model_.X.size());
+    mass().multiply_add(Field(model_.X.size(), Vec3::UnitX()), sums, threads_);
+    for (const Vec3& row : sums) row_mass_.push_back(row.x());
 }
 
 void BodyForces::add_to_tangent(std::function<void(linear::BlockMatrix&)> part, const linear::Dependence& dependence) {
@@ -205,10 +209,7 @@ void BodyForces::complete(model::State& state) const {
 }
 
 double BodyForces::inertia(Index node) const {
-    if (dynamics_ == nullptr) return 0;
-    double sum = 0;
-    for (Index k = mass().row_begin(node); k < mass().row_end(node); ++k) sum += mass().block(k)(0, 0);
-    return mass_factor() * sum;
+    return dynamics_ == nullptr ? 0 : mass_factor() * row_mass_[static_cast<std::size_t>(node)];
 }
 
 BodyWork BodyForces::work(const model::State& state) const {

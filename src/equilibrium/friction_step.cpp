@@ -1,20 +1,23 @@
 #include "osculate/equilibrium/friction_step.hpp"
 
+#include "osculate/linear/gathered.hpp"
 #include "osculate/solve/by_components.hpp"
 #include "osculate/solve/friction_problem.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <optional>
 
 namespace osculate::equilibrium {
 
 using linear::Constraints;
 
 namespace {
-constexpr double reach = 0.1;       ///< of a facet: nodes that far from the master may close
-constexpr Index most_points = 1000; ///< their dense matrix takes 72 MB
-constexpr Index batch = 64;         ///< right sides solved at a time
-constexpr double tolerance = 1e-10; ///< of solve::friction_error()
+constexpr double reach = 0.1;         ///< of a facet: nodes that far from the master may close
+constexpr Index most_points = 1000;   ///< their dense matrix takes 72 MB
+constexpr Index most_shared = 100000; ///< nodes whose factors every process has room for
+constexpr Index batch = 64;           ///< right sides solved at a time
+constexpr double tolerance = 1e-10;   ///< of solve::friction_error()
 } // namespace
 
 FrictionStep::FrictionStep(const linear::Constraints& constraints, const linear::Unknowns& unknowns, BodyTerm& bodies,
@@ -26,11 +29,16 @@ FrictionStep::FrictionStep(const linear::Constraints& constraints, const linear:
       stiffness_(constraints, bodies.bodies().tangent()) {}
 
 bool FrictionStep::factorise(const Iterate& at) {
-    if (bodies_.bodies().shared()) return false; // no process has the whole matrix
     (void)bodies_.update_stiffness(at);
     if (folded_) folded_->fold(bodies_.bodies().tangent());
-    stiffness_.use(folded_ ? folded_->matrix() : bodies_.bodies().tangent());
-    stiffness_.set_springs({});
+    const linear::BlockMatrix& tangent = folded_ ? folded_->matrix() : bodies_.bodies().tangent();
+    std::optional<linear::BlockMatrix> whole; // each process solves by itself, and all get the same bits
+    if (tangent.share() != nullptr) {
+        if (tangent.rows() > most_shared) return false;
+        whole = linear::gathered(tangent);
+    }
+    stiffness_.use(whole ? *whole : tangent);
+    stiffness_.set_springs({}); // what reads it last
     const auto done = [&](std::unique_ptr<solve::DirectSolver>& solver, auto&& make) {
         if (!solver) solver = solve::make_by_components(make);
         solver_ = solver.get();

@@ -26,8 +26,7 @@ BlockMatrix::BlockMatrix(const std::vector<std::vector<Index>>& columns, std::sh
     : share_(std::move(share)) {
     row_start_.reserve(columns.size() + 1);
     for (std::size_t row = 0; row < columns.size(); ++row) {
-        if (share_ == nullptr || share_->owns(static_cast<Index>(row)))
-            column_.insert(column_.end(), columns[row].begin(), columns[row].end());
+        if (has_row(static_cast<Index>(row))) column_.insert(column_.end(), columns[row].begin(), columns[row].end());
         row_start_.push_back(static_cast<Index>(column_.size()));
     }
     set_zero();
@@ -64,6 +63,14 @@ void BlockMatrix::set_combination(double a, const BlockMatrix& A, double b, cons
     }
     require(B.column_.size() == column_.size(), "set_combination: patterns differ");
     for (std::size_t k = 0; k < block_.size(); ++k) block_[k] = a * A.block_[k] + b * B.block_[k];
+}
+
+Field BlockMatrix::diagonal() const {
+    Field result(static_cast<std::size_t>(rows()));
+    for (Index i = 0; i < rows(); ++i)
+        if (row_begin(i) < row_end(i)) result[static_cast<std::size_t>(i)] = block(slot(i, i)).diagonal();
+    if (share_ != nullptr) share_->replicate(result);
+    return result;
 }
 
 template <class Row> void BlockMatrix::add_rows(Field& y, int threads, Row&& row) const {

@@ -5,14 +5,19 @@ namespace {
 
 /// (equations) 1 / M_ii, 0 where there is no mass
 Vector inverse_diagonal(const BlockMatrix& M, const Constraints& constraints) {
-    Vector inverse = Vector::Zero(constraints.equations());
+    Field diagonal(static_cast<std::size_t>(M.rows()));
     for (Index node = 0; node < M.rows(); ++node) {
         if (M.row_begin(node) == M.row_end(node)) continue;
         const Mat3& axes = constraints.frame(node);
-        const Mat3 own = axes.transpose() * M.block(M.slot(node, node)) * axes;
-        for (int k = 0; k < 3; ++k)
-            if (const Index e = constraints.equation(node, k); e >= 0 && own(k, k) != 0) inverse(e) = 1 / own(k, k);
+        diagonal[static_cast<std::size_t>(node)] =
+            (axes.transpose() * M.block(M.slot(node, node)) * axes).eval().diagonal();
     }
+    if (M.share() != nullptr) M.share()->replicate(diagonal);
+    Vector inverse = Vector::Zero(constraints.equations());
+    for (Index node = 0; node < M.rows(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (const double own = diagonal[static_cast<std::size_t>(node)](k); own != 0)
+                if (const Index e = constraints.equation(node, k); e >= 0) inverse(e) = 1 / own;
     return inverse;
 }
 

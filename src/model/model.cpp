@@ -126,8 +126,8 @@ std::optional<std::vector<double>> redistribution(const Body& body, bool lumped,
 } // namespace
 
 AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
-                            const std::vector<char>& massless) {
-    AssembledMass assembled{linear::BlockMatrix(neighbours(bodies, nodes)), {}};
+                            const std::vector<char>& massless, const std::shared_ptr<const Share>& share) {
+    AssembledMass assembled{linear::BlockMatrix(neighbours(bodies, nodes), share), {}};
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const Body& body = bodies[b];
         if (body.rigid) continue;
@@ -143,10 +143,12 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
         for_each_element(body, [&](const Element& one) {
             const auto& [kernel, density, element, X] = one;
             const Index n = kernel.nodes();
+            const double factor = factors ? (*factors)[e++] : 1;
+            if (std::ranges::none_of(element, [&](Index node) { return assembled.M.has_row(node); })) return;
             element_mass(kernel, X, density, lumped, scalar);
             if (factors) {
                 (void)redistribute(element, massless, scalar);
-                scalar *= (*factors)[e++];
+                scalar *= factor;
             }
             Me.setZero(3 * n, 3 * n);
             for (Index i = 0; i < n; ++i)
@@ -166,7 +168,7 @@ linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index no
         for_each_element(body, [&](const Element& one) {
             const auto& [kernel, density, element, X] = one;
             if (!kernel.linear()) return;
-            if (share && std::ranges::none_of(element, [&](Index node) { return share->owns(node); })) return;
+            if (std::ranges::none_of(element, [&](Index node) { return K.has_row(node); })) return;
             Ke.resize(3 * kernel.nodes(), 3 * kernel.nodes());
             kernel.stiffness(X, Ke);
             K.add(element, Ke);

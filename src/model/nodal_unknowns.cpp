@@ -1,6 +1,9 @@
 #include "osculate/model/nodal_unknowns.hpp"
 
+#include "osculate/model/general_contact.hpp"
 #include "osculate/model/rigid_motion.hpp"
+
+#include <algorithm>
 
 namespace osculate::model {
 
@@ -8,22 +11,18 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
     solve::NodalUnknowns result;
     for (Index node = 0; node < model.nodes(); ++node)
         if (constraints.free_components(node) > 0) result.node.push_back(node);
-    result.near_kernel.resize(3 * static_cast<Index>(result.node.size()), 6);
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const Body& body = model.bodies[b];
         const Index last = body.first_node + body.nodes();
         const auto [centre, radius] = extent(body, model.X);
         for (Index node = body.first_node; node < last; ++node) {
             if (constraints.free_components(node) == 0) continue;
-            const auto row = static_cast<Index>(result.equation.size());
             result.body.push_back(static_cast<Index>(b));
             result.frame.push_back(constraints.frame(node));
+            result.arm.push_back((model.X[node] - centre) / radius);
             for (int k = 0; k < 3; ++k) {
                 const Index e = constraints.equation(node, k);
                 result.equation.push_back(e == linear::Constraints::held ? -1 : e);
-                const Vec3 d = Vec3::Unit(k);
-                result.near_kernel.row(row + k) << d.transpose(),
-                    (model.X[node] - centre).cross(d).transpose() / radius;
             }
         }
     }
@@ -33,6 +32,12 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
         result.coupled.insert(result.coupled.end(), pair->slaves().node.begin(), pair->slaves().node.end());
         result.coupled.insert(result.coupled.end(), pair->master_nodes().begin(), pair->master_nodes().end());
     }
+    if (model.general)
+        for (const OuterSurface& surface : model.general->surfaces())
+            for (const mesh::Facet& facet : surface.facets)
+                result.coupled.insert(result.coupled.end(), facet.begin(), facet.end());
+    std::ranges::sort(result.coupled);
+    result.coupled.erase(std::unique(result.coupled.begin(), result.coupled.end()), result.coupled.end());
     return result;
 }
 

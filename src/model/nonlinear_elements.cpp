@@ -3,6 +3,9 @@
 #include "osculate/core/parallel.hpp"
 #include "osculate/model/model.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace osculate::model {
 
 namespace {
@@ -37,7 +40,9 @@ std::span<const double> NonlinearElements::Block::history(const MaterialHistory&
     return std::span(all).subspan(history_first + static_cast<std::size_t>(element) * history_size, history_size);
 }
 
-NonlinearElements::NonlinearElements(const std::vector<Body>& bodies, const linear::BlockMatrix& pattern) {
+NonlinearElements::NonlinearElements(const std::vector<Body>& bodies, const linear::BlockMatrix& pattern,
+                                     std::shared_ptr<const Share> share)
+    : share_(std::move(share)) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         Index first = 0;
         std::size_t history = history_place(bodies, b).first;
@@ -59,28 +64,30 @@ NonlinearElements::NonlinearElements(const std::vector<Body>& bodies, const line
             const Index n = block.kernel->nodes();
             Matrix Ke(3 * n, 3 * n);
             for (Index e = 0; e < block.size; ++e) {
+                const std::span nodes(&block.node[static_cast<std::size_t>(e * n)], static_cast<std::size_t>(n));
+                if (std::ranges::none_of(nodes, [&](Index node) { return pattern.has_row(node); })) continue;
+                block.here.push_back(e);
                 Eigen::Matrix3Xd X(3, n);
                 for (Index i = 0; i < n; ++i)
                     X.col(i) = bodies[b].mesh.nodes[static_cast<std::size_t>(elements.connectivity[e * n + i])];
                 block.kernel->stiffness(X, Ke);
                 largest_stiffness_ = std::max(largest_stiffness_, Ke.diagonal().maxCoeff());
-                for (Index i = 0; i < n; ++i)
-                    for (Index j = 0; j < n; ++j)
-                        block.slot.push_back(pattern.slot(block.node[static_cast<std::size_t>(e * n + i)],
-                                                          block.node[static_cast<std::size_t>(e * n + j)]));
+                for (const Index row : nodes)
+                    for (const Index column : nodes)
+                        block.slot.push_back(pattern.has_row(row) ? pattern.slot(row, column) : -1);
             }
         }
     }
 }
 
 template <class Compute, class Use>
-void NonlinearElements::for_each(const Block& block, int threads, Compute&& compute, Use&& use) {
-    for (Index first = 0; first < block.size; first += most_at_once) {
-        const Index count = std::min(most_at_once, block.size - first);
-        parallel_for(threads, count, [&](Index begin, Index end) {
+void NonlinearElements::for_each(Index count, int threads, Compute&& compute, Use&& use) {
+    for (Index first = 0; first < count; first += most_at_once) {
+        const Index batch = std::min(most_at_once, count - first);
+        parallel_for(threads, batch, [&](Index begin, Index end) {
             for (Index k = begin; k < end; ++k) compute(k, first + k);
         });
-        for (Index k = 0; k < count; ++k) use(k, first + k);
+        for (Index k = 0; k < batch; ++k) use(k, first + k);
     }
 }
 
@@ -97,21 +104,38 @@ decltype(auto) NonlinearElements::with_step(const Block& block, Index element, c
 }
 
 WorstElement NonlinearElements::add_force(const Field& X, const BodyStep& step, Field& f, int threads) const {
+    if (share_ == nullptr) return add_own_force(X, step, f, threads);
+    Field own(f.size());
+    const WorstElement here = add_own_force(X, step, own, threads);
+    share_->replicate(own);
+    f.add(1, own);
+    const double found[] = {here.J, static_cast<double>(here.body), static_cast<double>(here.element)};
+    const auto ranks = static_cast<std::size_t>(share_->ranks().count());
+    std::vector<double> all(std::size(found) * ranks);
+    share_->ranks().gather(found, std::vector<int>(ranks, std::size(found)), all.data());
+    std::array<double, 3> worst{all[0], all[1], all[2]};
+    for (std::size_t r = 1; r < ranks; ++r) worst = std::min(worst, {all[3 * r], all[3 * r + 1], all[3 * r + 2]});
+    return {worst[0], static_cast<Index>(worst[1]), static_cast<Index>(worst[2])};
+}
+
+WorstElement NonlinearElements::add_own_force(const Field& X, const BodyStep& step, Field& f, int threads) const {
     WorstElement worst;
     for (const Block& block : blocks_) {
-        const Index n = block.kernel->nodes(), batch = std::min(most_at_once, block.size);
+        const auto count = static_cast<Index>(block.here.size());
+        const Index n = block.kernel->nodes(), batch = std::min(most_at_once, count);
         std::vector<Eigen::Matrix3Xd> forces(batch, Eigen::Matrix3Xd(3, n));
         std::vector<fe::Deformation> deformation(batch);
         MaterialHistory unused(batch * block.history_size);
         for_each(
-            block, threads,
-            [&](Index k, Index e) {
+            count, threads,
+            [&](Index k, Index number) {
                 const std::span history(unused.data() + k * block.history_size, block.history_size);
-                deformation[k] = with_step(block, e, X, step, [&](const fe::ElementStep& element) {
+                deformation[k] = with_step(block, block.here[number], X, step, [&](const fe::ElementStep& element) {
                     return block.kernel->update(element, history, forces[k]);
                 });
             },
-            [&](Index k, Index e) {
+            [&](Index k, Index number) {
+                const Index e = block.here[number];
                 for (Index i = 0; i < n; ++i) f[static_cast<std::size_t>(block.node[e * n + i])] += forces[k].col(i);
                 if (deformation[k].smallest_J < worst.J)
                     worst = {deformation[k].smallest_J, block.body, block.first_element + e};
@@ -122,19 +146,21 @@ WorstElement NonlinearElements::add_force(const Field& X, const BodyStep& step, 
 
 void NonlinearElements::add_tangent(const Field& X, const BodyStep& step, linear::BlockMatrix& K, int threads) const {
     for (const Block& block : blocks_) {
-        const Index n = block.kernel->nodes(), batch = std::min(most_at_once, block.size);
+        const auto count = static_cast<Index>(block.here.size());
+        const Index n = block.kernel->nodes(), batch = std::min(most_at_once, count);
         std::vector<Matrix> tangent(batch, Matrix(3 * n, 3 * n));
         for_each(
-            block, threads,
-            [&](Index k, Index e) {
-                (void)with_step(block, e, X, step, [&](const fe::ElementStep& element) {
+            count, threads,
+            [&](Index k, Index number) {
+                (void)with_step(block, block.here[number], X, step, [&](const fe::ElementStep& element) {
                     return block.kernel->tangent(element, tangent[k]);
                 });
             },
-            [&](Index k, Index e) {
-                const Index* slot = &block.slot[static_cast<std::size_t>(e * n * n)];
+            [&](Index k, Index number) {
+                const Index* slot = &block.slot[static_cast<std::size_t>(number) * static_cast<std::size_t>(n * n)];
                 for (Index i = 0; i < n; ++i)
-                    for (Index j = 0; j < n; ++j) K.block(slot[i * n + j]) += tangent[k].block<3, 3>(3 * i, 3 * j);
+                    for (Index j = 0; j < n && slot[i * n] >= 0; ++j)
+                        K.block(slot[i * n + j]) += tangent[k].block<3, 3>(3 * i, 3 * j);
             });
     }
 }
@@ -162,7 +188,7 @@ double NonlinearElements::energy(const Field& X, const Field& u, const MaterialH
         const Index n = block.kernel->nodes();
         std::vector<double> W(std::min(most_at_once, block.size));
         for_each(
-            block, threads,
+            block.size, threads,
             [&](Index k, Index e) {
                 const Index* nodes = &block.node[static_cast<std::size_t>(e) * static_cast<std::size_t>(n)];
                 (void)block.kernel->energy({gather(nodes, n, X), gather(nodes, n, u), block.history(history, e)}, W[k]);

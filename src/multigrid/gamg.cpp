@@ -89,8 +89,7 @@ public:
             Mat& A = below_[level];
             if (level + 1 < below_.size()) {
                 if (grown) MatDestroy(&A);
-                check(MatPtAP(below_[level + 1], interpolation_[level],
-                              A == nullptr ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, PETSC_DEFAULT, &A));
+                alone_ ? project(below_[level + 1], interpolation_[level], A) : project_row_by_row(level, A);
                 mend(A);
             }
             KSP smoother = nullptr;
@@ -183,6 +182,22 @@ private:
         std::copy_n(from, own, c_.data());
         check(VecRestoreArrayRead(correction_, &from));
         P_->add_to_fine(c_.data(), x.data());
+    }
+    /// coarse = P^T A P, in the pattern that it has, if any.
+    static void project(Mat A, Mat P, Mat& coarse) {
+        check(MatPtAP(A, P, coarse == nullptr ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse));
+    }
+    /// The same for several processes. Each computes its rows of A P and of P^T (A P) from rows that it asks for. PETSc's own
+    /// product adds up what comes from others as it comes, with other bits each time, or takes half as long again.
+    void project_row_by_row(std::size_t level, Mat& coarse) {
+        restriction_.resize(interpolation_.size());
+        half_way_.resize(interpolation_.size());
+        Mat &R = restriction_[level], &AP = half_way_[level];
+        if (R == nullptr) check(MatTranspose(interpolation_[level], MAT_INITIAL_MATRIX, &R));
+        if (coarse == nullptr) MatDestroy(&AP);
+        const MatReuse reuse = coarse == nullptr ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX;
+        check(MatMatMult(below_[level + 1], interpolation_[level], reuse, PETSC_DEFAULT, &AP));
+        check(MatMatMult(R, AP, reuse, PETSC_DEFAULT, &coarse));
     }
     static void changed(Mat matrix) {
         check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -309,7 +324,10 @@ private:
     void clear() {
         PCDestroy(&cycle_);
         for (Mat& P : interpolation_) MatDestroy(&P);
-        for (Mat& A : below_) MatDestroy(&A);
+        for (std::vector<Mat>* list : {&below_, &restriction_, &half_way_})
+            for (Mat& A : *list) MatDestroy(&A);
+        restriction_.clear();
+        half_way_.clear();
         interpolation_.clear();
         below_.clear();
         VecDestroy(&coarse_residual_);
@@ -329,6 +347,7 @@ private:
     std::optional<CoarseMatrix> coarse_;
     std::vector<Mat> below_;         ///< by level, 0 the coarsest, without the finest grid; last that of coarse_
     std::vector<Mat> interpolation_; ///< from level i to i + 1 of these
+    std::vector<Mat> restriction_, half_way_; ///< their transposes, and products A P; of several processes alone
     PC cycle_ = nullptr;
     Vec coarse_residual_ = nullptr, correction_ = nullptr;
     Vector b_, x_, other_;               ///< (3 n) with copies
@@ -344,8 +363,8 @@ public:
         MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
         MPI_Comm_size(MPI_COMM_WORLD, &count_);
         MPI_Comm_dup(MPI_COMM_WORLD, &at_the_end_);
-        // other ways to the products of coarse grids depend on which message comes first
-        check(PetscOptionsSetValue(nullptr, "-matptap_via", "allatonce"));
+        // GAMG's own products, in bits that do not depend on which message comes first
+        check(PetscOptionsSetValue(nullptr, "-matptap_via", "backend"));
     }
     ~MpiRanks() override {
         MPI_Comm_free(&at_the_end_);

@@ -49,14 +49,14 @@ Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const F
     }
     std::vector<std::vector<Index>> members(static_cast<std::size_t>(aggregates_));
     for (Index i = 0; i < nodes.size(); ++i) members[aggregates.of[i]].push_back(i);
-    Matrix motions(modes * aggregates_, unknowns.near_kernel.cols());
+    Matrix motions(modes * aggregates_, modes);
     std::vector<Index> body(static_cast<std::size_t>(aggregates_));
     Matrix tentative(width, nodes.with_copies());
     for (Index a = 0; a < aggregates_; ++a) {
         Matrix B(3 * static_cast<Index>(members[a].size()), modes);
         for (std::size_t m = 0; m < members[a].size(); ++m)
             B.middleRows<3>(3 * static_cast<Index>(m)) =
-                nodes.projection(members[a][m]) * unknowns.near_kernel.middleRows<3>(3 * nodes.place(members[a][m]));
+                nodes.projection(members[a][m]) * unknowns.motions(nodes.place(members[a][m]));
         body[a] = unknowns.body[nodes.place(members[a].front())];
         orthonormalise(B, motions.middleRows<modes>(modes * a));
         for (std::size_t m = 0; m < members[a].size(); ++m) {

@@ -42,7 +42,9 @@ Dimension product(Dimension a, int p, Dimension b, int q) {
 }
 
 std::string power(const UnitClass& c, int p) {
-    return p == 1 ? c.pattern : c.pattern + "\\^" + std::to_string(p);
+    if (p == 1) return c.pattern;
+    const std::string digits = "\\^?" + std::to_string(p);
+    return c.pattern + (p == 2 ? "(?:" + digits + "|²)" : p == 3 ? "(?:" + digits + "|³)" : digits);
 }
 
 } // namespace
@@ -67,7 +69,7 @@ std::string unit_pattern(Dimension dimension) {
                                            (q < 0 ? "(?: */ *" + power(b, -q) + "|" + times + ")" : times));
                 }
         }
-    const std::string factor = "[A-Za-zµ]+(?:\\^-?[1-9])?";
+    const std::string factor = "[A-Za-zµ]+(?:\\^?-?[1-9]|²|³)?";
     alternatives.push_back(factor + "(?: *[*/ ] *" + factor + "){2,}");
     std::string pattern;
     for (const std::string& alternative : alternatives) pattern += (pattern.empty() ? "" : "|") + alternative;

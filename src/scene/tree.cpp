@@ -199,7 +199,10 @@ Tree read_yaml(const std::string& path, std::vector<Fault>& faults, const std::v
     std::error_code error;
     const std::string text = file_content(path, error);
     if (error) {
-        faults.push_back(fault_at({path, 0, 0}, "", "a readable file", error.message()));
+        const char* found = error == std::errc::timed_out        ? "a pipe that no program writes to"
+                            : error == std::errc::file_too_large ? "a stream of more than 256 MB"
+                                                                 : nullptr;
+        faults.push_back(fault_at({path, 0, 0}, "", "a readable file", found != nullptr ? found : error.message()));
         return nothing;
     }
     return parse_yaml(text, path, faults, with_lines);

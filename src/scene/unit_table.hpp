@@ -36,6 +36,12 @@ inline constexpr std::array symbols{
     Symbol{"h", {dimension::time, 3600, 1}, false},
     Symbol{"deg", {dimension::angle, std::numbers::pi, 180}, false},
     Symbol{"K", {dimension::temperature}, false},
+    Symbol{"in", {dimension::length, 254, 1e4}, false},
+    Symbol{"ft", {dimension::length, 3048, 1e4}, false},
+    Symbol{"lb", {{0, 1, 0, 0}, 45359237, 1e8}, false},
+    Symbol{"lbf", {dimension::force, 44482216152605, 1e13}, false},
+    Symbol{"psi", {dimension::pressure, 44482216152605, 6451600000}, false}, // lbf/in^2
+    Symbol{"ksi", {dimension::pressure, 44482216152605, 6451600}, false},
 };
 
 struct Prefix {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace osculate::scene {
 
@@ -80,7 +81,30 @@ std::string_view trim(std::string_view text) {
     return text;
 }
 
-/// unit = [ "1" "/" ] factor { ("*" | "/" | " ") factor };  factor = symbol [ "^" integer ].
+/// Takes the power off the end of a symbol, or off what follows it: "mm^2", "mm2", "mm²". @returns 0 if it is unreadable
+int take_power(std::string_view& symbol, std::string_view& rest) {
+    constexpr std::pair<std::string_view, int> raised[] = {{"²", 2}, {"³", 3}};
+    for (const auto& [text, power] : raised)
+        if (symbol.ends_with(text)) {
+            symbol.remove_suffix(text.size());
+            return power;
+        }
+    const bool marked = rest.starts_with('^');
+    const std::string_view digits = rest.substr(marked ? 1 : 0);
+    const bool written =
+        !digits.empty() &&
+        (std::isdigit(static_cast<unsigned char>(digits.front())) != 0 ||
+         (digits.size() > 1 && digits.front() == '-' && std::isdigit(static_cast<unsigned char>(digits[1])) != 0));
+    if (!marked && !written) return 1;
+    constexpr int most = 9;
+    int power = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), power);
+    if (error != std::errc{} || std::abs(power) > most) return 0;
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    return power;
+}
+
+/// unit = [ "1" "/" ] factor { ("*" | "/" | " ") factor };  factor = symbol [ [ "^" ] integer | "²" | "³" ].
 class UnitParser {
 public:
     UnitParser(std::string_view text, Quantity& result) : rest_(text), result_(result) {}
@@ -116,15 +140,11 @@ private:
             if (!std::isalpha(c) && c < 0x80) break;
             ++length;
         }
-        const std::string_view symbol = rest_.substr(0, length);
+        std::string_view symbol = rest_.substr(0, length);
         rest_.remove_prefix(length);
-        int power = 1;
-        if (!symbol.empty() && !rest_.empty() && rest_.front() == '^') {
-            const auto [end, error] = std::from_chars(rest_.data() + 1, rest_.data() + rest_.size(), power);
-            if (error != std::errc{} || power == 0 || std::abs(power) > max_power) return fail("unreadable");
-            rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
-        }
         if (symbol.empty()) return fail("unreadable");
+        int power = take_power(symbol, rest_);
+        if (symbol.empty() || power == 0) return fail("unreadable");
         const std::optional<Unit> unit = find_unit(symbol);
         if (!unit) {
             static const std::vector<std::string> known = known_units();
@@ -149,7 +169,6 @@ private:
         return false;
     }
 
-    static constexpr int max_power = 9;
     std::string_view rest_;
     Quantity& result_;
     double numerator_ = 1, denominator_ = 1;

@@ -44,7 +44,7 @@ constexpr int worth_trying = 2;
 } // namespace
 
 struct KinsolSolver::Impl {
-    Impl(Index n, Timings& t) : size(n), timings(t) {
+    Impl(Index n, Timings& t, Ranks* r) : size(n), timings(t), ranks(r) {
         z.reset(N_VNew_Serial(n, context));
         u_scale.reset(N_VNew_Serial(n, context));
         f_scale.reset(N_VNew_Serial(n, context));
@@ -218,7 +218,7 @@ struct KinsolSolver::Impl {
             }
             const ScopedTimer timer(timings, Part::solve);
             const auto on_all_unknowns = [&] {
-                if (krylov == nullptr) krylov = std::make_unique<Gmres>(size);
+                if (krylov == nullptr) krylov = std::make_unique<Gmres>(size, ranks);
                 return krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
             };
             const std::optional<Gmres::Result> own =
@@ -266,6 +266,7 @@ struct KinsolSolver::Impl {
     sundials::Context context;
     Index size;
     Timings& timings;
+    Ranks* ranks;
     VectorPtr z, u_scale, f_scale;
     SUNMatrix handle = nullptr;
     SUNLinearSolver linear = nullptr;
@@ -287,7 +288,8 @@ struct KinsolSolver::Impl {
     std::exception_ptr error;
 };
 
-KinsolSolver::KinsolSolver(Index size, Timings& timings) : impl_(std::make_unique<Impl>(size, timings)) {}
+KinsolSolver::KinsolSolver(Index size, Timings& timings, Ranks* ranks)
+    : impl_(std::make_unique<Impl>(size, timings, ranks)) {}
 KinsolSolver::~KinsolSolver() = default;
 
 long KinsolSolver::factorisations() const {

@@ -36,6 +36,16 @@ TEST(Share, SeesASingleBit) {
     });
 }
 
+TEST(Ranks, AddUpInTheirOrder) {
+    constexpr double large = 1e16; // beside which 1 is lost, or not, by the order of sums
+    testing::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+        const double own[] = {1, large, -large};
+        std::vector<double> sums{own[ranks->rank()], own[2 - ranks->rank()]};
+        ranks->sum(sums);
+        EXPECT_EQ(sums, (std::vector<double>{(1 + large) - large, (-large + large) + 1}));
+    });
+}
+
 TEST(Ranks, FindTheLargestOfAll) {
     testing::on_ranks(4, [](const std::shared_ptr<Ranks>& ranks) {
         EXPECT_EQ(ranks->largest(ranks->rank() == 2 ? 5 : -ranks->rank()), 5);

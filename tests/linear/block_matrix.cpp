@@ -1,4 +1,5 @@
 #include "block_systems.hpp"
+#include "osculate/linear/gathered.hpp"
 #include "support/thread_ranks.hpp"
 
 #include <gtest/gtest.h>
@@ -124,7 +125,18 @@ TEST(BlockMatrix, MultipliesAsOneWhereProcessesShareItsRows) {
             EXPECT_LT((y[i] - expected[i]).norm(), 1e-14);
             EXPECT_LT((relative[i] - expected_relative[i]).norm(), 1e-14);
         }
+        EXPECT_EQ(own.diagonal(), whole.diagonal());
+        const BlockMatrix all = gathered(own);
+        EXPECT_EQ(all.share(), nullptr);
+        EXPECT_EQ(dense_of(all), dense_of(whole));
     });
+}
+
+TEST(BlockMatrix, KnowsItsDiagonal) {
+    BlockMatrix K(std::vector<std::vector<Index>>{{0, 1}, {}, {1, 2}}); // a node without elements
+    K.block(K.slot(0, 0)).diagonal() = Vec3(1, 2, 3);
+    K.block(K.slot(2, 2)).setConstant(4);
+    EXPECT_EQ(K.diagonal().values(), (std::vector<Vec3>{Vec3(1, 2, 3), Vec3::Zero(), Vec3(4, 4, 4)}));
 }
 
 } // namespace

@@ -73,6 +73,28 @@ TEST(Units, MultiplyDivideAndRaise) {
     expect_quantity("1 kg m^-1 s^-2", 1, dimension::pressure);
 }
 
+TEST(Units, TakePowersAsPeopleWriteThem) {
+    expect_quantity("7850 kg/m3", 7850, dimension::density);
+    expect_quantity("5 N/mm2", 5e6, dimension::pressure);
+    expect_quantity("5 N/mm²", 5e6, dimension::pressure);
+    expect_quantity("7850 kg/m³", 7850, dimension::density);
+    expect_quantity("9810 mm/s2", 9.81, dimension::acceleration);
+    expect_quantity("9.81 m s-2", 9.81, dimension::acceleration);
+    for (const char* text : {"5 m0", "5 m99", "5 m2.5", "5 ²", "5 m²2", "5 m-"})
+        EXPECT_NE(parse_quantity(text).problem, "") << text;
+}
+
+TEST(Units, KnowInchesAndPounds) { // as defined in 1959, and standard gravity
+    expect_quantity("1 in", 0.0254, dimension::length);
+    expect_quantity("1 ft", 0.3048, dimension::length);
+    expect_quantity("1 lb", 0.45359237, {0, 1, 0, 0});
+    EXPECT_DOUBLE_EQ(parse_quantity("1 lbf").value, 0.45359237 * 9.80665);
+    EXPECT_EQ(parse_quantity("1 lbf").dimension, dimension::force);
+    const double lbf_per_square_inch = 4.4482216152605 / (0.0254 * 0.0254);
+    EXPECT_DOUBLE_EQ(parse_quantity("1 psi").value, lbf_per_square_inch);
+    EXPECT_DOUBLE_EQ(parse_quantity("29 ksi").value, 29e3 * lbf_per_square_inch);
+}
+
 TEST(Units, LeaveABareNumberBare) {
     const Quantity quantity = parse_quantity(" 0.1 ");
     EXPECT_EQ(quantity.problem, "");

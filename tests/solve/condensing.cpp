@@ -3,6 +3,7 @@
 #include "osculate/solve/dense_lu.hpp"
 #include "osculate/solve/direct_solver.hpp"
 #include "osculate/solve/gmres.hpp"
+#include "support/thread_ranks.hpp"
 #include "systems.hpp"
 
 #include <Eigen/LU>
@@ -164,6 +165,33 @@ TEST(Gmres, SolvesAsFarAsAskedAndSaysWhereItCannot) {
     };
     Vector e = Vector::Unit(100, 0), x(100);
     EXPECT_FALSE(Gmres(100).solve(rotation, {}, e.data(), x.data(), 1e-3).converged);
+}
+
+TEST(Gmres, SharesItsDirectionsAmongProcesses) {
+    Random random(9);
+    const Matrix A = random_matrix(50, 4, random), M = Matrix(A.diagonal().cwiseInverse().asDiagonal());
+    const Vector b = random_vector(50, random);
+    const auto by = [](const Matrix& matrix) {
+        return [&matrix](const double* x, double* y) {
+            Eigen::Map<Vector>(y, 50) = matrix * Eigen::Map<const Vector>(x, 50);
+        };
+    };
+    Vector alone(50);
+    const auto expected = Gmres(50).solve(by(A), by(M), b.data(), alone.data(), 1e-9);
+    ASSERT_TRUE(expected.converged);
+    for (const int count : {1, 3, 60}) { // more processes than numbers, too
+        std::vector<Vector> found(static_cast<std::size_t>(count), Vector::Zero(50));
+        osculate::testing::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
+            Vector& x = found[static_cast<std::size_t>(ranks->rank())];
+            const auto result = Gmres(50, ranks.get()).solve(by(A), by(M), b.data(), x.data(), 1e-9);
+            EXPECT_TRUE(result.converged);
+            EXPECT_NEAR(result.iterations, expected.iterations, 1);
+        });
+        for (const Vector& x : found) {
+            EXPECT_EQ(x, found.front());
+            EXPECT_LE((A * x - b).norm(), 1.01e-9);
+        }
+    }
 }
 
 } // namespace

@@ -197,7 +197,7 @@ TEST(PartialCover, PressesWithTheStressOfTheBodies) {
 }
 
 TEST(NodeToSurface, DoesNotPassThePatchTest) {
-    // a limit of the method that README states; measured 0.16 to 0.38
+    // a limit of the method that docs/limits.md states; measured 0.16 to 0.38
     for (const char* surface : {"facets", "rpim", "blend"})
         EXPECT_GT(deviation({"quad", "quad", "quad", surface}, "node").first, 0.1) << surface;
 }

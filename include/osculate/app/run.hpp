@@ -42,7 +42,8 @@ struct FolderOptions {
 [[nodiscard]] std::filesystem::path chosen_folder(const std::filesystem::path& directory, const FolderOptions& options);
 
 struct RunOptions {
-    std::filesystem::path directory; ///< output folder; out/<scene name>/ if empty
+    std::filesystem::path
+        directory; ///< output folder; out/<scene name>/ if empty. In resume(): of a process that is not the first
     int threads = 1;
     bool quiet = false;
     CheckpointEvery checkpoint_every{};

@@ -8,7 +8,8 @@
 namespace osculate {
 
 /// All bytes of a file, which may be a pipe.
-/// @param error  why the file cannot be opened or read to its end; the result is then the bytes before that point
+/// @param error  why the file cannot be opened or read to its end; the result is then the bytes before that point. A pipe to which
+///               nothing is written for 10 s gives timed_out; a device or pipe of more than 256 MB, file_too_large
 [[nodiscard]] std::string file_content(const std::filesystem::path& path, std::error_code& error);
 
 /// The same, but a file that cannot be read counts as empty.

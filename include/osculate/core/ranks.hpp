@@ -27,6 +27,8 @@ public:
 
     /// The largest of a value of each process.
     [[nodiscard]] double largest(double own);
+    /// Sums of the values of all processes, in the order of ranks: the same bits on all.
+    void sum(std::span<double> values);
 };
 
 /// Which process owns which node. Every process holds the values of all nodes and takes all decisions from them, so that all

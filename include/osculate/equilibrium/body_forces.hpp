@@ -112,7 +112,8 @@ private:
     std::function<void(linear::BlockMatrix&)> also_; ///< see add_to_tangent(); null: nothing
     const linear::Dependence* dependence_ = nullptr; ///< the same
     std::vector<FollowerLoad> pressures_;
-    Kinematics kinematics_; ///< of the current dt
+    Kinematics kinematics_;        ///< of the current dt
+    std::vector<double> row_mass_; ///< (nodes) sums of the rows of the mass matrix, kg; dynamics only
     double dt_ = 0;
     Integrator rule_;                  ///< of the current attempt
     std::optional<fe::StepMean> mean_; ///< for nonlinear elements, with the current dt; none in statics

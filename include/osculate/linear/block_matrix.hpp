@@ -41,8 +41,13 @@ public:
     /// all nodes causes no further loss of digits than in x itself.
     void multiply_add_relative(const Field& x, Field& y, int threads) const;
 
+    /// (rows) of the diagonal blocks, on all processes; 0 where a row is empty.
+    [[nodiscard]] Field diagonal() const;
+
     /// Who has which rows; null: there is one process.
     [[nodiscard]] const Share* share() const { return share_.get(); }
+    /// Whether this process has the row of a node.
+    [[nodiscard]] bool has_row(Index node) const { return share_ == nullptr || share_->owns(node); }
 
 private:
     /// y += the product whose row is row(i), y_i for those that it has.

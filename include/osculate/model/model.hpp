@@ -162,7 +162,8 @@ struct AssembledMass {
 ///                  near 1 on all elements keep the body's mass, centre and inertia to round-off, see moment_factors().
 ///                  A body for which no such factors exist keeps its mass unchanged. Empty: none
 [[nodiscard]] AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool lumped,
-                                          const std::vector<char>& massless);
+                                          const std::vector<char>& massless,
+                                          const std::shared_ptr<const Share>& share = nullptr);
 /// (nodes) lumped fraction of each node in the volume of its body; the fractions of a body sum to 1.
 [[nodiscard]] std::vector<double> volume_shares(const Model& model);
 /// Centre of mass of a body in its reference configuration, of its volume where it has no mass, m.

@@ -5,6 +5,7 @@
 #include "osculate/fe/element_block.hpp"
 #include "osculate/linear/block_matrix.hpp"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,11 +34,14 @@ struct BodyStep {
 };
 
 /// The nonlinear elements of all bodies, with their global nodes and their positions in the stiffness. Sums are made in
-/// the order of the elements: bitwise the same for any number of threads.
+/// the order of the elements: bitwise the same for any number of threads. Where processes share the rows of the stiffness, each
+/// computes the forces and tangents of elements at its own nodes; forces are of all nodes on all processes.
 class NonlinearElements {
 public:
     /// @param pattern  contains every pair of nodes of an element; matrices of add_tangent() must have the same pattern
-    NonlinearElements(const std::vector<Body>& bodies, const linear::BlockMatrix& pattern);
+    /// @param share    of the pattern's rows; null: there is one process
+    NonlinearElements(const std::vector<Body>& bodies, const linear::BlockMatrix& pattern,
+                      std::shared_ptr<const Share> share = nullptr);
 
     /// f += internal forces of a step, see fe::ElementKernel::update. X (nodes) m, f (nodes) N.
     WorstElement add_force(const Field& X, const BodyStep& step, Field& f, int threads) const;
@@ -53,7 +57,7 @@ public:
     /// Gives elements the thermal strains of temperatures, in a history of theirs.
     /// @param temperature  (nodes) above that without thermal strain, K
     void heat(const std::vector<double>& temperature, MaterialHistory& history) const;
-    /// Largest diagonal entry of an undeformed element's stiffness, N/m.
+    /// Largest diagonal entry of the stiffness of an undeformed element on this process, N/m.
     [[nodiscard]] double largest_stiffness() const { return largest_stiffness_; }
 
 private:
@@ -64,19 +68,24 @@ private:
         Index body = -1, first_element = 0, size = 0;    ///< first_element: number in its body
         std::size_t history_first = 0, history_size = 0; ///< start for the first element; numbers per element
         std::vector<Index> node;                         ///< (size x n) global
-        std::vector<Index> slot;                         ///< (size x n x n) of block (i, j) in the pattern, row by row
+        std::vector<Index> here;                         ///< elements of nodes with a row on this process, ascending
+        std::vector<Index>
+            slot; ///< (here x n x n) of block (i, j) in the pattern, row by row; -1: the row is elsewhere
 
         [[nodiscard]] std::span<const double> history(const MaterialHistory& all, Index element) const;
     };
-    /// In batches: calls compute(k, element) for the k-th element of the batch, on several threads; then use(k,
-    /// element), in order.
-    template <class Compute, class Use>
-    static void for_each(const Block& block, int threads, Compute&& compute, Use&& use);
+    /// In batches: calls compute(k, number) for the k-th of the batch of `count` numbers, on several threads; then use(k, number), in
+    /// order.
+    template <class Compute, class Use> static void for_each(Index count, int threads, Compute&& compute, Use&& use);
     /// Calls act(fe::ElementStep) for an element of a step.
     template <class Act>
     static decltype(auto) with_step(const Block& block, Index element, const Field& X, const BodyStep& step, Act&& act);
 
+    /// f += forces at one's own nodes.
+    WorstElement add_own_force(const Field& X, const BodyStep& step, Field& f, int threads) const;
+
     std::vector<Block> blocks_;
+    std::shared_ptr<const Share> share_; ///< of rows; null: there is one process
     double largest_stiffness_ = 0;
 };
 

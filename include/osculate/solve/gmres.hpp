@@ -6,6 +6,10 @@
 #include <functional>
 #include <memory>
 
+namespace osculate {
+class Ranks;
+}
+
 namespace osculate::solve {
 
 /// y = A x
@@ -22,7 +26,9 @@ public:
         int iterations = 0;
     };
 
-    explicit Gmres(Index size);
+    /// @param ranks  processes among which the directions are shared out, which take most of the memory; each has a slice of
+    ///               every one, and all get x. Null: there is one process
+    explicit Gmres(Index size, Ranks* ranks = nullptr);
     ~Gmres();
     Gmres(const Gmres&) = delete;
     Gmres& operator=(const Gmres&) = delete;

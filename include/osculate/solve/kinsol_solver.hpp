@@ -10,8 +10,9 @@
 #include <string>
 
 namespace osculate {
+class Ranks;
 class Timings;
-}
+} // namespace osculate
 
 namespace osculate::solve {
 
@@ -134,7 +135,8 @@ struct KinsolResult {
 /// Interpretation of KINSOL's return codes: 0 and 1 converged; 2 (step test) only if the residual test holds too.
 class KinsolSolver {
 public:
-    KinsolSolver(Index size, Timings& timings);
+    /// @param ranks  see Gmres
+    KinsolSolver(Index size, Timings& timings, Ranks* ranks = nullptr);
     ~KinsolSolver();
     KinsolSolver(const KinsolSolver&) = delete;
     KinsolSolver& operator=(const KinsolSolver&) = delete;

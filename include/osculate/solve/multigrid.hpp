@@ -15,9 +15,19 @@ struct NodalUnknowns {
     std::vector<Index> body;           ///< (n) the body of each
     std::vector<SparseIndex> equation; ///< (3 n) of each local component; -1: held
     std::vector<Mat3> frame;           ///< (n) columns: the axes of the local components
-    Matrix near_kernel;                ///< (3 n x 6) motions without strain, in global components, held ones included
+    std::vector<Vec3> arm;             ///< (n) from the middle of its body, over the body's size
     std::vector<int> owner;            ///< (n) the process of each, see Share; empty: there is one process
     std::vector<Index> coupled;        ///< nodes that may be coupled, ascending; of several processes alone
+
+    /// (3 x 6) displacements of a node by motions of its body without strain, in global components, held ones included.
+    [[nodiscard]] Eigen::Matrix<double, 3, 6> motions(Index place) const {
+        Eigen::Matrix<double, 3, 6> rows;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 along = Vec3::Unit(k);
+            rows.row(k) << along.transpose(), arm[static_cast<std::size_t>(place)].cross(along).transpose();
+        }
+        return rows;
+    }
 };
 
 /// V-cycles of smoothed aggregation. Grids are chosen once, for bodies without their coupling, so that no coarse unknown

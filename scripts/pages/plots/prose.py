@@ -74,11 +74,11 @@ def claims(runs):
     ripple = lambda method: (f"{runs['half_tube'][method]['ripple']:.2f} and "
                              f"{runs['half_tube_halved'][method]['ripple']:.2f} %")
     foundations = [f"foundation_{mesh}" for mesh in ("quad", "tri", "hybrid")]
-    yield "README.md", (
+    yield "docs/limits.md", (
         f"The driving force of the half-tube still ripples by {ripple('default')} with the tube's mesh as it is and halved (in "
         f"steps of 0.025 m by {runs['half_tube_fine_steps']['default']['ripple']:.2f} %). At slave nodes (`node`) `blend` ripples "
         f"by {ripple('blend')}, `rpim` by {ripple('rpim')}, `facets` without hysteresis by {ripple('facets_h0')}.")
-    yield "README.md", (
+    yield "docs/limits.md", (
         f"the default takes {span(cpu_ratios(runs, foundations, 'default', 'facets'))} times the CPU time of `facets` with `node`, "
         f"`blend` with `node` {span(cpu_ratios(runs, foundations, 'blend', 'facets'))} times.")
     for line in discretisations():

@@ -270,11 +270,12 @@ otherwise: `blend`, with `petrov_galerkin` in static scenes and `node` in those 
 TAIL = """## What is compared
 
 Tests (`ctest -R docs`) generate this page, the pages of the studies, [results](../results.md), and the table and figures in
-the README and the theory again from the stored tables. They fail on any difference. Pictures show the same runs as the tables
-beside them. The tests do not cover:
+the README, the [limits](../limits.md) and the theory again from the stored tables. They fail on any difference. Pictures show the
+same runs as the tables beside them. The tests do not cover:
 
-- times of kernels by `scripts/measure/bench`: the README's table of evaluations and all tables of [search](../search.md);
-- what an older OpenBLAS costs on some machines, in the README;
+- times of kernels by `scripts/measure/bench`: the table of evaluations of [performance](../performance.md) and all tables of
+  [search](../search.md);
+- what an older OpenBLAS costs on some machines, in performance;
 - figures of single tests in [theory](../theory.md), sections 3, 6 and 9: those tests print them.
 """
 

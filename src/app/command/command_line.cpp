@@ -3,6 +3,7 @@
 #include "app/check/check.hpp"
 #include "app/command/init_command.hpp"
 #include "app/command/mesh_command.hpp"
+#include "app/command/mistyped.hpp"
 #include "app/command/study_command.hpp"
 #include "app/command/surface_command.hpp"
 #include "app/run/distributed.hpp"
@@ -146,6 +147,7 @@ void add_run_options(CLI::App* run, Arguments& arguments) {
                     "Write a checkpoint each time a number of accepted steps ('20') or a time ('5 min') has passed")
         ->type_name("STEPS|TIME");
     run->add_flag("--quiet", arguments.quiet, "Show nothing but faults");
+    run->add_flag("--distributed", arguments.distributed, "Share the run among the processes that mpirun has started");
 }
 
 void show_run(const output::Summary& summary, const Arguments& arguments) {
@@ -249,7 +251,6 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
     CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
     add_folder(run, arguments, "Folder of the run's files [out/<scene name>]");
     add_run_options(run, arguments);
-    run->add_flag("--distributed", arguments.distributed, "Share the run among the processes that mpirun has started");
     CLI::App* resume = program.add_subcommand("resume", "Continue a run from its last checkpoint");
     resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     resume->add_option("--from", arguments.from, "Start from this checkpoint instead of DIR/checkpoint/state")
@@ -307,20 +308,27 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
+        if (const std::string words = mistyped(program); error.get_exit_code() != 0 && !words.empty()) {
+            fmt::print(stderr, "{}", words);
+            return bad_scene;
+        }
         return program.exit(error) == 0 ? done : bad_scene; // --help and --version come this way too
     }
 
-    if (*run) {
-        RunOptions options = arguments.run_options();
+    RunOptions options;
+    if (*run || *resume) {
+        options = arguments.run_options();
         if (arguments.distributed) {
             const Distributed& all = together.emplace();
             options.ranks = all.ranks();
             if (!all.first()) options.directory = all.scratch();
         }
+    }
+    if (*run) {
         options.entered = [&](const std::filesystem::path& folder) { show_numbered(arguments, folder); };
         show_run(app::run(arguments.scene, arguments.overrides(), options), arguments);
     } else if (*resume) {
-        if (const auto summary = app::resume(arguments.run_folder, arguments.from, arguments.run_options()))
+        if (const auto summary = app::resume(arguments.run_folder, arguments.from, options))
             show_run(*summary, arguments);
         else if (!arguments.quiet)
             print(fmt::format("the run in {} is complete; there is nothing left to do\n", arguments.run_folder));

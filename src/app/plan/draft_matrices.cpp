@@ -65,7 +65,7 @@ void add_mass(Draft& draft) {
         linear::BlockMatrix& mass = stage.dynamics->lumped_mass ? m.lumped_mass : m.consistent_mass;
         if (mass.empty()) {
             model::AssembledMass assembled =
-                model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass, massless);
+                model::assemble_mass(m.bodies, m.nodes(), stage.dynamics->lumped_mass, massless, m.share);
             mass = std::move(assembled.M);
             std::vector<Index> kept;
             std::ranges::set_union(m.kept_contact_mass, assembled.kept, std::back_inserter(kept));
@@ -139,7 +139,7 @@ void add_matrices(Draft& draft) {
     if (draft.ranks) model.share = share_nodes(draft);
     model.K = model::assemble_stiffness(model.bodies, model.nodes(), model.share);
     if (draft.any_kernel([](const fe::ElementKernel& kernel) { return !kernel.linear(); }))
-        model.nonlinear = std::make_unique<model::NonlinearElements>(model.bodies, model.K);
+        model.nonlinear = std::make_unique<model::NonlinearElements>(model.bodies, model.K, model.share);
     add_mass(draft);
     leave_steps_where_mass_lands(draft);
     add_gravity(draft);

@@ -11,14 +11,6 @@ void check_distributed(Draft& draft) {
         if (has)
             draft.faults.push_back(fault(key, "a run without --distributed: processes cannot share this yet", what));
     };
-    refuse(draft.any_kernel([](const fe::ElementKernel& kernel) { return !kernel.linear(); }), "bodies",
-           "elements that are not linear: finite strain, plasticity or temperature");
-    refuse(std::ranges::any_of(draft.plan.stages, [](const time::Stage& stage) { return stage.dynamics.has_value(); }),
-           "stages", "a dynamic stage");
-    refuse(std::ranges::any_of(draft.plan.stages,
-                               [](const time::Stage& stage) { return !stage.follower_pressures.empty(); }),
-           "stages", "a pressure that follows its faces");
-    refuse(m.general != nullptr, "contact", "general contact");
     refuse(m.has_dependent_nodes() || !m.rigid.empty(), "scene",
            "nodes that follow others: rigid bodies, couplings, ties, equations or cyclic symmetry");
 }

@@ -423,8 +423,10 @@ private:
     [[nodiscard]] bool massless() const {
         const linear::BlockMatrix& M = failed_.model.mass(failed_.stage.dynamics->lumped_mass);
         if (M.empty()) return false;
-        const auto none = [&](Index node) { // nodes of skins have empty rows
-            return M.row_begin(node) < M.row_end(node) && M.block(M.slot(node, node))(0, 0) == 0;
+        const Field diagonal = M.diagonal();
+        const auto none = [&](Index node) { // nodes of skins have no mass of their own, and no row
+            return model::material_node(failed_.model, node) == node &&
+                   diagonal[static_cast<std::size_t>(node)].x() == 0;
         };
         return std::ranges::any_of(failed_.last.contact, [&](const model::ContactHistory& one) {
             return std::ranges::any_of(one.pair->slaves().node, none);

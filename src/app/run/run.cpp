@@ -129,6 +129,26 @@ output::Summary run(LoadedScene& loaded, const RunRecorder::Settings& settings, 
     return run(loaded, stepper, timings, settings, nullptr, true);
 }
 
+/// Whether anybody reads what this process writes.
+bool writes(const RunOptions& options) {
+    return !options.ranks || options.ranks->rank() == 0;
+}
+
+/// And all else that takes time, memory or room.
+void leave_out_frames(scene::Output& output) {
+    output.report = output.paraview = output.failed_iterate = false;
+    output.frame_every = 0;
+    output.plots.clear();
+}
+
+/// For a process whose files nobody reads, but which goes on with them like the first.
+void copy_tables(const output::CheckpointFile& file, const fs::path& from, const fs::path& to) {
+    for (const auto& [name, bytes] : file.tables) {
+        fs::create_directories((to / name).parent_path());
+        fs::copy_file(from / name, to / name, fs::copy_options::overwrite_existing);
+    }
+}
+
 } // namespace
 
 CheckpointEvery parse_checkpoint_every(const std::string& text) {
@@ -155,7 +175,7 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
     LoadedScene loaded = load(scene_path, overrides, options.threads, timings, options.ranks);
-    if (options.ranks && options.ranks->rank() > 0) loaded.scene.output.report = false; // one is enough
+    if (!writes(options)) leave_out_frames(loaded.scene.output);
     OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
                         RunRecorder::files(loaded.scene, loaded.plan));
     if (options.entered) options.entered(folder.path());
@@ -202,12 +222,18 @@ std::optional<output::Summary> resume(const fs::path& directory, const fs::path&
     if (file.version != version)
         refuse(state, std::string("a checkpoint of osculate ") + version, "one of " + file.version);
     Timings timings;
-    LoadedScene loaded = load(scene_path.string(), {}, options.threads, timings);
+    LoadedScene loaded = load(scene_path.string(), {}, options.threads, timings, options.ranks);
     if (scene::write_scene(loaded.scene) != file.scene)
         refuse(scene_path, "the scene the checkpoint was written for", "another one");
     if (output::fingerprint(loaded.plan.model) != file.meshes)
         refuse(scene_path, "the meshes the checkpoint was written for", "others");
-    OutputFolder folder(directory, OutputFolder::Entry::adopt, RunRecorder::files(loaded.scene, loaded.plan));
+    if (!writes(options)) {
+        copy_tables(file, directory, options.directory);
+        leave_out_frames(loaded.scene.output);
+        file.frames.clear();
+    }
+    OutputFolder folder(writes(options) ? directory : options.directory, OutputFolder::Entry::adopt,
+                        RunRecorder::files(loaded.scene, loaded.plan));
     return run(loaded, {&folder, options.threads, options.quiet, begin, options.checkpoint_every, &file}, timings);
 }
 

@@ -234,7 +234,7 @@ void RunRecorder::between_steps(const std::function<time::Checkpoint()>& checkpo
     if (signal == 0 && (every.steps == 0 || summary_.steps.accepted - checkpoint_step_ < every.steps) &&
         (every.seconds == 0 || passed.count() < every.seconds))
         return;
-    on_disk(timings_, [&] { write_checkpoint(checkpoint()); });
+    if (share == nullptr || share->ranks().rank() == 0) on_disk(timings_, [&] { write_checkpoint(checkpoint()); });
     checkpoint_step_ = summary_.steps.accepted;
     checkpoint_time_ = std::chrono::steady_clock::now();
     if (signal != 0) throw Interrupted(signal, stepper_.state().time, directory());

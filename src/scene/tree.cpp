@@ -77,11 +77,16 @@ private:
 
     void copy_map(const YAML::Node& node, Tree& tree, const std::string& path, int depth) {
         tree.kind = Tree::Kind::map;
+        std::vector<YAML::Node> merged;
         for (const auto& entry : node) {
             if (overflow_) return;
             const Place key_place = place_of(entry.first);
             if (!entry.first.IsScalar()) {
                 faults_.push_back(fault_at(key_place, path, "a name as a key", "something else"));
+                continue;
+            }
+            if (entry.first.Scalar() == "<<") {
+                merged.push_back(entry.second);
                 continue;
             }
             const std::string key = checked(entry.first.Scalar(), key_place, path, false);
@@ -97,6 +102,23 @@ private:
             value.key_place = key_place;
             tree.children.push_back(std::move(value));
         }
+        for (const YAML::Node& other : merged) merge(other, tree, path, depth + 1);
+    }
+
+    /// Adds the keys of `<<: *other`, or of a list of such maps, that a map does not have (yaml.org/type/merge.html).
+    void merge(const YAML::Node& other, Tree& tree, const std::string& path, int depth) {
+        if (other.IsSequence() && depth <= max_depth) {
+            for (const auto& one : other) merge(one, tree, path, depth + 1);
+            return;
+        }
+        if (!other.IsMap()) {
+            faults_.push_back(fault_at(place_of(other), path.empty() ? "<<" : path + ".<<",
+                                       "a map to merge, or a list of maps", "something else"));
+            return;
+        }
+        Tree more = copy(other, path, depth);
+        for (Tree& child : more.children)
+            if (tree.find(child.key) == nullptr) tree.children.push_back(std::move(child));
     }
 
     const std::string& file_;
@@ -125,6 +147,36 @@ private:
     YAML::Mark mark_ = YAML::Mark::null_mark();
 };
 
+/// Of a text that is to be shown in a message.
+std::string shortened(const std::string& text) {
+    constexpr std::size_t longest = 120;
+    if (text.size() <= longest) return text;
+    std::size_t end = longest;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end; // not within a character
+    return text.substr(0, end) + "...";
+}
+
+/// What yaml-cpp's messages do not name, as far as lines tell; null: nothing.
+struct Suspect {
+    const char* what = nullptr;
+    int line = 0, column = 0;
+};
+Suspect suspect(const std::string& text) {
+    std::istringstream stream(text);
+    Suspect open;
+    std::string line;
+    for (int number = 1; std::getline(stream, line); ++number) {
+        const std::size_t first = line.find_first_not_of(" \t");
+        const std::size_t tab = line.substr(0, first == std::string::npos ? 0 : first).find('\t');
+        if (tab != std::string::npos && line[first] != '#')
+            return {"a tab in front of a line; YAML takes spaces", number, static_cast<int>(tab) + 1};
+        const auto quotes = std::ranges::count(line, '"') - (line.find("\\\"") == std::string::npos ? 0 : 1);
+        if (open.what == nullptr && quotes % 2 != 0)
+            open = {"a quote that this line does not close", number, static_cast<int>(line.find('"')) + 1};
+    }
+    return open;
+}
+
 } // namespace
 
 const Tree* Tree::find(std::string_view name) const {
@@ -140,7 +192,7 @@ Tree* Tree::find(std::string_view name) {
 
 std::string Tree::found() const {
     switch (kind) {
-    case Kind::scalar: return "'" + scalar + "'";
+    case Kind::scalar: return "'" + shortened(scalar) + "'";
     case Kind::list: return "a list of " + std::to_string(children.size());
     case Kind::map: return "a map";
     case Kind::null: break;
@@ -183,6 +235,8 @@ Tree parse_yaml(const std::string& text, const std::string& file, std::vector<Fa
         Place place{file, 0, 0};
         if (!error.mark.is_null()) place = {file, error.mark.line + 1, error.mark.column + 1};
         faults.push_back(fault_at(place, "", "valid YAML", error.msg));
+        if (const Suspect found = suspect(text); found.what != nullptr)
+            faults.push_back(fault_at({file, found.line, found.column}, "", "valid YAML", found.what));
     } catch (const std::runtime_error& error) { // yaml-cpp's guard against deep nesting
         faults.push_back(fault_at({file, 0, 0}, "", "valid YAML", error.what()));
     }

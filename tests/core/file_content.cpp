@@ -41,6 +41,15 @@ TEST_F(FileContent, IsThatOfAPipe) {
     writer.join();
 }
 
+TEST_F(FileContent, EndsWhereAPipeOrDeviceDoesNot) {
+    const std::filesystem::path pipe = folder / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(file_content(pipe, error), ""); // after 10 s: nobody writes to it
+    EXPECT_EQ(error, std::errc::timed_out);
+    (void)file_content("/dev/zero", error);
+    EXPECT_EQ(error, std::errc::file_too_large);
+}
+
 TEST_F(FileContent, SaysWhyAFileCannotBeRead) {
     EXPECT_EQ(file_content(folder / "missing", error), "");
     EXPECT_EQ(error, std::errc::no_such_file_or_directory);

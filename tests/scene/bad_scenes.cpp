@@ -131,6 +131,25 @@ TEST(BadScene, SyntaxStandsAlone) {
                  "bad.yaml:2:5: expected valid YAML, found end of sequence flow not found");
 }
 
+TEST(BadScene, TabsAndOpenQuotesAreNamed) {
+    EXPECT_THAT(
+        messages(faults_of(replaced(small_scene, "    slave: under", "\t    slave: under"))),
+        testing::Contains("bad.yaml:17:1: expected valid YAML, found a tab in front of a line; YAML takes spaces"));
+    EXPECT_THAT(messages(faults_of(replaced(small_scene, "bed: {body: base", "bed: {body: \"base"))),
+                testing::Contains("bad.yaml:9:15: expected valid YAML, found a quote that this line does not close"));
+}
+
+TEST(BadScene, LongValuesAreCutShort) {
+    const auto faults = faults_of(replaced(small_scene, "slave: under", "slave: " + std::string(100000, 'x')));
+    ASSERT_EQ(faults.size(), 1u);
+    EXPECT_LT(faults.front().message().size(), 300u);
+}
+
+TEST(BadScene, MergesOfWhatIsNoMap) {
+    expect_fault(replaced(small_scene, "    friction: 0.3", "    friction: 0.3\n    <<: 3"),
+                 "bad.yaml:20:9: contact.joint.<<: expected a map to merge, or a list of maps, found something else");
+}
+
 TEST(BadScene, TextAfterTheDocument) {
     expect_fault(small_scene + "---\nname: second\n",
                  "bad.yaml:28:1: expected the end of the document, found more text");

@@ -82,6 +82,17 @@ TEST(Reader, SelectsTheSurfaceByABareWord) {
     EXPECT_TRUE(std::holds_alternative<FacetsSurface>(master(scene).surface));
 }
 
+/// yaml.org/type/merge.html: what a map says itself wins, then the first of several.
+TEST(Reader, MergesMaps) {
+    const std::string merged = replaced(replaced(small_scene, "{linear_elastic: {E: 30 MPa, nu: 0.2}}",
+                                                 "{linear_elastic: &soil {E: 30 MPa, nu: 0.2, density: 2000 kg/m3}}"),
+                                        "{E: 10 MPa, nu: 0.3}", "{<<: [{nu: 0.3}, *soil], E: 10 MPa}");
+    const std::string written =
+        replaced(replaced(small_scene, "{E: 30 MPa, nu: 0.2}", "{E: 30 MPa, nu: 0.2, density: 2000 kg/m^3}"),
+                 "{E: 10 MPa, nu: 0.3}", "{E: 10 MPa, nu: 0.3, density: 2000 kg/m^3}");
+    EXPECT_EQ(parse_scene(merged, "scene.yaml"), parse_scene(written, "scene.yaml"));
+}
+
 TEST(Reader, AcceptsTheSurfaceDirectlyUnderThePair) {
     const Scene scene = parse_scene(replaced(replaced(small_scene, ", surface: {rpim: {ring: 1}}", ""), "friction: 0.3",
                                              "surface: {rpim: {ring: 3}}"),

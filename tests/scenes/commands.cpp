@@ -40,6 +40,33 @@ TEST_F(Command, CheckReportsSizesPairsAndGaps) {
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
+TEST_F(Command, SaysWhatMistypedWordsWereMeantToBe) {
+    for (const auto& [words, said] :
+         {std::pair<std::vector<std::string>, std::string>{{"rnu", press},
+                                                           "there is no command 'rnu'; did you mean 'run'?\n"},
+          {{"frobnicate"}, "there is no command 'frobnicate'; `osculate --help` lists them\n"},
+          {{"run", press, "--thred", "2"}, "there is no option '--thred'; did you mean '--threads'?\n"}}) {
+        const Outcome outcome = osculate(words);
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_EQ(outcome.err, said);
+    }
+}
+
+TEST_F(Command, SaysWhenNothingCanBeSaid) {
+    const Outcome outcome = osculate({"keys"}, [] { ASSERT_NE(std::freopen("/dev/full", "w", stdout), nullptr); });
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_EQ(outcome.err, "what there was to say could not be written\n");
+}
+
+TEST_F(Command, AFolderThatIsGoneIsNoBug) {
+    const Outcome outcome = osculate({"check", "../scene.yaml"}, [] {
+        std::filesystem::create_directory("gone");
+        std::filesystem::current_path("gone");
+        std::filesystem::remove("../gone");
+    });
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+}
+
 TEST_F(Command, CheckReportsOverlapsAndNodesBesideTheMaster) {
     const Outcome outcome = osculate({"check", press, "--set", "bodies.cap.mesh.block.origin=[1.5 m, 0.45 m, 0.98 m]"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;

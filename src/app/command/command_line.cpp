@@ -387,6 +387,9 @@ int guarded_command(int argc, char** argv, std::optional<Distributed>& together,
     } catch (const RunFailure& error) {
         fmt::print(stderr, "the run gave up: {}\n", error.what());
         return gave_up;
+    } catch (const std::filesystem::filesystem_error& error) { // a folder that is gone, or may not be read
+        fmt::print(stderr, "{}: {}\n", error.path1().string(), error.code().message());
+        return bad_scene;
     } catch (const std::bad_alloc&) {
         surprise = true;
         fmt::print(stderr, "the run gave up: there is not enough memory for a scene of this size\n");
@@ -405,7 +408,11 @@ int guarded_command(int argc, char** argv, std::optional<Distributed>& together,
 int command_line(int argc, char** argv) {
     std::optional<Distributed> together;
     bool surprise = false;
-    const int code = guarded_command(argc, argv, together, surprise);
+    int code = guarded_command(argc, argv, together, surprise);
+    if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && code == done) {
+        fmt::print(stderr, "what there was to say could not be written\n");
+        code = gave_up;
+    }
     if (together) together->leave(code, surprise);
     return code;
 }

@@ -170,6 +170,8 @@ Suspect suspect(const std::string& text) {
         const std::size_t tab = line.substr(0, first == std::string::npos ? 0 : first).find('\t');
         if (tab != std::string::npos && line[first] != '#')
             return {"a tab in front of a line; YAML takes spaces", number, static_cast<int>(tab) + 1};
+        if (const std::size_t comment = line.find(" #"); comment != std::string::npos) line.resize(comment);
+        if (line.starts_with('#')) continue;
         const auto quotes = std::ranges::count(line, '"') - (line.find("\\\"") == std::string::npos ? 0 : 1);
         if (open.what == nullptr && quotes % 2 != 0)
             open = {"a quote that this line does not close", number, static_cast<int>(line.find('"')) + 1};

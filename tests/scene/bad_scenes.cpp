@@ -139,6 +139,11 @@ TEST(BadScene, TabsAndOpenQuotesAreNamed) {
                 testing::Contains("bad.yaml:9:15: expected valid YAML, found a quote that this line does not close"));
 }
 
+TEST(BadScene, QuotesInCommentsAreNoSuspects) {
+    EXPECT_THAT(messages(faults_of("# a 5\" pipe\nbodies: [1, 2 # of 5\"\nsets: 3: 4\n")),
+                ElementsAre("bad.yaml:3:1: expected valid YAML, found end of sequence flow not found"));
+}
+
 TEST(BadScene, LongValuesAreCutShort) {
     const auto faults = faults_of(replaced(small_scene, "slave: under", "slave: " + std::string(100000, 'x')));
     ASSERT_EQ(faults.size(), 1u);

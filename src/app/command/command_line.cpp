@@ -388,6 +388,7 @@ int guarded_command(int argc, char** argv, std::optional<Distributed>& together,
         fmt::print(stderr, "the run gave up: {}\n", error.what());
         return gave_up;
     } catch (const std::filesystem::filesystem_error& error) { // a folder that is gone, or may not be read
+        surprise = true;                                       // of one process alone, perhaps
         fmt::print(stderr, "{}: {}\n", error.path1().string(), error.code().message());
         return bad_scene;
     } catch (const std::bad_alloc&) {

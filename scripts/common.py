@@ -17,3 +17,13 @@ def parser(about):
     """Of the arguments; -h prints `about`, line by line, below the usage and above what each option means."""
     command = Path(sys.argv[0]).resolve().relative_to(ROOT)
     return argparse.ArgumentParser(prog=str(command), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def scenes(names=(), failures=False):
+    """Paths of all shipped scenes, or of those with these names; with those of the tests that fail on purpose."""
+    found = [path for folder in ("tutorials", "extreme", "validation", "paper") for path in sorted((ROOT / "configs" / folder).glob("*.yaml"))]
+    if failures:
+        found += sorted((ROOT / "tests/scenes/failures").glob("*.yaml"))
+    if unknown := set(names) - {path.stem for path in found}:
+        sys.exit("no scene " + ", ".join(sorted(unknown)))
+    return [path for path in found if not names or path.stem in names]

@@ -1,5 +1,6 @@
 """Kills runs at random moments; see scripts/checks/survive_kills."""
 import argparse
+import os
 import pathlib
 import random
 import shutil
@@ -20,6 +21,15 @@ RUNS = {
               "--set", "contact.floor.surface=blend", "--set", "stages.fall.duration=0.13",
               "--set", "stages.fall.steps=65", "--set", "output.iterations=true", "--threads", "2"],
 }
+SHARED = {
+    "blocks": ["bench/scenes/two_blocks.yaml", "--set", "solver.linear_solver=multigrid", "--set", "solver.tolerance=1e-10",
+               "--set", "bodies.lower.mesh.block.divisions=[7, 7, 7]", "--set", "bodies.upper.mesh.block.divisions=[5, 5, 5]",
+               "--set", "stages.press.steps=12", "--threads", "1"],
+}
+# root, few processors and containers are no obstacles
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+       "OMPI_MCA_mpi_yield_when_idle": "1"}
+PATIENCE = 60  # seconds until all processes have ended after one was killed
 MANIFEST = "osculate_manifest.txt"
 TABLES = ("history.csv", "steps.csv", "iterations.csv")
 
@@ -60,15 +70,31 @@ def faults(run, whole):
     return found
 
 
-def killed_after(seconds, command):
-    """True where the command was killed, False where it ended before."""
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+def one_of(process, chance):
+    """The process itself, or one of those that mpirun has started; None where they have ended."""
+    if process.args[0] != "mpirun":
+        return process.pid
+    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    return int(chance.choice(children)) if children else None
+
+
+def killed_after(seconds, command, chance):
+    """True where the command was killed, or one of its processes, False where it ended before."""
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                          env={**os.environ, **MPI}) as process:
         try:
             code = process.wait(seconds)
         except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGKILL)
-            process.wait()
-            return True
+            victim = one_of(process, chance)
+            if victim is not None:
+                os.kill(victim, signal.SIGKILL)
+            try:
+                code = process.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                process.terminate()
+                raise SystemExit(f"after one was killed, the others did not end: {' '.join(command)}") from None
+            if code != 0:
+                return True
     if code != 0:
         raise SystemExit(f"exit {code} of {' '.join(command)}")
     return False
@@ -79,27 +105,33 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=1)
     options = parser.parse_args()
     chance = random.Random(options.seed)
+    runs, start, end = RUNS, [options.program], []
+    if options.processes > 1:
+        runs, end = SHARED, ["--distributed"]
+        start = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(options.processes), options.program]
     folder = pathlib.Path(tempfile.mkdtemp(prefix="osculate_kills_"))
     wholes, seconds = {}, {}
-    for name, words in RUNS.items():
+    for name, words in runs.items():
         begin = time.monotonic()
-        subprocess.run([options.program, "run", *words, "-o", str(folder / name), "--quiet"], check=True)
+        subprocess.run([*start, "run", *words, "-o", str(folder / name), "--quiet", *end], check=True, stdin=subprocess.DEVNULL,
+                       env={**os.environ, **MPI})
         seconds[name] = time.monotonic() - begin
         wholes[name] = contents(folder / name)
     kills = bad = resumed = from_start = early = 0
     while kills < options.kills:
-        name = chance.choice(list(RUNS))
+        name = chance.choice(list(runs))
         run, whole = folder / "run", wholes[name]
         shutil.rmtree(run, ignore_errors=True)
-        first = [options.program, "run", *RUNS[name], "-o", str(run), "--quiet",
-                 "--checkpoint-every", str(chance.choice([1, 2, 5]))]
-        again = [options.program, "resume", str(run), "--quiet", "--checkpoint-every", "1",
-                 "--threads", str(chance.choice([1, 2]))]
+        first = [*start, "run", *runs[name], "-o", str(run), "--quiet",
+                 "--checkpoint-every", str(chance.choice([1, 2, 5])), *end]
+        again = [*start, "resume", str(run), "--quiet", "--checkpoint-every", "1",
+                 "--threads", str(chance.choice([1, 2]) if not end else 1), *end]
         command = first
         for _ in range(chance.choice([1, 1, 2, 3])):
-            if not killed_after(chance.uniform(0, 1.1 * seconds[name]), command):
+            if not killed_after(chance.uniform(0, 1.1 * seconds[name]), command, chance):
                 early += 1
                 break
             kills += 1
@@ -110,7 +142,7 @@ def main():
         else:
             resumed += command is again
             from_start += command is first
-            subprocess.run(command, check=True)
+            subprocess.run(command, check=True, stdin=subprocess.DEVNULL, env={**os.environ, **MPI})
             found = contents(run)
             for path in sorted(found.keys() | whole.keys()):
                 if found.get(path) != whole.get(path):

@@ -1,7 +1,7 @@
 #include "osculate/core/thread_pool.hpp"
 
+#include <atomic>
 #include <cfenv>
-#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -15,50 +15,50 @@ thread_local bool inside_a_task = false;
 /// Waits for one task at a time.
 class Worker {
 public:
-    Worker() : thread_([this](const std::stop_token& stop) { work(stop); }) {}
-    ~Worker() {
-        thread_.request_stop();
-        {
-            const std::lock_guard lock(mutex_); // not between its look at the token and its sleep
-        }
-        changed_.notify_all();
-    }
+    Worker() : thread_([this] { work(); }) {}
+    ~Worker() { set(State::ended); }
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
 
     void begin(const std::function<void(Index)>& task, Index item, const std::fenv_t& environment) {
-        {
-            const std::lock_guard lock(mutex_);
-            task_ = &task;
-            item_ = item;
-            environment_ = environment;
-        }
-        changed_.notify_all();
+        task_ = &task;
+        item_ = item;
+        environment_ = environment;
+        set(State::working);
     }
-    void wait() {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return task_ == nullptr; });
-    }
+    void wait() { wait_while(State::working); }
 
 private:
-    void work(const std::stop_token& stop) {
+    enum class State { idle, working, ended };
+
+    void set(State state) {
+        state_.store(state, std::memory_order_release);
+        state_.notify_all();
+    }
+    /// Looks often at first, as loops follow one another: to wake a thread takes as long as a short loop.
+    void wait_while(State state) const {
+        constexpr int looks = 2000; // some 50 us
+        for (int look = 0; look < looks; ++look) {
+            if (state_.load(std::memory_order_acquire) != state) return;
+#if defined(__x86_64__)
+            __builtin_ia32_pause();
+#endif
+        }
+        state_.wait(state, std::memory_order_acquire);
+    }
+    void work() {
         inside_a_task = true;
-        std::unique_lock lock(mutex_);
         while (true) {
-            changed_.wait(lock, [&] { return task_ != nullptr || stop.stop_requested(); });
-            if (task_ == nullptr) return;
+            wait_while(State::idle);
+            if (state_.load(std::memory_order_acquire) == State::ended) return;
             std::fesetenv(&environment_);
-            lock.unlock();
             (*task_)(item_);
-            lock.lock();
-            task_ = nullptr;
-            changed_.notify_all();
+            set(State::idle);
         }
     }
 
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    const std::function<void(Index)>* task_ = nullptr; ///< null: none, or done
+    std::atomic<State> state_ = State::idle;
+    const std::function<void(Index)>* task_ = nullptr;
     Index item_ = 0;
     std::fenv_t environment_{};
     std::jthread thread_; ///< last: it uses the rest

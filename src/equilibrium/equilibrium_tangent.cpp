@@ -48,7 +48,7 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
             };
         preconditioner_ = std::make_unique<linear::ContactPreconditioner>(
             constraints_, K,
-            choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_)) : nullptr,
+            choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_), threads) : nullptr,
             std::move(undeformed));
     }
     if (choice.reduced)

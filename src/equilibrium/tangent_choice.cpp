@@ -60,6 +60,7 @@ bool goes_by_multigrid(const model::Model& model, LinearSolver asked, bool conde
     constexpr Index very_many = 50000; // and less than those that condensation makes once
     if (model.share) return true;      // no process has the whole matrix
     if (asked != LinearSolver::automatic) return asked == LinearSolver::multigrid;
+    if (!model.led.empty()) return false; // means of many nodes take several times as many cycles
     return model.nodes() > (condensable ? very_many : many);
 }
 
@@ -75,12 +76,13 @@ bool goes_by_products(const model::ContactPairs& pairs, LinearSolver asked) {
 TangentChoice choose_tangent(const model::Model& model, const model::ContactPairs& pairs, LinearSolver asked,
                              bool dynamic, bool follows, const model::ContactScope* scope) {
     constexpr Index most = 100000; // nodes: LU takes some 7 GB
-    const bool pays = !model.nonlinear && condensation_cost(model, pairs, scope).pays();
+    const bool pays = !model.nonlinear && !model.has_dependent_nodes() && condensation_cost(model, pairs, scope).pays();
     const bool couplings = std::ranges::any_of(model.rigid, &model::RigidBody::coupling);
     const bool symmetric = !follows && !couplings && (!dynamic || !model.nonlinear);
     const bool contact = !pairs.empty();
     TangentChoice choice;
-    choice.multigrid = !model.has_dependent_nodes() && goes_by_multigrid(model, asked, pays);
+    // six motions of a body have no grid; contact of faces with midside nodes takes too many cycles
+    choice.multigrid = model.rigid.empty() && model.skin.empty() && goes_by_multigrid(model, asked, pays);
     choice.factorisable = !choice.multigrid || (model.nodes() <= most && !model.share);
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned =

@@ -312,7 +312,7 @@ bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, cons
     bool worn = false;
     if (rest.norm() > allowed) {
         Vector lambda_y, u_y, f_y;
-        if (size != gmres_size_) gmres_ = std::make_unique<solve::Gmres>(size);
+        if (size != gmres_size_) gmres_ = std::make_unique<solve::Gmres>(size, nullptr, threads_);
         gmres_size_ = size;
         const auto J = [&](const double* from, double* to) {
             precondition(from, lambda_y, u_y, f_y);

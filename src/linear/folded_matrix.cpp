@@ -1,5 +1,7 @@
 #include "osculate/linear/folded_matrix.hpp"
 
+#include "osculate/core/error.hpp"
+
 #include <algorithm>
 
 namespace osculate::linear {
@@ -31,8 +33,12 @@ FoldedMatrix::FoldedMatrix(const Dependence& dependence, const BlockMatrix& patt
             continue;
         }
         columns[static_cast<std::size_t>(i)].push_back(i);
+        if (row.empty()) continue; // of a node without elements, or of another process
         if (dependence.owns(i)) add_to(i);
-        for (const Dependence::Carrier& carrier : dependence.carriers(i)) add_to(carrier.node);
+        for (const Dependence::Carrier& carrier : dependence.carriers(i)) {
+            require(pattern.has_row(carrier.node), "a node and one that it follows belong to different processes");
+            add_to(carrier.node);
+        }
     }
     for (std::vector<Index>& list : columns) {
         std::ranges::sort(list);
@@ -43,7 +49,7 @@ FoldedMatrix::FoldedMatrix(const Dependence& dependence, const BlockMatrix& patt
         if (static_cast<Index>(columns[i].size()) !=
             pattern.row_end(static_cast<Index>(i)) - pattern.row_begin(static_cast<Index>(i)))
             plain_[i] = 0;
-    folded_ = BlockMatrix(columns);
+    folded_ = BlockMatrix(columns, pattern.shared());
 }
 
 BlockMatrix FoldedMatrix::folded(const BlockMatrix& A) const {
@@ -82,6 +88,7 @@ void FoldedMatrix::fold(const BlockMatrix& A, BlockMatrix& into) const {
 }
 
 bool needs_folding(const Dependence& dependence, const BlockMatrix& pattern) {
+    if (pattern.share() != nullptr) return !dependence.nodes().empty(); // the rows of others are not known here
     return std::ranges::any_of(dependence.nodes(),
                                [&](Index node) { return pattern.row_end(node) - pattern.row_begin(node) > 1; });
 }

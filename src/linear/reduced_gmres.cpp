@@ -153,7 +153,7 @@ solve::Gmres::Result ReducedGmres::solve(const std::vector<BearingContact>& cont
     rest.tail(3 * couplings) += laws;
     solve::Gmres::Result result{true, 0};
     if (rest.norm() > allowed) {
-        if (size != size_) gmres_ = std::make_unique<solve::Gmres>(size);
+        if (size != size_) gmres_ = std::make_unique<solve::Gmres>(size, nullptr, threads_);
         size_ = size;
         const auto J = [&](const double* from, double* to) {
             std::copy_n(from, n, at.data());

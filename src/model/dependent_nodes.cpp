@@ -18,6 +18,19 @@ std::vector<Index> dependent_nodes(const Model& model) {
     return nodes;
 }
 
+std::vector<std::pair<Index, Index>> followed_nodes(const Model& model) {
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const Tie& tie : model.ties)
+        for (const TiedNode& tied : tie.nodes)
+            for (const auto& [node, weight] : tied.carriers) pairs.emplace_back(tied.node, node);
+    for (const CyclicSymmetry& ring : model.cyclic)
+        for (const LikeNode& one : ring.nodes) pairs.emplace_back(one.node, one.like);
+    for (const LedNode& one : model.led)
+        for (const auto& [node, by] : one.by) pairs.emplace_back(one.node, node);
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
 std::vector<Index> tied_groups(const Model& model) {
     std::vector<Index> group(model.bodies.size());
     std::iota(group.begin(), group.end(), Index{0});

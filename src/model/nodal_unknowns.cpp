@@ -7,17 +7,40 @@
 
 namespace osculate::model {
 
+namespace {
+/// Of the bodies of a group, which move without strain together.
+Extent extent(const Model& model, const std::vector<Index>& group, Index number) {
+    Extent all;
+    double nodes = 0;
+    for (std::size_t b = 0; b < group.size(); ++b) {
+        if (group[b] != number) continue;
+        const double own = model.bodies[b].nodes();
+        all.centre += own * extent(model.bodies[b], model.X).centre;
+        nodes += own;
+    }
+    all.centre /= nodes;
+    for (std::size_t b = 0; b < group.size(); ++b) {
+        if (group[b] != number) continue;
+        const Body& body = model.bodies[b];
+        for (Index node = body.first_node; node < body.first_node + body.nodes(); ++node)
+            all.radius = std::max(all.radius, (model.X[node] - all.centre).norm());
+    }
+    return all;
+}
+} // namespace
+
 solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraints& constraints) {
     solve::NodalUnknowns result;
     for (Index node = 0; node < model.nodes(); ++node)
         if (constraints.free_components(node) > 0) result.node.push_back(node);
+    const std::vector<Index> group = joined_groups(model);
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const Body& body = model.bodies[b];
         const Index last = body.first_node + body.nodes();
-        const auto [centre, radius] = extent(body, model.X);
+        const auto [centre, radius] = extent(model, group, group[b]);
         for (Index node = body.first_node; node < last; ++node) {
             if (constraints.free_components(node) == 0) continue;
-            result.body.push_back(static_cast<Index>(b));
+            result.body.push_back(group[b]);
             result.frame.push_back(constraints.frame(node));
             result.arm.push_back((model.X[node] - centre) / radius);
             for (int k = 0; k < 3; ++k) {
@@ -36,6 +59,11 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
         for (const OuterSurface& surface : model.general->surfaces())
             for (const mesh::Facet& facet : surface.facets)
                 result.coupled.insert(result.coupled.end(), facet.begin(), facet.end());
+    const auto followed = followed_nodes(model);
+    for (std::size_t k = 0; k < result.coupled.size() && !followed.empty(); ++k) // and those of these
+        for (const auto& [node, other] :
+             std::ranges::equal_range(followed, result.coupled[k], {}, &std::pair<Index, Index>::first))
+            result.coupled.push_back(other);
     std::ranges::sort(result.coupled);
     result.coupled.erase(std::unique(result.coupled.begin(), result.coupled.end()), result.coupled.end());
     return result;

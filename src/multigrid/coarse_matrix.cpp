@@ -1,5 +1,7 @@
 #include "multigrid/coarse_matrix.hpp"
 
+#include "osculate/core/parallel.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
@@ -15,8 +17,8 @@ void make_unique(std::vector<Index>& list) {
 
 } // namespace
 
-CoarseMatrix::CoarseMatrix(const FreeNodes& nodes, const Prolongation& P, const NodalMatrix& bodies)
-    : nodes_(nodes), P_(P) {
+CoarseMatrix::CoarseMatrix(const FreeNodes& nodes, const Prolongation& P, const NodalMatrix& bodies, int threads)
+    : nodes_(nodes), P_(P), threads_(threads) {
     // a node's aggregates meet those of its neighbours
     Neighbours neighbours(static_cast<std::size_t>(P.with_copies()));
     std::vector<Index> reached;
@@ -114,29 +116,42 @@ void CoarseMatrix::take_from_others(std::vector<double>& values) const {
 
 void CoarseMatrix::take(const NodalMatrix& bodies) {
     std::ranges::fill(bodies_, 0.0);
-    std::vector<Index> place(static_cast<std::size_t>(P_.with_copies()), -1), reached;
-    std::vector<Prolongation::Block> product; // (A P)_i
-    for (Index i = 0; i < nodes_.size(); ++i) {
-        reached.clear();
-        product.clear();
-        nodes_.for_row(bodies, i, [&](Index j, const Mat3& block) {
-            for (Index k = P_.row_begin(j); k < P_.row_end(j); ++k) {
-                Index& at = place[P_.aggregate(k)];
-                if (at < 0) {
-                    at = static_cast<Index>(reached.size());
-                    reached.push_back(P_.aggregate(k));
-                    product.emplace_back(Prolongation::Block::Zero());
-                }
-                product[at].noalias() += block * P_.block(j, k);
+    const Index at_once = 256 * threads_; // rows of A P that are held
+    std::vector<Row> rows(static_cast<std::size_t>(std::min(at_once, nodes_.size())));
+    for (Index first = 0; first < nodes_.size(); first += at_once) {
+        const Index count = std::min(at_once, nodes_.size() - first);
+        parallel_for(threads_, count, [&](Index begin, Index end) {
+            std::vector<Index> place(static_cast<std::size_t>(P_.with_copies()), -1);
+            for (Index n = begin; n < end; ++n) {
+                auto& [reached, product] = rows[n];
+                reached.clear();
+                product.clear();
+                nodes_.for_row(bodies, first + n, [&](Index j, const Mat3& block) {
+                    for (Index k = P_.row_begin(j); k < P_.row_end(j); ++k) {
+                        Index& at = place[P_.aggregate(k)];
+                        if (at < 0) {
+                            at = static_cast<Index>(reached.size());
+                            reached.push_back(P_.aggregate(k));
+                            product.emplace_back(Prolongation::Block::Zero());
+                        }
+                        product[at].noalias() += block * P_.block(j, k);
+                    }
+                });
+                for (const Index a : reached) place[a] = -1;
             }
         });
-        for (Index k = P_.row_begin(i); k < P_.row_end(i); ++k) {
-            const Index row = P_.aggregate(k);
-            const auto transposed = P_.block(i, k).transpose().eval();
-            for (std::size_t n = 0; n < reached.size(); ++n)
-                add(row, slot(row, P_.number(reached[n])), transposed * product[n], bodies_);
-        }
-        for (const Index a : reached) place[a] = -1;
+        parallel_lanes(threads_, [&](Lane lane) {
+            for (Index n = 0; n < count; ++n) {
+                const Index i = first + n;
+                for (Index k = P_.row_begin(i); k < P_.row_end(i); ++k) {
+                    const Index row = P_.aggregate(k);
+                    if (!lane.owns(row)) continue;
+                    const auto transposed = P_.block(i, k).transpose().eval();
+                    for (std::size_t m = 0; m < rows[n].reached.size(); ++m)
+                        add(row, slot(row, P_.number(rows[n].reached[m])), transposed * rows[n].product[m], bodies_);
+                }
+            }
+        });
     }
 }
 

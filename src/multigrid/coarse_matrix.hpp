@@ -12,7 +12,7 @@ namespace osculate::solve {
 class CoarseMatrix {
 public:
     /// @param nodes, P  must outlive this object
-    CoarseMatrix(const FreeNodes& nodes, const Prolongation& P, const NodalMatrix& bodies);
+    CoarseMatrix(const FreeNodes& nodes, const Prolongation& P, const NodalMatrix& bodies, int threads);
     /// Takes the values of the bodies.
     void take(const NodalMatrix& bodies);
     /// Sum of the bodies' last values and a coupling.
@@ -30,6 +30,11 @@ public:
 
 private:
     using Square = Eigen::Matrix<double, Prolongation::modes, Prolongation::modes, Eigen::RowMajor>;
+    /// (A P)_i: the aggregates that a node's row reaches, and their blocks.
+    struct Row {
+        std::vector<Index> reached;
+        std::vector<Prolongation::Block> product;
+    };
     using Neighbours = std::vector<std::vector<Index>>; ///< numbers for each aggregate here, ascending
 
     /// @param neighbours  also of copied aggregates; one's own get what other processes have for them
@@ -44,6 +49,7 @@ private:
 
     const FreeNodes& nodes_;
     const Prolongation& P_;
+    int threads_;
     std::vector<std::size_t> start_;    ///< (aggregates here + 1) of blocks
     std::vector<Neighbours> of_others_; ///< (ranks) what each has for the rows that it copies
     std::vector<Index> neighbour_;      ///< (blocks) ascending in a row

@@ -3,6 +3,7 @@
 
 #include "multigrid/free_nodes.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace osculate::solve {
@@ -15,6 +16,10 @@ public:
 
     [[nodiscard]] Index rows() const { return static_cast<Index>(row_.size()); }
     [[nodiscard]] Index row(Index r) const { return row_[r]; } ///< ascending
+    /// The first of these rows from node i on.
+    [[nodiscard]] Index first_row_from(Index i) const {
+        return static_cast<Index>(std::ranges::lower_bound(row_, i) - row_.begin());
+    }
     [[nodiscard]] Index begin(Index r) const { return start_[r]; }
     [[nodiscard]] Index end(Index r) const { return start_[r + 1]; }
     [[nodiscard]] Index column(Index k) const { return column_[k]; }

@@ -1,5 +1,7 @@
 #include "multigrid/fine_grid.hpp"
 
+#include "osculate/core/parallel.hpp"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -68,7 +70,8 @@ void multiply(const Rows& A, const double* x, double* to) {
 
 } // namespace
 
-FineGrid::FineGrid(const FreeNodes& nodes, const NodalMatrix& bodies) : nodes_(nodes), start_{0} {
+FineGrid::FineGrid(const FreeNodes& nodes, const NodalMatrix& bodies, int threads)
+    : nodes_(nodes), threads_(threads), start_{0} {
     for (Index i = 0; i < nodes_.size(); ++i) {
         nodes_.for_row(bodies, i, [&](Index j, const Mat3&) { node_.push_back(j); });
         start_.push_back(static_cast<Index>(node_.size()));
@@ -79,16 +82,18 @@ FineGrid::FineGrid(const FreeNodes& nodes, const NodalMatrix& bodies) : nodes_(n
 }
 
 void FineGrid::take(const NodalMatrix& bodies) {
-    float* to = value_.data();
-    for (Index i = 0; i < nodes_.size(); ++i)
-        nodes_.for_row(bodies, i, [&](Index j, Mat3 block) {
-            if (i == j) {
-                const double scale = block.trace() > 0 ? block.trace() : 1;
-                block += scale * (Mat3::Identity() - nodes_.projection(i));
-                diagonal_[i] = block;
-            }
-            for (Index k = 0; k < 9; ++k) *to++ = static_cast<float>(block(k));
-        });
+    parallel_for(threads_, nodes_.size(), [&](Index begin, Index end) {
+        float* to = value_.data() + 9 * static_cast<std::size_t>(start_[begin]);
+        for (Index i = begin; i < end; ++i)
+            nodes_.for_row(bodies, i, [&](Index j, Mat3 block) {
+                if (i == j) {
+                    const double scale = block.trace() > 0 ? block.trace() : 1;
+                    block += scale * (Mat3::Identity() - nodes_.projection(i));
+                    diagonal_[i] = block;
+                }
+                for (Index k = 0; k < 9; ++k) *to++ = static_cast<float>(block(k));
+            });
+    });
     couple({});
     std::vector<Index> all(static_cast<std::size_t>(nodes_.size()));
     std::iota(all.begin(), all.end(), 0);
@@ -106,7 +111,9 @@ void FineGrid::couple(Coupling coupling) {
             if (coupling_.column(k) == i) inverse_[i] += coupling_.block(k);
         for (Index k = start_[i]; k < start_[i + 1]; ++k) is_near[node_[k]] = 1;
     }
-    for (Mat3& D : inverse_) D = D.inverse().eval();
+    parallel_for(threads_, nodes_.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) inverse_[i] = inverse_[i].inverse().eval();
+    });
 
     if (!nodes_.exchange().alone()) { // a node may be near by the coupling of another process
         std::vector<double> marks(is_near.begin(), is_near.end());
@@ -121,17 +128,19 @@ void FineGrid::couple(Coupling coupling) {
 
 template <class Each> void FineGrid::for_rows(double* x, Each&& each) const {
     nodes_.exchange().fill(x, 3);
-    constexpr Index at_once = 128; // their products stay in the cache
-    double product[3 * at_once];
-    Index r = 0;
-    for (Index first = 0; first < nodes_.size(); first += at_once) {
-        const Index last = std::min(first + at_once, nodes_.size());
-        multiply({start_.data() + first, start_.data() + last, node_.data(), value_.data()}, x, product);
-        for (; r < coupling_.rows() && coupling_.row(r) < last; ++r)
-            for (Index k = coupling_.begin(r); k < coupling_.end(r); ++k)
-                at(product, coupling_.row(r) - first) += coupling_.block(k) * at(x, coupling_.column(k));
-        for (Index i = first; i < last; ++i) each(i, at(std::as_const(product), i - first));
-    }
+    parallel_for(threads_, nodes_.size(), [&](Index begin, Index end) {
+        constexpr Index at_once = 128; // their products stay in the cache
+        double product[3 * at_once];
+        Index r = coupling_.first_row_from(begin);
+        for (Index first = begin; first < end; first += at_once) {
+            const Index last = std::min(first + at_once, end);
+            multiply({start_.data() + first, start_.data() + last, node_.data(), value_.data()}, x, product);
+            for (; r < coupling_.rows() && coupling_.row(r) < last; ++r)
+                for (Index k = coupling_.begin(r); k < coupling_.end(r); ++k)
+                    at(product, coupling_.row(r) - first) += coupling_.block(k) * at(x, coupling_.column(k));
+            for (Index i = first; i < last; ++i) each(i, at(std::as_const(product), i - first));
+        }
+    });
 }
 
 void FineGrid::residual(const double* b, double* x, double* r) const {
@@ -146,7 +155,9 @@ void FineGrid::sweep(const double* b, double* x, const double* before, double mo
 }
 
 void FineGrid::first_sweep(const double* b, double step, double* to) const {
-    for (Index i = 0; i < nodes_.size(); ++i) at(to, i) = step * (inverse_[i] * at(b, i));
+    parallel_for(threads_, nodes_.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) at(to, i) = step * (inverse_[i] * at(b, i));
+    });
 }
 
 double FineGrid::estimate(std::span<const Index> rows) const {
@@ -165,8 +176,10 @@ double FineGrid::estimate(std::span<const Index> rows) const {
         largest = std::sqrt(squares);
         for (const Index i : rows) at(x.data(), i) /= largest;
         nodes_.exchange().fill(x.data(), 3);
-        for (const Index i : rows)
-            multiply({&start_[i], &start_[i] + 1, node_.data(), value_.data()}, x.data(), &at(y.data(), i)(0));
+        parallel_for(threads_, static_cast<Index>(rows.size()), [&](Index begin, Index end) {
+            for (const Index i : rows.subspan(begin, end - begin))
+                multiply({&start_[i], &start_[i] + 1, node_.data(), value_.data()}, x.data(), &at(y.data(), i)(0));
+        });
         for (Index r = 0; r < coupling_.rows(); ++r)
             for (Index k = coupling_.begin(r); k < coupling_.end(r); ++k)
                 at(y.data(), coupling_.row(r)) += coupling_.block(k) * at(x.data(), coupling_.column(k));

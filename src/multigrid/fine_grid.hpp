@@ -14,7 +14,7 @@ namespace osculate::solve {
 class FineGrid {
 public:
     /// @param nodes  must outlive this object
-    FineGrid(const FreeNodes& nodes, const NodalMatrix& bodies);
+    FineGrid(const FreeNodes& nodes, const NodalMatrix& bodies, int threads);
     /// Takes the values of the bodies.
     void take(const NodalMatrix& bodies);
     void couple(Coupling coupling);
@@ -32,12 +32,13 @@ public:
     [[nodiscard]] const Mat3& inverse_diagonal(Index i) const { return inverse_[i]; }
 
 private:
-    /// Calls each(i, (A x)_i) for all rows; fills the copies in x.
+    /// Calls each(i, (A x)_i) for all rows, on several threads; fills the copies in x.
     template <class Each> void for_rows(double* x, Each&& each) const;
     /// Of the rows and columns of some nodes, ascending.
     [[nodiscard]] double estimate(std::span<const Index> rows) const;
 
     const FreeNodes& nodes_;
+    int threads_;
     double largest_of_bodies_ = 0, largest_of_coupled_ = 0;
     std::vector<Index> start_, node_; ///< (n + 1) of blocks, (blocks) column
     std::vector<float> value_;        ///< (9 blocks, and one) by columns

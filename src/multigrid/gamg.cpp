@@ -2,6 +2,7 @@
 
 #include "multigrid/coarse_matrix.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/parallel.hpp"
 #include "osculate/core/ranks.hpp"
 #include "osculate/solve/multigrid.hpp"
 
@@ -43,8 +44,8 @@ constexpr double lower = 0.3,
 /// The finest grid and the next are ours, in blocks of nodes; PETSc's GAMG goes on from there.
 class Gamg final : public Multigrid {
 public:
-    explicit Gamg(NodalUnknowns unknowns)
-        : unknowns_(std::move(unknowns)), alone_(unknowns_.owner.empty()),
+    Gamg(NodalUnknowns unknowns, int threads)
+        : unknowns_(std::move(unknowns)), threads_(threads), alone_(unknowns_.owner.empty()),
           comm_(alone_ ? PETSC_COMM_SELF : PETSC_COMM_WORLD) {
         begin_petsc();
     }
@@ -55,9 +56,9 @@ public:
     void coarsen(const NodalMatrix& undeformed) override {
         clear();
         const FreeNodes& nodes = nodes_.emplace(unknowns_, undeformed);
-        fine_.emplace(nodes, undeformed);
-        P_.emplace(nodes, undeformed, *fine_, unknowns_);
-        coarse_.emplace(nodes, *P_, undeformed);
+        fine_.emplace(nodes, undeformed, threads_);
+        P_.emplace(nodes, undeformed, *fine_, unknowns_, threads_);
+        coarse_.emplace(nodes, *P_, undeformed, threads_);
         coarse_->couple({});
         wrap_coarse();
         choose_grids();
@@ -128,7 +129,9 @@ public:
 
 private:
     void for_own_nodes(auto&& each) const {
-        for (Index i = 0; i < nodes_->size(); ++i) each(i, nodes_->place(i));
+        parallel_for(threads_, nodes_->size(), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i) each(i, nodes_->place(i));
+        });
     }
     /// Calls each(local component, equation) of a node.
     void for_equations(Index place, auto&& each) const {
@@ -339,6 +342,7 @@ private:
     }
 
     NodalUnknowns unknowns_;
+    int threads_;
     bool alone_;
     MPI_Comm comm_;
     std::optional<FreeNodes> nodes_;
@@ -411,6 +415,6 @@ extern "C" osculate::Ranks* osculate_join_ranks() {
     return new osculate::solve::MpiRanks;
 }
 
-extern "C" osculate::solve::Multigrid* osculate_make_multigrid(osculate::solve::NodalUnknowns* unknowns) {
-    return new osculate::solve::Gamg(std::move(*unknowns));
+extern "C" osculate::solve::Multigrid* osculate_make_multigrid(osculate::solve::NodalUnknowns* unknowns, int threads) {
+    return new osculate::solve::Gamg(std::move(*unknowns), threads);
 }

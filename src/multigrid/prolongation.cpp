@@ -1,5 +1,7 @@
 #include "multigrid/prolongation.hpp"
 
+#include "osculate/core/parallel.hpp"
+
 #include <algorithm>
 
 namespace osculate::solve {
@@ -31,8 +33,8 @@ void orthonormalise(Matrix& B, Eigen::Ref<Matrix> R) {
 } // namespace
 
 Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const FineGrid& grid,
-                           const NodalUnknowns& unknowns)
-    : nodes_(nodes) {
+                           const NodalUnknowns& unknowns, int threads)
+    : nodes_(nodes), threads_(threads) {
     constexpr Index width = 1 + 3 * modes; // number of its aggregate, and motions
     const Aggregates aggregates = solve::aggregate(nodes, A);
     aggregates_ = aggregates.count;
@@ -71,22 +73,24 @@ Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const F
 
     const double w = 4.0 / 3.0 / grid.largest_eigenvalue();
     Rows rows(static_cast<std::size_t>(nodes.with_copies()));
-    std::vector<Index> reached;
-    std::vector<Block> row;
-    for (Index i = 0; i < nodes.size(); ++i) {
-        reached.assign(1, aggregate_of(i));
-        nodes.for_row(A, i, [&](Index j, const Mat3&) { reached.push_back(aggregate_of(j)); });
-        std::ranges::sort(reached);
-        reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
-        const auto place = [&](Index a) { return std::ranges::lower_bound(reached, a) - reached.begin(); };
-        row.assign(reached.size(), Block::Zero());
-        const Mat3 D = w * grid.inverse_diagonal(i);
-        row[place(aggregate_of(i))] = tentative_of(i);
-        nodes.for_row(A, i, [&](Index j, const Mat3& block) {
-            row[place(aggregate_of(j))].noalias() -= D * (block * tentative_of(j));
-        });
-        for (std::size_t k = 0; k < reached.size(); ++k) rows[i].emplace_back(reached[k], row[k].cast<float>());
-    }
+    parallel_for(threads, nodes.size(), [&](Index begin, Index end) {
+        std::vector<Index> reached;
+        std::vector<Block> row;
+        for (Index i = begin; i < end; ++i) {
+            reached.assign(1, aggregate_of(i));
+            nodes.for_row(A, i, [&](Index j, const Mat3&) { reached.push_back(aggregate_of(j)); });
+            std::ranges::sort(reached);
+            reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+            const auto place = [&](Index a) { return std::ranges::lower_bound(reached, a) - reached.begin(); };
+            row.assign(reached.size(), Block::Zero());
+            const Mat3 D = w * grid.inverse_diagonal(i);
+            row[place(aggregate_of(i))] = tentative_of(i);
+            nodes.for_row(A, i, [&](Index j, const Mat3& block) {
+                row[place(aggregate_of(j))].noalias() -= D * (block * tentative_of(j));
+            });
+            for (std::size_t k = 0; k < reached.size(); ++k) rows[i].emplace_back(reached[k], row[k].cast<float>());
+        }
+    });
     add_copied_rows(rows);
     store(rows, first_of_rank);
     gather_motions(motions, body);
@@ -167,31 +171,37 @@ void Prolongation::gather_motions(const Matrix& own, const std::vector<Index>& b
 
 void Prolongation::add_to_fine(double* c, double* x) const {
     exchange_.fill(c, modes);
-    const float* value = value_.data();
-    for (Index i = 0; i < nodes_.size(); ++i) {
-        Vec3 sum = Vec3::Zero();
-        for (Index k = start_[i]; k < start_[i + 1]; ++k) {
-            const double* from = c + modes * static_cast<std::size_t>(aggregate_[k]);
-            for (Index r = 0; r < 3; ++r)
-                for (Index m = 0; m < modes; ++m) sum(r) += static_cast<double>(*value++) * from[m];
+    parallel_for(threads_, nodes_.size(), [&](Index begin, Index end) {
+        const float* value = value_.data() + stored * static_cast<std::size_t>(start_[begin]);
+        for (Index i = begin; i < end; ++i) {
+            Vec3 sum = Vec3::Zero();
+            for (Index k = start_[i]; k < start_[i + 1]; ++k) {
+                const double* from = c + modes * static_cast<std::size_t>(aggregate_[k]);
+                for (Index r = 0; r < 3; ++r)
+                    for (Index m = 0; m < modes; ++m) sum(r) += static_cast<double>(*value++) * from[m];
+            }
+            Eigen::Map<Vec3>(x + 3 * static_cast<std::size_t>(i)) +=
+                nodes_.whole(i) ? sum : Vec3(nodes_.projection(i) * sum);
         }
-        Eigen::Map<Vec3>(x + 3 * static_cast<std::size_t>(i)) +=
-            nodes_.whole(i) ? sum : Vec3(nodes_.projection(i) * sum);
-    }
+    });
 }
 
 void Prolongation::to_coarse(const double* x, double* c) const {
     std::fill_n(c, modes * number_.size(), 0.0);
-    const float* value = value_.data();
-    for (Index i = 0; i < nodes_.size(); ++i) {
-        Vec3 from = Eigen::Map<const Vec3>(x + 3 * static_cast<std::size_t>(i));
-        if (!nodes_.whole(i)) from = (nodes_.projection(i) * from).eval();
-        for (Index k = start_[i]; k < start_[i + 1]; ++k) {
-            double* to = c + modes * static_cast<std::size_t>(aggregate_[k]);
-            for (Index r = 0; r < 3; ++r)
-                for (Index m = 0; m < modes; ++m) to[m] += static_cast<double>(*value++) * from(r);
+    // each thread adds up for some of the aggregates, in the order of nodes
+    parallel_for(threads_, with_copies(), [&](Index first, Index end) {
+        for (Index i = 0; i < nodes_.size(); ++i) {
+            Vec3 from = Eigen::Map<const Vec3>(x + 3 * static_cast<std::size_t>(i));
+            if (!nodes_.whole(i)) from = (nodes_.projection(i) * from).eval();
+            for (Index k = start_[i]; k < start_[i + 1]; ++k) {
+                if (aggregate_[k] < first || aggregate_[k] >= end) continue;
+                double* to = c + modes * static_cast<std::size_t>(aggregate_[k]);
+                const float* value = value_.data() + stored * static_cast<std::size_t>(k);
+                for (Index r = 0; r < 3; ++r)
+                    for (Index m = 0; m < modes; ++m) to[m] += static_cast<double>(*value++) * from(r);
+            }
         }
-    }
+    });
     exchange_.add(c, modes);
 }
 

@@ -14,7 +14,8 @@ public:
     using Block = Eigen::Matrix<double, 3, modes, Eigen::RowMajor>;
 
     /// @param A  of the undeformed bodies, held in `grid` too
-    Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const FineGrid& grid, const NodalUnknowns& unknowns);
+    Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const FineGrid& grid, const NodalUnknowns& unknowns,
+                 int threads);
 
     /// One's own aggregates, and with those of other processes that rows here reach, which come after them.
     [[nodiscard]] Index aggregates() const { return aggregates_; }
@@ -54,6 +55,7 @@ private:
     void store(const Rows& rows, const std::vector<Index>& first_of_rank);
 
     const FreeNodes& nodes_;
+    int threads_;
     Index aggregates_ = 0, first_number_ = 0;
     std::vector<Index> number_, body_;
     Matrix near_kernel_;

@@ -139,7 +139,10 @@ void describe(Visitor& v, Pair& pair) {
             .names = Names::set,
             .instead = "between"},
            pair.slave);
-    v.group({.name = "master", .meaning = "Master side.", .required = true, .instead = "between"},
+    v.group({.name = "master",
+             .meaning = "Master side; master: NAME is short for master: {set: NAME}.",
+             .required = true,
+             .instead = "between"},
             [&] { describe(v, pair.master); });
     v.two_names({.name = "between",
                  .meaning = "The two sides, in place of slave and master.set: the slave is the softer one if the other "

@@ -35,17 +35,21 @@ std::vector<std::string> split_path(const std::string& path) {
 
 namespace {
 
+/// A text becomes a map with that text under a key.
+void make_map(Tree& tree, const char* key) {
+    if (tree.kind != Tree::Kind::scalar) return;
+    Tree text = tree;
+    text.key = key;
+    tree.kind = Tree::Kind::map;
+    tree.children = {std::move(text)};
+}
+
 /// `file: part.vtu` for `file: {path: part.vtu}`, `repair: true` for `repair: [all]`.
 void expand_mesh(Tree& mesh) {
     for (const char* tag : {"file", "cad"}) {
         Tree* source = mesh.find(tag);
         if (!source) continue;
-        if (source->kind == Tree::Kind::scalar) {
-            Tree path = *source;
-            path.key = "path";
-            source->kind = Tree::Kind::map;
-            source->children = {std::move(path)};
-        }
+        make_map(*source, "path");
         Tree* repair = source->kind == Tree::Kind::map && source->key == "file" ? source->find("repair") : nullptr;
         if (!repair || repair->kind != Tree::Kind::scalar) continue;
         if (repair->scalar != "true" && repair->scalar != "false") continue;
@@ -63,7 +67,8 @@ void switch_sides(Tree& pair, const std::vector<std::string>& path) {
     const auto drop = [](Tree& map, const std::string& key) {
         std::erase_if(map.children, [&](const Tree& child) { return child.key == key; });
     };
-    if (path[2] == "slave" || (path[2] == "master" && path.back() == "set")) drop(pair, "between");
+    if (path[2] == "slave" || (path[2] == "master" && (path.size() == 3 || path.back() == "set")))
+        drop(pair, "between");
     if (path[2] != "between") return;
     drop(pair, "slave");
     if (Tree* master = pair.find("master")) drop(*master, "set");
@@ -79,6 +84,7 @@ void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
     if (!pairs || pairs->kind != Tree::Kind::map) return;
     for (Tree& pair : pairs->children) {
         if (pair.key == "general") continue; // its surface is its own
+        if (Tree* master = pair.find("master")) make_map(*master, "set");
         const Tree* surface = pair.find("surface");
         if (!surface) continue;
         const Tree moved = *surface;

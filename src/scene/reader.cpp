@@ -73,6 +73,7 @@ Scene build(Tree tree, const std::string& file, const fs::path& directory, const
             std::vector<Fault> faults) {
     expand_short_forms(tree, faults);
     for (const Override& change : overrides) apply(change, tree, faults);
+    expand_short_forms(tree, faults); // those of overrides
 
     Scene scene;
     scene.name = name_from(file);

@@ -24,7 +24,7 @@ void allow(Json& value, const Json& short_form) {
     value = std::move(either);
 }
 
-/// What expand_short_forms takes: a file's name for its map, true or false for its repairs, and
+/// What expand_short_forms takes: a file's name for its map, true or false for its repairs, a set's name for a master, and
 /// `contact.<pair>.surface` for `contact.<pair>.master.surface`; and that a pair has either roles or two sides.
 void add_short_forms(Json& scene) {
     Json& mesh = scene["properties"]["bodies"]["additionalProperties"]["properties"]["mesh"]["properties"];
@@ -34,12 +34,14 @@ void add_short_forms(Json& scene) {
     Json surface = pair["properties"]["master"]["properties"]["surface"];
     surface["description"] = "Short for master.surface.\n\n" + surface["description"].get<std::string>();
     pair["properties"]["surface"] = std::move(surface);
+    const Json name{{"type", "string"}, {"minLength", 1}};
+    allow(pair["properties"]["master"], name);
     pair["not"] = {{"type", "object"},
                    {"required", {"surface", "master"}},
                    {"properties", {{"master", {{"type", "object"}, {"required", {"surface"}}}}}}};
     const Json names{{{"required", {"set"}}}, {{"required", {"rigid_surface"}}}};
-    const Json named_master{{"type", "object"}, {"oneOf", names}},
-        unnamed_master{{"not", {{"type", "object"}, {"anyOf", names}}}};
+    const Json named_master{{"anyOf", {name, {{"type", "object"}, {"oneOf", names}}}}},
+        unnamed_master{{"type", "object"}, {"not", {{"anyOf", names}}}};
     pair["if"] = {{"type", "object"}, {"required", {"between"}}};
     pair["then"]["properties"] = {{"slave", false}, {"master", unnamed_master}};
     pair["else"] = {{"type", "object"}, {"required", {"slave", "master"}}, {"properties", {{"master", named_master}}}};

@@ -2,7 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/ranks.hpp"
-#include "solve/sliced_vector.hpp"
+#include "solve/gmres_vector.hpp"
 
 #include <algorithm>
 #include <nvector/nvector_serial.h>
@@ -13,19 +13,16 @@
 namespace osculate::solve {
 
 struct Gmres::Impl {
-    Impl(Index n, Ranks* together) : size(n), ranks(together) {
+    Impl(Index n, Ranks* together, int threads) : size(n), ranks(together) {
         if (ranks != nullptr) {
             for (int k = 0; k < ranks->count(); ++k) lengths.push_back(begin_of(k + 1) - begin_of(k));
             begin = begin_of(ranks->rank());
             length = lengths[static_cast<std::size_t>(ranks->rank())];
             whole_in.resize(static_cast<std::size_t>(size));
             whole_out.resize(static_cast<std::size_t>(size));
-            x = make_sliced(length, *ranks, context);
-            b = N_VClone(x);
-        } else {
-            b = N_VMake_Serial(size, nullptr, context);
-            x = N_VMake_Serial(size, nullptr, context);
         }
+        x = make_gmres_vector(ranks != nullptr ? length : size, ranks, threads, context);
+        b = make_gmres_vector(ranks != nullptr ? length : size, ranks, threads, context);
         linear = SUNLinSol_SPGMR(x, SUN_PREC_NONE, most_iterations, context);
         require(linear != nullptr, "SPGMR could not be created");
         SUNLinSolSetATimes(linear, this, [](void* self, N_Vector v, N_Vector z) {
@@ -79,7 +76,7 @@ struct Gmres::Impl {
     const LinearMap *A = nullptr, *M = nullptr;
 };
 
-Gmres::Gmres(Index size, Ranks* ranks) : impl_(std::make_unique<Impl>(size, ranks)) {}
+Gmres::Gmres(Index size, Ranks* ranks, int threads) : impl_(std::make_unique<Impl>(size, ranks, threads)) {}
 Gmres::~Gmres() = default;
 
 Gmres::Result Gmres::solve(const LinearMap& A, const LinearMap& M, const double* b, double* x, double tolerance) {

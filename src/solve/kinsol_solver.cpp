@@ -44,7 +44,7 @@ constexpr int worth_trying = 2;
 } // namespace
 
 struct KinsolSolver::Impl {
-    Impl(Index n, Timings& t, Ranks* r) : size(n), timings(t), ranks(r) {
+    Impl(Index n, Timings& t, Ranks* r, int side_by_side) : size(n), timings(t), ranks(r), threads(side_by_side) {
         z.reset(N_VNew_Serial(n, context));
         u_scale.reset(N_VNew_Serial(n, context));
         f_scale.reset(N_VNew_Serial(n, context));
@@ -218,7 +218,7 @@ struct KinsolSolver::Impl {
             }
             const ScopedTimer timer(timings, Part::solve);
             const auto on_all_unknowns = [&] {
-                if (krylov == nullptr) krylov = std::make_unique<Gmres>(size, ranks);
+                if (krylov == nullptr) krylov = std::make_unique<Gmres>(size, ranks, threads);
                 return krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
             };
             const std::optional<Gmres::Result> own =
@@ -267,6 +267,7 @@ struct KinsolSolver::Impl {
     Index size;
     Timings& timings;
     Ranks* ranks;
+    int threads;
     VectorPtr z, u_scale, f_scale;
     SUNMatrix handle = nullptr;
     SUNLinearSolver linear = nullptr;
@@ -288,8 +289,8 @@ struct KinsolSolver::Impl {
     std::exception_ptr error;
 };
 
-KinsolSolver::KinsolSolver(Index size, Timings& timings, Ranks* ranks)
-    : impl_(std::make_unique<Impl>(size, timings, ranks)) {}
+KinsolSolver::KinsolSolver(Index size, Timings& timings, Ranks* ranks, int threads)
+    : impl_(std::make_unique<Impl>(size, timings, ranks, threads)) {}
 KinsolSolver::~KinsolSolver() = default;
 
 long KinsolSolver::factorisations() const {

@@ -24,11 +24,11 @@ template <class Function> Function of_module(const char* name, const char* what,
 
 } // namespace
 
-std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns) {
-    using Make = Multigrid* (*)(NodalUnknowns*);
+std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns, int threads) {
+    using Make = Multigrid* (*)(NodalUnknowns*, int);
     static const auto make =
         of_module<Make>("osculate_make_multigrid", "multigrid", "solver.linear_solver: iterative does not need it");
-    return std::unique_ptr<Multigrid>(make(&unknowns));
+    return std::unique_ptr<Multigrid>(make(&unknowns, threads));
 }
 
 std::shared_ptr<Ranks> join_ranks() {

@@ -53,7 +53,8 @@ Machinery::Machinery(RunContext& context, const Stage& stage, const equilibrium:
     : choice(tangent_choice(context.model, stage, state)),
       equilibrium(context.model, model::pairs_of(state.contact), constraints, dynamics, choice, context.timings,
                   context.options.threads, !stage.follower_pressures.empty()),
-      solver(equilibrium.size(), context.timings, context.model.share ? &context.model.share->ranks() : nullptr),
+      solver(equilibrium.size(), context.timings, context.model.share ? &context.model.share->ranks() : nullptr,
+             context.options.threads),
       collisions(context.model, equilibrium.contact(), stage.limits, stage.follow_paths, context.timings,
                  context.options.threads) {
     for (model::ContactEvaluation& evaluation : equilibrium.contact()) evaluation.pass_over_far_nodes(true);

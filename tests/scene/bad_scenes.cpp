@@ -71,6 +71,17 @@ TEST(BadScene, MissingAndDoubleKeys) {
         "18)");
 }
 
+TEST(BadScene, ANameInPlaceOfAMasterIsThatOfItsSet) {
+    const std::string master = "{set: ground, surface: {rpim: {ring: 1}}}";
+    expect_fault(replaced(small_scene, master, "gruond"),
+                 "bad.yaml:18:13: contact.joint.master.set: expected the name of a set: bed, ground, under, top, found "
+                 "'gruond' (did you mean 'ground'?)");
+    const Scene scene = parse_scene(replaced(small_scene, master, "ground"), "good.yaml");
+    EXPECT_EQ(scene.contact.front().second.master.set, "ground");
+    EXPECT_EQ(parse_scene(small_scene, "changed", {{"contact.joint.master", "top"}}).contact.front().second.master.set,
+              "top");
+}
+
 TEST(BadScene, PairsHaveEitherRolesOrTwoSides) {
     const std::string roles = "    slave: under\n    master: {set: ground, surface";
     const std::string pair = "bad.yaml:17:5: contact.joint";

@@ -55,7 +55,8 @@ TEST(Schema, HasTheKeysOfTheKeyListAndTheShortForm) {
     std::erase_if(in_schema, [](const std::string& key) { return key.starts_with("contact.<>.surface"); });
     EXPECT_THAT(in_schema, ElementsAreArray(listed));
     const Json pair = Json::parse(scene_schema())["properties"]["contact"]["additionalProperties"]["properties"];
-    EXPECT_EQ(pair["surface"]["anyOf"], pair["master"]["properties"]["surface"]["anyOf"]);
+    EXPECT_EQ(pair["master"]["anyOf"][0]["type"], "string");
+    EXPECT_EQ(pair["surface"]["anyOf"], pair["master"]["anyOf"][1]["properties"]["surface"]["anyOf"]);
 }
 
 TEST(Schema, TakesTheNameOfAFileForItsMap) {

@@ -33,6 +33,26 @@ protected:
     const std::string press = "tests/scenes/press.yaml";
 };
 
+TEST_F(Check, SaysWhatProcessesWouldHold) {
+    const auto asked = [&](const std::string& scene, const std::string& processes, bool json = false) {
+        std::vector<std::string> words{"check", scene_file(scene), "--processes", processes};
+        if (json) words.emplace_back("--json");
+        return osculate(words);
+    };
+    EXPECT_THAT(asked(press, "2").out,
+                AllOf(HasSubstr("2 processes, estimates of memory: "), HasSubstr("shared by nodes")));
+    const auto of_one = [&](const std::string& processes) {
+        return Json::parse(asked(press, processes, true).out).at("processes").at("memory_bytes_of_one").get<double>();
+    };
+    const double one = of_one("1"), two = of_one("2"), four = of_one("4");
+    EXPECT_GT(two, four);
+    EXPECT_NEAR(one - two, 2 * (two - four), 1e-9 * one); // what they share is halved
+    const Outcome refused = asked("configs/tutorials/bolted_joint.yaml", "2");
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("rigid bodies or couplings"));
+    EXPECT_EQ(asked(press, "0").code, 2);
+}
+
 TEST_F(Check, OfASoundSceneWarnsOfNothing) {
     for (const char* scene : {"tests/scenes/press.yaml", "configs/tutorials/bouncing_ball.yaml",
                               "configs/tutorials/two_bars.yaml", "configs/tutorials/ring_on_cylinder.yaml"})

@@ -167,6 +167,27 @@ TEST(Gmres, SolvesAsFarAsAskedAndSaysWhereItCannot) {
     EXPECT_FALSE(Gmres(100).solve(rotation, {}, e.data(), x.data(), 1e-3).converged);
 }
 
+TEST(Gmres, HasTheSameBitsForAnyNumberOfThreads) {
+    const Index n = 50'001;
+    Random random(10);
+    const Vector b = random_vector(n, random);
+    const auto times = [](const double* x, double* y) {
+        for (Index i = 0; i < n; ++i) y[i] = 3 * x[i] - (i > 0 ? x[i - 1] : 0) - (i + 1 < n ? 1.5 * x[i + 1] : 0);
+    };
+    Vector alone(n), Ax(n);
+    const auto expected = Gmres(n).solve(times, {}, b.data(), alone.data(), 1e-6);
+    ASSERT_TRUE(expected.converged);
+    EXPECT_GT(expected.iterations, 10);
+    times(alone.data(), Ax.data());
+    EXPECT_LE((Ax - b).norm(), 1.01e-6);
+    for (const int threads : {2, 3, 8}) {
+        Vector x(n);
+        EXPECT_EQ(Gmres(n, nullptr, threads).solve(times, {}, b.data(), x.data(), 1e-6).iterations,
+                  expected.iterations);
+        EXPECT_EQ(x, alone) << threads << " threads";
+    }
+}
+
 TEST(Gmres, SharesItsDirectionsAmongProcesses) {
     Random random(9);
     const Matrix A = random_matrix(50, 4, random), M = Matrix(A.diagonal().cwiseInverse().asDiagonal());

@@ -1,6 +1,7 @@
 /// The way Newton's linear systems are solved is no part of the answer.
 
 #include "support/floating_point_traps.hpp"
+#include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
 
 #include <algorithm>
@@ -93,6 +94,41 @@ TEST(LinearSolvers, GiveTheSameAtFiniteStrain) {
     };
     support::run_scene(direct, support::shipped("extreme/rubber_mu_10.yaml"), by("direct"));
     support::run_scene(multigrid, support::shipped("extreme/rubber_mu_10.yaml"), by("multigrid"));
+    ASSERT_EQ(direct.steps.size(), multigrid.steps.size());
+    EXPECT_LT(difference(direct, multigrid), same);
+}
+
+/// Two bodies that move without strain as one, and a contact between them and a third.
+TEST(LinearSolvers, GiveTheSameWithTiedBodies) {
+    const auto path = support::scene_file("tied.yaml", R"(
+bodies:
+  lower: {mesh: {block: {size: [1 m, 1 m, 1 m], divisions: [6, 6, 6]}}, material: {linear_elastic: {E: 100 MPa, nu: 0.3}}}
+  middle:
+    mesh: {block: {origin: [0.1 m, 0.1 m, 1 m], size: [0.8 m, 0.8 m, 0.4 m], divisions: [5, 5, 3]}}
+    material: {linear_elastic: {E: 300 MPa, nu: 0.3}}
+  upper:
+    mesh: {block: {origin: [0.2 m, 0.2 m, 1.4 m], size: [0.5 m, 0.5 m, 0.4 m], divisions: [4, 4, 3]}}
+    material: {linear_elastic: {E: 100 MPa, nu: 0.3}}
+sets:
+  bed: {body: lower, surface: z_min}
+  ground: {body: lower, surface: z_max}
+  under: {body: middle, surface: z_min}
+  over: {body: middle, surface: z_max}
+  sole: {body: upper, surface: z_min}
+  top: {body: upper, surface: z_max}
+supports: {bed: {fix: [x, y, z]}}
+ties: {glue: {slave: under, master: ground}}
+contact: {base: {slave: sole, master: {set: over}, friction: 0.3}}
+stages: {press: {displacement: {top: {x: 0.2 mm, y: 0 m, z: -1 mm}}}}
+)");
+    const support::FloatingPointTraps suspended(false);
+    SceneRun direct, multigrid;
+    const auto by = [](const char* solver) {
+        return std::vector<scene::Override>{{"solver.tolerance", "1e-12"}, {"solver.linear_solver", solver}};
+    };
+    support::run_scene(direct, path, by("direct"));
+    support::run_scene(multigrid, path, by("multigrid"));
+    EXPECT_TRUE(multigrid.plan.stages.front().tangent.multigrid);
     ASSERT_EQ(direct.steps.size(), multigrid.steps.size());
     EXPECT_LT(difference(direct, multigrid), same);
 }

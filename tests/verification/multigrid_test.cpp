@@ -46,7 +46,7 @@ std::string two_blocks(int n) {
 
 /// The stiffness with springs of k E h between the nodes of the upper block's lowest layer and the lower block's nearest.
 struct Blocks {
-    explicit Blocks(int n, double springs) {
+    Blocks(int n, double springs, int threads = 1) {
         Timings timings;
         const scene::Scene scene = scene::read_scene(support::scene_file("two_blocks.yaml", two_blocks(n)),
                                                      {{"solver.stabilisation", "true"}});
@@ -71,7 +71,7 @@ struct Blocks {
             spring.stiffness = springs * 1e8 / n * Mat3::Identity();
         }
         stiffness->set_springs(springs_);
-        multigrid = solve::make_multigrid(model::nodal_unknowns(plan.model, *constraints));
+        multigrid = solve::make_multigrid(model::nodal_unknowns(plan.model, *constraints), threads);
         multigrid->coarsen(plan.model.K.view());
     }
     [[nodiscard]] Index size() const { return constraints->equations(); }
@@ -153,6 +153,17 @@ TEST_F(Multigrid, TakesMoreSpringsThanBefore) {
     ASSERT_EQ(one_by_one.couple(), solve::FactorStatus::ok);
     ASSERT_EQ(at_once.couple(), solve::FactorStatus::ok);
     EXPECT_EQ(one_by_one.cycle(b), at_once.cycle(b));
+}
+
+TEST_F(Multigrid, HasTheSameBitsForAnyNumberOfThreads) {
+    const Blocks alone(12, 1);
+    ASSERT_EQ(alone.couple(), solve::FactorStatus::ok);
+    const Vector b = Vector::Ones(alone.size()), expected = alone.cycle(b);
+    for (const int threads : {2, 3, 8}) {
+        const Blocks shared(12, 1, threads);
+        ASSERT_EQ(shared.couple(), solve::FactorStatus::ok);
+        EXPECT_EQ(shared.cycle(b), expected) << threads << " threads";
+    }
 }
 
 /// A row of springs leaves the upper block a turn about it.

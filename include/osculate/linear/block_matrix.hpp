@@ -46,6 +46,7 @@ public:
 
     /// Who has which rows; null: there is one process.
     [[nodiscard]] const Share* share() const { return share_.get(); }
+    [[nodiscard]] const std::shared_ptr<const Share>& shared() const { return share_; }
     /// Whether this process has the row of a node.
     [[nodiscard]] bool has_row(Index node) const { return share_ == nullptr || share_->owns(node); }
 

@@ -14,7 +14,7 @@ namespace osculate::linear {
 class FoldedMatrix {
 public:
     /// @param dependence  it must outlive this object; who carries whom must stay
-    /// @param pattern     of the matrices to fold. O(nonzeros)
+    /// @param pattern     of the matrices to fold; a process has the rows of all or none of a node and those that it follows. O(nonzeros)
     FoldedMatrix(const Dependence& dependence, const BlockMatrix& pattern);
 
     /// Takes over the values of a matrix with that pattern, and those of the dependence.

@@ -28,7 +28,8 @@ public:
 
     /// @param ranks  processes among which the directions are shared out, which take most of the memory; each has a slice of
     ///               every one, and all get x. Null: there is one process
-    explicit Gmres(Index size, Ranks* ranks = nullptr);
+    /// @param threads  share the work on directions; bits do not depend on them
+    explicit Gmres(Index size, Ranks* ranks = nullptr, int threads = 1);
     ~Gmres();
     Gmres(const Gmres&) = delete;
     Gmres& operator=(const Gmres&) = delete;

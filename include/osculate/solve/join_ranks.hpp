@@ -13,7 +13,9 @@ namespace osculate::solve {
 /// Shares nodes out, so that processes have about as many neighbourhoods each and few neighbours of other processes, by METIS;
 /// the same on all processes.
 /// @param neighbours  of each node, itself included
+/// @param together    pairs of nodes that go to the same rank
 /// @returns           (nodes) a rank
-[[nodiscard]] std::vector<int> share_nodes(const std::vector<std::vector<Index>>& neighbours, int ranks);
+[[nodiscard]] std::vector<int> share_nodes(const std::vector<std::vector<Index>>& neighbours, int ranks,
+                                           std::span<const std::pair<Index, Index>> together = {});
 
 } // namespace osculate::solve

@@ -135,8 +135,8 @@ struct KinsolResult {
 /// Interpretation of KINSOL's return codes: 0 and 1 converged; 2 (step test) only if the residual test holds too.
 class KinsolSolver {
 public:
-    /// @param ranks  see Gmres
-    KinsolSolver(Index size, Timings& timings, Ranks* ranks = nullptr);
+    /// @param ranks, threads  see Gmres
+    KinsolSolver(Index size, Timings& timings, Ranks* ranks = nullptr, int threads = 1);
     ~KinsolSolver();
     KinsolSolver(const KinsolSolver&) = delete;
     KinsolSolver& operator=(const KinsolSolver&) = delete;

@@ -48,7 +48,8 @@ public:
 };
 
 /// Loads PETSc at the first call.
+/// @param threads  share the work on the finest grid and the matrix below it; a cycle's bits do not depend on them
 /// @throws RunFailure if the module cannot be loaded
-[[nodiscard]] std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns);
+[[nodiscard]] std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns, int threads = 1);
 
 } // namespace osculate::solve

@@ -12,6 +12,7 @@
 #include "app/plan/gaps.hpp"
 #include "app/plan/settle_pairs.hpp"
 #include "osculate/app/estimate.hpp"
+#include "osculate/app/processes.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/version.hpp"
 
@@ -250,7 +251,7 @@ Json as_json(const model::Model& model, const PairCheck& check) {
     return json;
 }
 
-std::string as_json(const LoadedScene& loaded, const Check& check) {
+std::string as_json(const LoadedScene& loaded, const Check& check, int processes) {
     const Plan& plan = loaded.plan;
     Json json{{"version", version}, {"scene", loaded.scene.name}};
     json["bodies"] = json["pairs"] = json["stages"] = json["free_motions"] = json["warnings"] = Json::array();
@@ -267,6 +268,13 @@ std::string as_json(const LoadedScene& loaded, const Check& check) {
                         {"memory_bytes", check.cost.bytes},
                         {"factor", Estimate::factor},
                         {"terms", std::move(terms)}};
+    if (processes > 0) {
+        const ProcessMemory memory = process_memory(plan);
+        json["processes"] = {{"count", processes},
+                             {"memory_bytes_of_one", memory.of_one(processes)},
+                             {"memory_bytes_of_first", memory.of_first(processes)},
+                             {"memory_bytes_of_all", memory.of_all(processes)}};
+    }
     for (const PairCheck& pair : check.pairs) json["pairs"].push_back(as_json(plan.model, pair));
     for (const time::Stage& stage : plan.stages)
         json["stages"].push_back({{"name", stage.name}, {"steps", stage.steps}, {"duration", stage.duration}});
@@ -283,9 +291,10 @@ std::string as_json(const LoadedScene& loaded, const Check& check) {
 
 } // namespace
 
-std::string check_scene(const LoadedScene& loaded, int threads, bool json) {
+std::string check_scene(const LoadedScene& loaded, int threads, bool json, int processes) {
+    const std::string shared = processes > 0 ? processes_in_words(loaded.plan, processes) : "";
     const Check check = examine(loaded, threads);
-    return json ? as_json(loaded, check) : in_words(loaded, check);
+    return json ? as_json(loaded, check, processes) : in_words(loaded, check) + shared;
 }
 
 } // namespace osculate::app

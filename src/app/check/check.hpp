@@ -8,6 +8,8 @@
 namespace osculate::app {
 
 /// What a scene amounts to and what looks wrong with it, in words or as JSON.
-[[nodiscard]] std::string check_scene(const LoadedScene& loaded, int threads, bool json);
+/// @param processes  that are meant to share the run; 0: not asked
+/// @throws SceneError where they cannot share it
+[[nodiscard]] std::string check_scene(const LoadedScene& loaded, int threads, bool json, int processes = 0);
 
 } // namespace osculate::app

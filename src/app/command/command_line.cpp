@@ -4,11 +4,13 @@
 #include "app/command/init_command.hpp"
 #include "app/command/mesh_command.hpp"
 #include "app/command/mistyped.hpp"
+#include "app/command/run_script.hpp"
 #include "app/command/study_command.hpp"
 #include "app/command/surface_command.hpp"
 #include "app/run/distributed.hpp"
 #include "osculate/app/diary.hpp"
 #include "osculate/app/load.hpp"
+#include "osculate/app/processes.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run.hpp"
 #include "osculate/app/run_report.hpp"
@@ -37,10 +39,10 @@ namespace {
 enum ExitCode { done = 0, bad_scene = 2, gave_up = 3, bug = 4, lossy_import = 5 };
 
 struct Arguments {
-    std::string scene, output, key_path, run_folder, checkpoint_every, from, schema = "scene";
+    std::string scene, output, key_path, run_folder, checkpoint_every, from, emit, schema = "scene";
     std::vector<std::string> changes;
     FolderOptions folder;
-    int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency())), processes = 0;
     bool quiet = false, distributed = false;
     SurfaceOptions surface;
     StudyOptions study;
@@ -150,6 +152,10 @@ void add_run_options(CLI::App* run, Arguments& arguments) {
     run->add_flag("--distributed", arguments.distributed, "Share the run among the processes that mpirun has started");
 }
 
+CLI::Option* add_processes(CLI::App* command, Arguments& arguments, const std::string& what) {
+    return command->add_option("--processes", arguments.processes, what)->type_name("N")->check(CLI::Range(1, 65536));
+}
+
 void show_run(const output::Summary& summary, const Arguments& arguments) {
     if (arguments.quiet) return;
     const std::string folder = summary.folder.string();
@@ -251,6 +257,11 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
     CLI::App* run = add_scene_command(program, "run", "Run a scene", arguments);
     add_folder(run, arguments, "Folder of the run's files [out/<scene name>]");
     add_run_options(run, arguments);
+    CLI::Option* emit =
+        run->add_option("--emit", arguments.emit, "Run nothing; write a SLURM script that runs it elsewhere")
+            ->type_name("slurm")
+            ->check(CLI::IsMember({"slurm"}));
+    add_processes(run, arguments, "Number of processes that the script starts [1]")->needs(emit);
     CLI::App* resume = program.add_subcommand("resume", "Continue a run from its last checkpoint");
     resume->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
     resume->add_option("--from", arguments.from, "Start from this checkpoint instead of DIR/checkpoint/state")
@@ -258,7 +269,10 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
     add_run_options(resume, arguments);
     CLI::App* check = add_scene_command(
         program, "check", "Validate a scene; show sizes, cost, pairs, initial gaps, and what looks wrong", arguments);
-    add_scene_command(program, "explain", "Show what a scene's plan contains, what it leaves out and why", arguments);
+    CLI::App* explain = add_scene_command(program, "explain",
+                                          "Show what a scene's plan contains, what it leaves out and why", arguments);
+    for (CLI::App* command : {check, explain})
+        add_processes(command, arguments, "Also show what each of so many processes would hold");
     CLI::App* surface = add_scene_command(
         program, "surface", "Write the master surfaces as the solver sees them, before any run", arguments);
     surface->add_option("--pair", arguments.surface.pair, "Only this contact pair")->type_name("NAME");
@@ -315,6 +329,12 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
         return program.exit(error) == 0 ? done : bad_scene; // --help and --version come this way too
     }
 
+    if (*run && !arguments.emit.empty()) {
+        print(write_run_script({arguments.scene, arguments.changes, arguments.output, arguments.checkpoint_every,
+                                std::max(1, arguments.processes), arguments.threads},
+                               arguments.overrides()));
+        return done;
+    }
     RunOptions options;
     if (*run || *resume) {
         options = arguments.run_options();
@@ -357,9 +377,10 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
         if (*check)
-            print(check_scene(loaded, arguments.threads, arguments.json));
+            print(check_scene(loaded, arguments.threads, arguments.json, arguments.processes));
         else
-            print(app::explain(loaded.plan));
+            print(app::explain(loaded.plan) +
+                  (arguments.processes > 0 ? processes_in_words(loaded.plan, arguments.processes) : ""));
     }
     return done;
 }

@@ -1,12 +1,11 @@
 #include "app/study/study_emit.hpp"
 
+#include "app/shell_words.hpp"
 #include "app/study/run_folder.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/core/file_content.hpp"
 #include "osculate/core/printable.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -17,39 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A word as a shell reads it; control characters do not break the line.
-std::string shell_word(const std::string& word) {
-    const auto plain = [](unsigned char c) {
-        return std::isalnum(c) != 0 || std::string("_-./=,:+@%").find(static_cast<char>(c)) != std::string::npos;
-    };
-    if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-    if (std::ranges::none_of(word, [](unsigned char c) { return c < ' '; })) {
-        std::string text = "'";
-        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        return text + "'";
-    }
-    std::string text = "$'";
-    for (const char c : word)
-        if (static_cast<unsigned char>(c) < ' ')
-            text += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
-        else
-            text += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-    return text + "'";
-}
-
-std::string line_of(const std::vector<std::string>& words) {
-    std::string line;
-    for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
-    return line;
-}
-
 std::string line_of(const StudyCase& c, const StudyRunOptions& options) {
-    return line_of(
+    return shell_line(
         run_words(c, fs::absolute(c.scene_path).lexically_normal().string(), fs::path("runs") / c.id, options));
-}
-
-std::string program() {
-    return fs::read_symlink("/proc/self/exe").string();
 }
 
 /// A text as Python reads it.
@@ -121,13 +90,6 @@ echo $code > "$folder/{code}"
 [ $code -eq 0 ] || [ $code -eq 3 ] # a run that gives up is a result
 )sh";
 
-/// A name for SLURM, whose comments know neither quotes nor line breaks.
-std::string job_name(std::string name) {
-    for (char& c : name)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != '.') c = '_';
-    return name;
-}
-
 /// A text within a string that Snakemake formats.
 std::string unformatted(const std::string& text) {
     std::string doubled;
@@ -156,8 +118,8 @@ std::string emit_snakemake(const scene::Study& study, const std::vector<StudyCas
     write_text(path, fmt::format(snakefile, fmt::arg("name", printable(study.name)),
                                  fmt::arg("file", shell_word(path.string())),
                                  fmt::arg("directory", literal(fs::absolute(folder).lexically_normal().string())),
-                                 fmt::arg("program", literal(program())), fmt::arg("inputs", inputs),
-                                 fmt::arg("gather", literal(unformatted(line_of(gather))))) +
+                                 fmt::arg("program", literal(this_program())), fmt::arg("inputs", inputs),
+                                 fmt::arg("gather", literal(unformatted(shell_line(gather))))) +
                          rules);
     return fmt::format("{}: {} runs; `snakemake -s {} --cores all` runs what is not finished and gathers the results\n",
                        study.name, number, shell_word(path.string()));
@@ -167,7 +129,7 @@ std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& 
                        const fs::path& folder, const std::vector<std::string>& gather) {
     const fs::path path = folder / "study.sbatch";
     const std::string directory = fs::absolute(folder).lexically_normal().string();
-    const std::string gathering = "osculate " + line_of(gather);
+    const std::string gathering = "osculate " + shell_line(gather);
     std::string table;
     int count = 0;
     for (const StudyCase* c : announced(cases, options, false)) {
@@ -181,7 +143,7 @@ std::string emit_slurm(const scene::Study& study, const std::vector<StudyCase>& 
                                  fmt::arg("job", job_name(study.name)), fmt::arg("count", count),
                                  fmt::arg("threads", options.threads), fmt::arg("directory", printable(directory)),
                                  fmt::arg("quoted_directory", shell_word(directory)),
-                                 fmt::arg("program", shell_word(program())), fmt::arg("code", exit_code_file)));
+                                 fmt::arg("program", shell_word(this_program())), fmt::arg("code", exit_code_file)));
     return fmt::format("{}: {} runs; `sbatch {}` runs them, then `{}` gathers the results\n", study.name, count,
                        shell_word(path.string()), gathering);
 }

@@ -1,0 +1,48 @@
+#include "osculate/app/processes.hpp"
+
+#include "app/fault.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <string_view>
+
+namespace osculate::app {
+
+ProcessMemory process_memory(const Plan& plan) {
+    constexpr double program = 2.8e7, mpi_and_petsc = 5e7, element = 3000, unknown = 1660, writing = 190;
+    constexpr std::array<std::string_view, 2> in_rows{"nonlinear elements", "inertia"};
+    constexpr std::array<std::string_view, 4> in_unknowns{"stiffness", "multigrid", "condensation",
+                                                          "Cholesky factorisation"};
+    ProcessMemory memory{program + mpi_and_petsc, 0, 0};
+    for (const PlanItem& item : plan.items)
+        if (item.present && std::ranges::count(in_unknowns, item.part) == 0)
+            (std::ranges::count(in_rows, item.part) > 0 ? memory.shared : memory.everywhere) += item.cost.bytes;
+    for (const model::Body& body : plan.model.bodies) memory.everywhere += element * body.mesh.element_count();
+    const double unknowns = 3.0 * plan.model.nodes();
+    memory.shared += unknown * unknowns;
+    memory.first = writing * unknowns;
+    return memory;
+}
+
+std::vector<Fault> cannot_be_shared(const model::Model& model) {
+    if (model.rigid.empty() && model.skin.empty()) return {};
+    return {fault("scene", "a run without --distributed: processes cannot share this yet",
+                  model.rigid.empty() ? "contact of faces with midside nodes" : "rigid bodies or couplings")};
+}
+
+std::string processes_in_words(const Plan& plan, int processes) {
+    if (const std::vector<Fault> faults = cannot_be_shared(plan.model); !faults.empty()) throw SceneError(faults);
+    const ProcessMemory memory = process_memory(plan);
+    const auto mega = [](double bytes) { return fmt::format("{:.0f} MB", 1e-6 * bytes); };
+    return fmt::format(
+        "{} processes, estimates of memory: {} of each, {} of the first, {} of all\n"
+        "  shared by nodes, {} of each: rows of stiffness and mass, nonlinear elements, grids of multigrid, "
+        "directions of GMRES\n"
+        "  in every process, {}: program, MPI, mesh, surfaces, contact, audit, values at nodes\n"
+        "  in the first, {}: sharing out the nodes, files\n",
+        processes, mega(memory.of_one(processes)), mega(memory.of_first(processes)), mega(memory.of_all(processes)),
+        mega(memory.shared / processes), mega(memory.everywhere), mega(memory.first));
+}
+
+} // namespace osculate::app

@@ -1,0 +1,125 @@
+#include "solve/gmres_vector.hpp"
+
+#include "osculate/core/error.hpp"
+#include "osculate/core/ranks.hpp"
+#include "osculate/core/thread_pool.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <nvector/nvector_serial.h>
+#include <span>
+#include <vector>
+
+namespace osculate::solve {
+namespace {
+
+/// Begins as serial vectors do, whose other operations read no further.
+struct Content {
+    _N_VectorContent_Serial slice;
+    Ranks* ranks;
+    int threads;
+};
+
+constexpr Index at_once = 4096; // numbers whose products are added up by themselves, in the order of the vector
+
+const Content& content(N_Vector v) {
+    return *static_cast<const Content*>(v->content);
+}
+Index length_of(N_Vector v) {
+    return static_cast<Index>(content(v).slice.length);
+}
+const double* values(N_Vector v) {
+    return content(v).slice.data;
+}
+
+/// Calls body(begin, end) on parts of a vector, which begin at multiples of at_once.
+void share(N_Vector v, auto&& body) {
+    const Index parts = (length_of(v) + at_once - 1) / at_once,
+                chunks = std::clamp<Index>(parts / 2, 1, content(v).threads); // shorter loops end before a thread wakes
+    run_side_by_side(chunks, [&](Index chunk) {
+        body(at_once * static_cast<Index>(std::int64_t{parts} * chunk / chunks),
+             std::min(at_once * static_cast<Index>(std::int64_t{parts} * (chunk + 1) / chunks), length_of(v)));
+    });
+}
+
+/// Eight sums, so that one does not wait for another.
+double product(const double* a, const double* b, Index length) {
+    constexpr Index sums = 8;
+    std::array<double, sums> sum{};
+    Index i = 0;
+    for (; i + sums <= length; i += sums)
+        for (Index k = 0; k < sums; ++k) sum[static_cast<std::size_t>(k)] += a[i + k] * b[i + k];
+    for (Index k = 0; i < length; ++i, ++k) sum[static_cast<std::size_t>(k)] += a[i] * b[i];
+    return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+}
+
+double own_dot(N_Vector a, N_Vector b) {
+    std::vector<double> part(static_cast<std::size_t>((length_of(a) + at_once - 1) / at_once));
+    share(a, [&](Index begin, Index end) {
+        for (Index i = begin; i < end; i += at_once)
+            part[i / at_once] = product(values(a) + i, values(b) + i, std::min(at_once, end - i));
+    });
+    double sum = 0;
+    for (const double p : part) sum += p;
+    return sum;
+}
+
+double dot(N_Vector a, N_Vector b) {
+    double sum = own_dot(a, b);
+    if (content(a).ranks != nullptr) content(a).ranks->sum({&sum, 1});
+    return sum;
+}
+
+int dots(int count, N_Vector a, N_Vector* with, double* products) {
+    for (int k = 0; k < count; ++k) products[k] = own_dot(a, with[k]);
+    if (content(a).ranks != nullptr) content(a).ranks->sum({products, static_cast<std::size_t>(count)});
+    return 0;
+}
+
+void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
+    const double *from = values(x), *other = values(y);
+    double* to = content(z).slice.data;
+    share(x, [=](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) to[i] = a * from[i] + b * other[i];
+    });
+}
+
+void scale(double c, N_Vector x, N_Vector z) {
+    const double* from = values(x);
+    double* to = content(z).slice.data;
+    share(x, [=](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) to[i] = c * from[i];
+    });
+}
+
+/// Makes a serial vector one of these. Its own operations free the content by free().
+N_Vector extended(N_Vector serial, Ranks* ranks, int threads) {
+    require(serial != nullptr, "no memory for a vector");
+    auto* content = static_cast<Content*>(std::malloc(sizeof(Content)));
+    require(content != nullptr, "no memory for a vector");
+    *content = {*static_cast<N_VectorContent_Serial>(serial->content), ranks, threads};
+    std::free(serial->content);
+    serial->content = content;
+    return serial;
+}
+
+N_Vector clone(N_Vector of) {
+    return extended(N_VClone_Serial(of), content(of).ranks, content(of).threads);
+}
+
+} // namespace
+
+N_Vector make_gmres_vector(Index length, Ranks* ranks, int threads, SUNContext context) {
+    N_Vector v = extended(ranks == nullptr ? N_VMake_Serial(length, nullptr, context) : N_VNew_Serial(length, context),
+                          ranks, threads);
+    if (ranks != nullptr) N_VEnableFusedOps_Serial(v, SUNTRUE);
+    v->ops->nvclone = clone;
+    v->ops->nvdotprod = dot;
+    if (ranks != nullptr) v->ops->nvdotprodmulti = dots;
+    v->ops->nvlinearsum = linear_sum;
+    v->ops->nvscale = scale;
+    return v;
+}
+
+} // namespace osculate::solve

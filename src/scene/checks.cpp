@@ -46,6 +46,18 @@ public:
                 fault({"bodies", name, "sections", part, "material"}, "a density, which " + reason + " needs", "none");
     }
 
+    void check_gravity(const Scene& scene) {
+        const auto weighs = [](const auto& named) {
+            const Body& body = named.second;
+            return (body.rigid && (body.rigid->mass || body.rigid->density > 0)) ||
+                   elastic(body.material).density > 0 || std::ranges::any_of(body.sections, [](const auto& part) {
+                       return elastic(part.second.material).density > 0;
+                   });
+        };
+        if (!scene.gravity.isZero(0) && !scene.bodies.empty() && std::ranges::none_of(scene.bodies, weighs))
+            fault({"gravity"}, "a body with a density or a mass, on which it acts", "none");
+    }
+
     /// Sets of rigid bodies have no equations of their own.
     void check_rigid_sets(const Scene& scene) {
         const auto rigid = [&](const std::string& set) -> const std::string* {
@@ -298,6 +310,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
                 rules.check_density(name, body, "dynamic stage '" + stage_name + "'");
             break;
         }
+    rules.check_gravity(scene);
     rules.check_contact_mass(scene.stages);
     check_contact(scene, tree, faults);
     for (const auto& [name, stage] : scene.stages) rules.check_stage(name, stage, scene.supports);

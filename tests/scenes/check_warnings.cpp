@@ -25,6 +25,17 @@ protected:
     const std::string press = "tests/scenes/press.yaml";
 };
 
+TEST_F(CheckWarnings, BodiesThatGravityPassesOverAreNamed) {
+    const std::string down = "gravity=[0, 0, -9.81 m/s^2]", says = "gravity does not act on it",
+                      heavy = ".material.linear_elastic.density=2000 kg/m^3";
+    EXPECT_THAT(checked(press, {down, "bodies.cap" + heavy}), HasSubstr("warning: bodies.base: " + says));
+    EXPECT_THAT(checked(press, {down, "bodies.cap" + heavy, "bodies.base" + heavy}), Not(HasSubstr(says)));
+    EXPECT_THAT(checked(press), Not(HasSubstr(says)));
+    const Outcome none = osculate({"check", scene_file(press), "--set", down});
+    EXPECT_EQ(none.code, 2);
+    EXPECT_THAT(none.err, HasSubstr("gravity: expected a body with a density or a mass, on which it acts, found none"));
+}
+
 TEST_F(CheckWarnings, AMuchStifferSlaveIsNamedWhateverTheMeshes) {
     const std::string stiff = "bodies.cap.material.linear_elastic.E=30 GPa",
                       fine = "bodies.cap.mesh.block.divisions=[12, 12, 2]",

@@ -101,6 +101,12 @@ private:
 
     void gravity() {
         const double g = scene_.gravity.norm();
+        for (std::size_t b = 0; g > 0 && b < scene_.bodies.size(); ++b) {
+            const auto& [name, body] = scene_.bodies[b];
+            if (!plan_.model.bodies[b].has_mass() && !(body.rigid && (body.rigid->mass || body.rigid->density > 0)) &&
+                !body.rigid_surface)
+                say("bodies." + name, "gravity does not act on it, as it has no density");
+        }
         if (g == 0) return;
         constexpr double digits = 0.01; // 2 % of the value
         const double power = std::log10(g / standard_gravity), whole = std::round(power);

@@ -79,7 +79,8 @@ std::string write_run_script(const RunScript& script, const std::vector<scene::O
                       launch =
                           shared ? fmt::format("${{MPIRUN:-mpirun -n {}}} {} --distributed", script.processes, program)
                                  : program,
-                      stop = shared ? "pkill -TERM -P $child \"${name:0:15}\" || kill -TERM $child" : "kill -TERM $child";
+                      stop =
+                          shared ? "pkill -TERM -P $child \"${name:0:15}\" || kill -TERM $child" : "kill -TERM $child";
     constexpr double margin = Estimate::factor, mega = 1e6;
     fs::create_directories(file.parent_path());
     write_text(file,

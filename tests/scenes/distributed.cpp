@@ -220,6 +220,9 @@ TEST_F(DistributedRun, NamesWhatProcessesCannotShare) {
     EXPECT_EQ(with_ranks(2, scene_file("configs/tutorials/bolted_joint.yaml"), ""), 2);
     EXPECT_NE(content(folder / "said.txt").find("rigid bodies or couplings"), std::string::npos)
         << content(folder / "said.txt");
+    EXPECT_EQ(with_ranks(2, scene_file("configs/tutorials/hinge.yaml"), ""), 2);
+    EXPECT_NE(content(folder / "said.txt").find("means of many nodes"), std::string::npos)
+        << content(folder / "said.txt");
 }
 
 TEST_F(DistributedRun, GivesUpWithAPostMortemAndAllFrames) {

@@ -55,6 +55,7 @@ public:
 
     void coarsen(const NodalMatrix& undeformed) override {
         clear();
+        if (nothing_free()) return;
         const FreeNodes& nodes = nodes_.emplace(unknowns_, undeformed);
         fine_.emplace(nodes, undeformed, threads_);
         P_.emplace(nodes, undeformed, *fine_, unknowns_, threads_);
@@ -69,11 +70,13 @@ public:
     }
 
     void take(const NodalMatrix& bodies) override {
+        if (nothing_free()) return;
         fine_->take(bodies);
         coarse_->take(bodies);
     }
 
     FactorStatus couple(std::span<const NodalBlock> blocks) override {
+        if (nothing_free()) return FactorStatus::ok;
         Coupling coupling(*nodes_, blocks);
         const bool grown = coarse_->couple(coupling);
         fine_->couple(std::move(coupling));
@@ -106,6 +109,7 @@ public:
 
     /// Chebyshev's polynomial of the second degree before and after the coarser grids (Saad, Iterative Methods, algorithm 12.1).
     void cycle(const double* b, double* x) override {
+        if (nothing_free()) return;
         const double largest = fine_->largest_eigenvalue(), centre = (upper + lower) / 2 * largest,
                      half = (upper - lower) / 2 * largest, rho = 1 / (2 * centre / half - half / centre);
         const double first = 1 / centre, momentum = rho * half / centre, second = 2 * rho / half;
@@ -128,6 +132,8 @@ public:
     }
 
 private:
+    /// Of all processes.
+    [[nodiscard]] bool nothing_free() const { return unknowns_.node.empty(); }
     void for_own_nodes(auto&& each) const {
         parallel_for(threads_, nodes_->size(), [&](Index begin, Index end) {
             for (Index i = begin; i < end; ++i) each(i, nodes_->place(i));

@@ -231,6 +231,12 @@ TEST_F(DistributedRun, GivesUpWithAPostMortemAndAllFrames) {
     EXPECT_TRUE(fs::exists(folder / "run/post_mortem.json"));
 }
 
+/// Every component of every node is held or driven, so that no grid has an unknown; the scene is expected to give up, and why.
+TEST_F(DistributedRun, NeedsNoUnknownsButContactForces) {
+    EXPECT_EQ(with_ranks(2, scene_file("configs/extreme/driven_through_a_wall.yaml"), "-o run"), 0)
+        << content(folder / "said.txt");
+}
+
 TEST_F(DistributedRun, NamesAProcessThatHasNoRoom) {
     std::ofstream(folder / "poor.sh") << "[ \"$OMPI_COMM_WORLD_RANK\" = 1 ] && export TMPDIR=/nowhere\nexec "
                                       << OSCULATE_PROGRAM << " run " << scene << " --distributed --quiet -o run\n";

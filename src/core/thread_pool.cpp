@@ -15,7 +15,8 @@ thread_local bool inside_a_task = false;
 /// Waits for one task at a time.
 class Worker {
 public:
-    Worker() : thread_([this] { work(); }) {}
+    /// @param before  workers that there are already
+    explicit Worker(Index before) : looks_(most_looks / (1 + before / few)), thread_([this] { work(); }) {}
     ~Worker() { set(State::ended); }
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
@@ -35,10 +36,12 @@ private:
         state_.store(state, std::memory_order_release);
         state_.notify_all();
     }
+    static constexpr Index most_looks = 2000; ///< some 50 us
+    static constexpr Index few = 8;           ///< workers; of many, each looks less, in case they share a processor
+
     /// Looks often at first, as loops follow one another: to wake a thread takes as long as a short loop.
     void wait_while(State state) const {
-        constexpr int looks = 2000; // some 50 us
-        for (int look = 0; look < looks; ++look) {
+        for (Index look = 0; look < looks_; ++look) {
             if (state_.load(std::memory_order_acquire) != state) return;
 #if defined(__x86_64__)
             __builtin_ia32_pause();
@@ -57,6 +60,7 @@ private:
         }
     }
 
+    Index looks_;
     std::atomic<State> state_ = State::idle;
     const std::function<void(Index)>* task_ = nullptr;
     Index item_ = 0;
@@ -74,7 +78,8 @@ void run_side_by_side(Index count, const std::function<void(Index)>& task) {
         for (Index i = 0; i < count; ++i) task(i);
         return;
     }
-    while (static_cast<Index>(workers.size()) < count - 1) workers.push_back(std::make_unique<Worker>());
+    while (static_cast<Index>(workers.size()) < count - 1)
+        workers.push_back(std::make_unique<Worker>(static_cast<Index>(workers.size())));
     std::fenv_t environment;
     std::fegetenv(&environment);
     for (Index i = 1; i < count; ++i) workers[static_cast<std::size_t>(i - 1)]->begin(task, i, environment);

@@ -5,7 +5,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(muparser REQUIRED)
 find_package(LAPACK REQUIRED)
-find_package(MPI REQUIRED COMPONENTS C)
+find_package(MPI REQUIRED COMPONENTS C CXX) # C++: for targets of SUNDIALS 7
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(petsc REQUIRED IMPORTED_TARGET petsc)
 add_library(PETSc::petsc INTERFACE IMPORTED)

@@ -18,6 +18,7 @@ foreach(loaded osculate_multigrid osculate_vtk osculate_gmsh) # at run time, by 
 endforeach()
 install(DIRECTORY include/osculate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(DIRECTORY output_templates configs DESTINATION ${CMAKE_INSTALL_DATADIR}/osculate COMPONENT program)
+install(FILES scripts/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME osculate COMPONENT program)
 install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DATADIR}/osculate COMPONENT program)
 
 # data_folder() finds share/osculate by these

@@ -260,6 +260,7 @@ void RigidTerm::add_tangent(linear::BlockMatrix& tangent) const {
         const RigidBody& body = model_.rigid[k];
         const Moving& now = bodies_[k];
         const Index r = body.reference, t = body.rotation();
+        if (!tangent.has_row(r)) continue; // of another process
         const double L = body.radius;
         Mat3 by_theta = now.turning;
         if (dynamics_ != nullptr && !body.coupling) {

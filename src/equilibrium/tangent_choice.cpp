@@ -55,13 +55,17 @@ CondensationCost condensation_cost(const model::Model& model, const std::vector<
 }
 
 namespace {
+/// Nodes with equations of their own, before supports.
+Index nodes_with_equations(const model::Model& model) {
+    return model.nodes() - static_cast<Index>(model::dependent_nodes(model).size());
+}
+
 bool goes_by_multigrid(const model::Model& model, LinearSolver asked, bool condensable) {
     constexpr Index many = 10000;      // nodes from which cycles cost less than factors that serve one step
     constexpr Index very_many = 50000; // and less than those that condensation makes once
     if (model.share) return true;      // no process has the whole matrix
-    if (asked != LinearSolver::automatic) return asked == LinearSolver::multigrid;
-    if (!model.led.empty()) return false; // means of many nodes take several times as many cycles
-    return model.nodes() > (condensable ? very_many : many);
+    if (bars_multigrid(model, asked) != nullptr) return false;
+    return asked == LinearSolver::multigrid || nodes_with_equations(model) > (condensable ? very_many : many);
 }
 
 /// Not where LU wants a matrix, nor with so many slave nodes that their derivatives, held one by one, would take more memory.
@@ -73,6 +77,19 @@ bool goes_by_products(const model::ContactPairs& pairs, LinearSolver asked) {
 }
 } // namespace
 
+const char* bars_multigrid(const model::Model& model, LinearSolver asked) {
+    constexpr std::size_t few = 10; // each of their motions takes some cycles and two vectors
+    if (asked != LinearSolver::automatic && asked != LinearSolver::multigrid)
+        return "the scene asks for another solver";
+    if (!model.skin.empty()) return "contact of faces with midside nodes takes it too many cycles";
+    if (model.rigid.size() > few) return "each of many rigid bodies and couplings takes it some cycles";
+    if (model.rigid.size() == model.bodies.size() && std::ranges::none_of(model.rigid, &model::RigidBody::coupling))
+        return "no body deforms";
+    if (!model.led.empty() && asked == LinearSolver::automatic)
+        return "equations between means of many nodes take it several times as many cycles";
+    return nullptr;
+}
+
 TangentChoice choose_tangent(const model::Model& model, const model::ContactPairs& pairs, LinearSolver asked,
                              bool dynamic, bool follows, const model::ContactScope* scope) {
     constexpr Index most = 100000; // nodes: LU takes some 7 GB
@@ -81,9 +98,8 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     const bool symmetric = !follows && !couplings && (!dynamic || !model.nonlinear);
     const bool contact = !pairs.empty();
     TangentChoice choice;
-    // six motions of a body have no grid; contact of faces with midside nodes takes too many cycles
-    choice.multigrid = model.rigid.empty() && model.skin.empty() && goes_by_multigrid(model, asked, pays);
-    choice.factorisable = !choice.multigrid || (model.nodes() <= most && !model.share);
+    choice.multigrid = goes_by_multigrid(model, asked, pays);
+    choice.factorisable = !choice.multigrid || (nodes_with_equations(model) <= most && !model.share);
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned =
         choice.multigrid ||

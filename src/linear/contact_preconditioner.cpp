@@ -65,7 +65,7 @@ double ContactPreconditioner::effort() const {
     constexpr double of_multigrid = 15; // cycles
     constexpr double least = 10;        // what of a factorisation does not grow with its operations
     constexpr double most = 100;        // an iteration is more than a solution
-    return multigrid_ ? of_multigrid : std::min(least + solver_->effort(), most);
+    return multigrid_ ? of_multigrid + multigrid_->cycles_to_couple() : std::min(least + solver_->effort(), most);
 }
 
 void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const {

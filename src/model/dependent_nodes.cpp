@@ -20,6 +20,10 @@ std::vector<Index> dependent_nodes(const Model& model) {
 
 std::vector<std::pair<Index, Index>> followed_nodes(const Model& model) {
     std::vector<std::pair<Index, Index>> pairs;
+    for (const RigidBody& body : model.rigid) {
+        for (const Index node : body.nodes) pairs.emplace_back(node, body.reference);
+        pairs.emplace_back(body.rotation(), body.reference);
+    }
     for (const Tie& tie : model.ties)
         for (const TiedNode& tied : tie.nodes)
             for (const auto& [node, weight] : tied.carriers) pairs.emplace_back(tied.node, node);

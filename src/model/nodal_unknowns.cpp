@@ -31,8 +31,10 @@ Extent extent(const Model& model, const std::vector<Index>& group, Index number)
 
 solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraints& constraints) {
     solve::NodalUnknowns result;
-    for (Index node = 0; node < model.nodes(); ++node)
-        if (constraints.free_components(node) > 0) result.node.push_back(node);
+    const auto equation = [&](Index node, int k) {
+        const Index e = constraints.equation(node, k);
+        return e == linear::Constraints::held ? -1 : e;
+    };
     const std::vector<Index> group = joined_groups(model);
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const Body& body = model.bodies[b];
@@ -40,15 +42,19 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
         const auto [centre, radius] = extent(model, group, group[b]);
         for (Index node = body.first_node; node < last; ++node) {
             if (constraints.free_components(node) == 0) continue;
+            result.node.push_back(node);
             result.body.push_back(group[b]);
             result.frame.push_back(constraints.frame(node));
             result.arm.push_back((model.X[node] - centre) / radius);
-            for (int k = 0; k < 3; ++k) {
-                const Index e = constraints.equation(node, k);
-                result.equation.push_back(e == linear::Constraints::held ? -1 : e);
-            }
+            for (int k = 0; k < 3; ++k) result.equation.push_back(equation(node, k));
         }
     }
+    for (const RigidBody& rigid : model.rigid)
+        for (const Index node : {rigid.reference, rigid.rotation()})
+            if (constraints.free_components(node) > 0)
+                result.hubs.push_back(
+                    {node, {equation(node, 0), equation(node, 1), equation(node, 2)}, constraints.frame(node)});
+    std::ranges::sort(result.hubs, {}, &solve::NodalUnknowns::Hub::node);
     if (!model.share) return result;
     for (const Index node : result.node) result.owner.push_back(model.share->owner()[static_cast<std::size_t>(node)]);
     for (const auto& pair : model.pairs) {

@@ -1,6 +1,7 @@
 /// solve::Multigrid by PETSc: a module of its own, as PETSc and MPI take a third of a second to load.
 
 #include "multigrid/coarse_matrix.hpp"
+#include "multigrid/hubs.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/core/parallel.hpp"
 #include "osculate/core/ranks.hpp"
@@ -55,8 +56,9 @@ public:
 
     void coarsen(const NodalMatrix& undeformed) override {
         clear();
-        if (nothing_free()) return;
         const FreeNodes& nodes = nodes_.emplace(unknowns_, undeformed);
+        hubs_.emplace(nodes, unknowns_).take(undeformed);
+        if (nothing_free()) return;
         fine_.emplace(nodes, undeformed, threads_);
         P_.emplace(nodes, undeformed, *fine_, unknowns_, threads_);
         coarse_.emplace(nodes, *P_, undeformed, threads_);
@@ -70,13 +72,14 @@ public:
     }
 
     void take(const NodalMatrix& bodies) override {
+        hubs_->take(bodies);
         if (nothing_free()) return;
         fine_->take(bodies);
         coarse_->take(bodies);
     }
 
     FactorStatus couple(std::span<const NodalBlock> blocks) override {
-        if (nothing_free()) return FactorStatus::ok;
+        if (nothing_free()) return hubs_->eliminate(blocks, {}, {});
         Coupling coupling(*nodes_, blocks);
         const bool grown = coarse_->couple(coupling);
         fine_->couple(std::move(coupling));
@@ -104,34 +107,48 @@ public:
         const PetscErrorCode code = PCSetUp(cycle_);
         if (code == PETSC_ERR_MAT_LU_ZRPVT || code == PETSC_ERR_MAT_CH_ZRPVT) return FactorStatus::singular;
         check(code);
-        return FactorStatus::ok;
+        Vector zero = Vector::Zero(b_.size()), given(b_.size());
+        return hubs_->eliminate(
+            blocks,
+            [&](const Vector& from, Vector& to) {
+                given = from; // with its copies
+                fine_->residual(zero.data(), given.data(), to.data());
+                to = -to;
+            },
+            [&](const Vector& from, Vector& to) { cycle_on_nodes(from, to); });
     }
 
-    /// Chebyshev's polynomial of the second degree before and after the coarser grids (Saad, Iterative Methods, algorithm 12.1).
     void cycle(const double* b, double* x) override {
-        if (nothing_free()) return;
-        const double largest = fine_->largest_eigenvalue(), centre = (upper + lower) / 2 * largest,
-                     half = (upper - lower) / 2 * largest, rho = 1 / (2 * centre / half - half / centre);
-        const double first = 1 / centre, momentum = rho * half / centre, second = 2 * rho / half;
+        if (nothing_free()) return hubs_->correct(b, x, b_, other_);
         for_own_nodes([&](Index i, Index place) {
             Vec3 local = Vec3::Zero();
             for_equations(place, [&](Index k, SparseIndex e) { local(k) = b[e]; });
             b_.segment<3>(3 * i) = unknowns_.frame[place] * local;
         });
-        fine_->first_sweep(b_.data(), first, x_.data());
-        fine_->sweep(b_.data(), x_.data(), nullptr, momentum, second, other_.data());
-        fine_->residual(b_.data(), other_.data(), x_.data());
-        correct(x_, other_);
-        fine_->sweep(b_.data(), other_.data(), other_.data(), 0, first, x_.data());
-        fine_->sweep(b_.data(), x_.data(), other_.data(), momentum, second, other_.data());
+        cycle_on_nodes(b_, other_);
+        hubs_->correct(b, x, b_, other_);
         for_own_nodes([&](Index i, Index place) {
             const Vec3 local = unknowns_.frame[place].transpose() * other_.segment<3>(3 * i);
             for_equations(place, [&](Index k, SparseIndex e) { x[e] = local(k); });
         });
         replicate(x);
     }
+    [[nodiscard]] Index cycles_to_couple() const override { return hubs_ ? hubs_->cycles() : 0; }
 
 private:
+    /// Chebyshev's polynomial of the second degree before and after the coarser grids (Saad, Iterative Methods, algorithm 12.1).
+    void cycle_on_nodes(const Vector& b, Vector& x) {
+        const double largest = fine_->largest_eigenvalue(), centre = (upper + lower) / 2 * largest,
+                     half = (upper - lower) / 2 * largest, rho = 1 / (2 * centre / half - half / centre);
+        const double first = 1 / centre, momentum = rho * half / centre, second = 2 * rho / half;
+        fine_->first_sweep(b.data(), first, x_.data());
+        fine_->sweep(b.data(), x_.data(), nullptr, momentum, second, x.data());
+        fine_->residual(b.data(), x.data(), x_.data());
+        correct(x_, x);
+        fine_->sweep(b.data(), x.data(), x.data(), 0, first, x_.data());
+        fine_->sweep(b.data(), x_.data(), x.data(), momentum, second, x.data());
+    }
+
     /// Of all processes.
     [[nodiscard]] bool nothing_free() const { return unknowns_.node.empty(); }
     void for_own_nodes(auto&& each) const {
@@ -341,6 +358,7 @@ private:
         below_.clear();
         VecDestroy(&coarse_residual_);
         VecDestroy(&correction_);
+        hubs_.reset();
         coarse_.reset();
         P_.reset();
         fine_.reset();
@@ -355,6 +373,7 @@ private:
     std::optional<FineGrid> fine_;
     std::optional<Prolongation> P_;
     std::optional<CoarseMatrix> coarse_;
+    std::optional<Hubs> hubs_;
     std::vector<Mat> below_;         ///< by level, 0 the coarsest, without the finest grid; last that of coarse_
     std::vector<Mat> interpolation_; ///< from level i to i + 1 of these
     std::vector<Mat> restriction_, half_way_; ///< their transposes, and products A P; of several processes alone

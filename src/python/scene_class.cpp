@@ -77,6 +77,26 @@ void add_scene(py::module_& module) {
         .def_property_readonly(
             "yaml", [](const SceneFile& file) { return scene::write_scene(file.scene); },
             "The resolved scene, in SI units: what a run writes as scene.yaml.")
+        .def(py::pickle(
+            [](const SceneFile& file) { // of a file: what it was read from
+                py::list overrides;
+                for (const scene::Override& one : file.overrides) overrides.append(py::make_tuple(one.key, one.value));
+                const bool text = file.path.empty();
+                return py::make_tuple(text ? std::string() : std::filesystem::absolute(file.path).string(),
+                                      text ? py::list() : overrides,
+                                      text ? scene::write_scene(file.scene) : std::string());
+            },
+            [](const py::tuple& state) {
+                if (state.size() != 3) throw py::value_error("not a pickled osculate.Scene");
+                SceneFile file{state[0].cast<std::string>(), {}, {}};
+                for (const py::handle one : state[1].cast<py::list>()) {
+                    const auto [key, value] = one.cast<std::pair<std::string, std::string>>();
+                    file.overrides.push_back({key, value});
+                }
+                file.scene = file.path.empty() ? scene::parse_scene(state[2].cast<std::string>(), "<text>")
+                                               : scene::read_scene(file.path, file.overrides);
+                return file;
+            }))
         .def("__repr__", [](const SceneFile& file) {
             return "<osculate.Scene '" + file.scene.name + "'" + (file.path.empty() ? "" : " of " + file.path) + ">";
         });

@@ -4,6 +4,7 @@
 #include "osculate/scene/scene.hpp"
 #include "scene/visitor.hpp"
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -25,8 +26,14 @@ template <class T, class Item> Entries entries_of(Named<T>& values, const Item& 
     return {.size = [&] { return values.size(); },
             .name = [&](std::size_t i) { return values[i].first; },
             .add =
-                [&](const std::string& name) {
-                    std::erase_if(values, [&](const auto& known) { return known.first == name; }); // a template's
+                [&, given = values.size()](const std::string& name) mutable { // by a template, first
+                    const auto end = values.begin() + static_cast<std::ptrdiff_t>(given);
+                    const auto at =
+                        std::find_if(values.begin(), end, [&](const auto& known) { return known.first == name; });
+                    if (at != end) {
+                        values.erase(at);
+                        --given;
+                    }
                     if constexpr (std::is_same_v<T, Vec3>)
                         values.emplace_back(name, Vec3::Zero());
                     else

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <unordered_map>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
@@ -14,7 +15,7 @@ namespace osculate::scene {
 namespace {
 
 constexpr int max_depth = 64;
-constexpr int max_nodes = 200000; ///< aliases of aliases grow without bound
+constexpr int max_nodes = 500000; ///< aliases of aliases grow without bound
 
 /// Copies yaml-cpp's nodes into a Tree.
 class Copier {
@@ -78,6 +79,7 @@ private:
     void copy_map(const YAML::Node& node, Tree& tree, const std::string& path, int depth) {
         tree.kind = Tree::Kind::map;
         std::vector<YAML::Node> merged;
+        std::unordered_map<std::string, int> line_of;
         for (const auto& entry : node) {
             if (overflow_) return;
             const Place key_place = place_of(entry.first);
@@ -91,10 +93,10 @@ private:
             }
             const std::string key = checked(entry.first.Scalar(), key_place, path, false);
             const std::string inside = path.empty() ? key : path + "." + key;
-            if (const Tree* first = tree.find(key)) {
+            if (const auto [first, is_new] = line_of.emplace(key, key_place.line); !is_new) {
                 faults_.push_back(
                     fault_at(key_place, inside, "every key once",
-                             "'" + key + "' again (first in line " + std::to_string(first->key_place.line) + ")"));
+                             "'" + key + "' again (first in line " + std::to_string(first->second) + ")"));
                 continue;
             }
             Tree value = copy(entry.second, inside, depth + 1);

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <unordered_set>
 
 namespace osculate::scene {
 
@@ -73,18 +74,25 @@ void TreeReader::fault(const Tree& at, const Key& key, std::string expected, std
     faults_.push_back(fault_at(at.place, path_of(key.name), std::move(expected), std::move(found), std::move(near)));
 }
 
+const Tree* TreeReader::Level::find(const std::string& name) const {
+    if (of_many.empty()) return map->find(name);
+    const auto at = of_many.find(name);
+    return at == of_many.end() ? nullptr : at->second;
+}
+
 const Tree* TreeReader::take(const Key& key, const std::string& expected) {
     Level& level = levels_.back();
     level.known.push_back(key.name);
-    const Tree* value = level.map->find(key.name);
+    const Tree* value = level.find(key.name);
     if (!value && key.required && key.instead == nullptr) fault(*level.map, key, expected, "nothing");
     return value;
 }
 
 void TreeReader::leave(const Level& level) {
     bool misspelt = false; // a misspelt tag is reported as an unknown key, not as a missing choice too
+    const std::unordered_set<std::string_view> known(level.known.begin(), level.known.end());
     for (const Tree& child : level.map->children) {
-        if (std::ranges::count(level.known, child.key) > 0) continue;
+        if (known.contains(child.key)) continue;
         misspelt = misspelt || !nearest(child.key, level.missing_choice).empty();
         const std::string path = level.path.empty() ? child.key : level.path + "." + child.key;
         faults_.push_back(fault_at(child.key_place, path, "one of the keys " + join(level.known),
@@ -95,7 +103,10 @@ void TreeReader::leave(const Level& level) {
 }
 
 void TreeReader::enter(const Tree& map, std::string path, const std::function<void()>& body) {
+    constexpr std::size_t many = 100;
     levels_.push_back({.map = &map, .path = std::move(path)});
+    if (map.children.size() > many)
+        for (const Tree& child : map.children) levels_.back().of_many.emplace(child.key, &child);
     body();
     const Level level = std::move(levels_.back());
     levels_.pop_back();
@@ -363,7 +374,7 @@ void TreeReader::group(const Key& key, const std::function<void()>& body) {
 }
 
 void TreeReader::optional_group(const Key& key, bool& present, const std::function<void()>& body) {
-    const Tree* tree = levels_.back().map->find(key.name);
+    const Tree* tree = levels_.back().find(key.name);
     present = tree != nullptr && !(key.bare_flag && is_false(*tree));
     if (tree != nullptr && !present)
         levels_.back().known.push_back(key.name);
@@ -375,10 +386,8 @@ void TreeReader::one_of(const Choice& choice) {
     Level& level = levels_.back();
     std::vector<std::size_t> present;
     for (std::size_t i = 0; i < choice.tags.size(); ++i)
-        if (level.map->find(choice.tags[i])) present.push_back(i);
-    const auto overridden = [&](std::size_t i) {
-        return level.map->find(choice.tags[i])->key_place.file == override_file;
-    };
+        if (level.find(choice.tags[i])) present.push_back(i);
+    const auto overridden = [&](std::size_t i) { return level.find(choice.tags[i])->key_place.file == override_file; };
     if (present.size() > 1) { // an override may switch to another alternative without removing the first
         std::vector<std::size_t> from_overrides;
         std::ranges::copy_if(present, std::back_inserter(from_overrides), overridden);

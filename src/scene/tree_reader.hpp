@@ -5,6 +5,8 @@
 #include "scene/visitor.hpp"
 
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace osculate::scene {
@@ -55,9 +57,13 @@ public:
 private:
     struct Level {
         const Tree* map;
+        std::unordered_map<std::string_view, const Tree*>
+            of_many{}; ///< by key, where a search through all would take long
         std::string path;
         Words known{};          ///< keys described so far
         Words missing_choice{}; ///< tags of which one is required and none is there
+
+        [[nodiscard]] const Tree* find(const std::string& name) const;
     };
 
     [[nodiscard]] std::string path_of(const std::string& name) const;

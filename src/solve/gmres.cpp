@@ -12,6 +12,10 @@
 
 namespace osculate::solve {
 
+namespace {
+constexpr int success = 0, no_success = -1; // names differ between SUNDIALS 6 and 7
+}
+
 struct Gmres::Impl {
     Impl(Index n, Ranks* together, int threads) : size(n), ranks(together) {
         if (ranks != nullptr) {
@@ -30,7 +34,7 @@ struct Gmres::Impl {
             s.apply(*s.A, v, z);
             return 0;
         });
-        SUNLinSolSetPreconditioner(linear, this, nullptr, [](void* self, N_Vector r, N_Vector z, realtype, int) {
+        SUNLinSolSetPreconditioner(linear, this, nullptr, [](void* self, N_Vector r, N_Vector z, sunrealtype, int) {
             auto& s = *static_cast<Impl*>(self);
             s.apply(*s.M, r, z);
             return 0;
@@ -38,7 +42,7 @@ struct Gmres::Impl {
         SUNLinSol_SPGMRSetMaxRestarts(linear, 0);
         // one message an iteration, or two, instead of one for every direction before
         if (ranks != nullptr) SUNLinSol_SPGMRSetGSType(linear, SUN_CLASSICAL_GS);
-        require(SUNLinSolInitialize(linear) == SUNLS_SUCCESS, "SPGMR could not be initialised");
+        require(SUNLinSolInitialize(linear) == success, "SPGMR could not be initialised");
     }
     ~Impl() {
         SUNLinSolFree(linear);
@@ -92,11 +96,11 @@ Gmres::Result Gmres::solve(const LinearMap& A, const LinearMap& M, const double*
     N_VConst(0, s.x);
     SUNLinSol_SPGMRSetPrecType(s.linear, M ? SUN_PREC_RIGHT : SUN_PREC_NONE);
     SUNLinSolSetZeroGuess(s.linear, SUNTRUE);
-    const int flag = SUNLinSolSetup(s.linear, nullptr) == SUNLS_SUCCESS
+    const int flag = SUNLinSolSetup(s.linear, nullptr) == success
                          ? SUNLinSolSolve(s.linear, nullptr, s.x, s.b, tolerance)
-                         : SUNLS_PACKAGE_FAIL_UNREC;
+                         : no_success;
     if (s.ranks != nullptr) s.gather(s.x, x);
-    return {flag == SUNLS_SUCCESS, SUNLinSolNumIters(s.linear)};
+    return {flag == success, SUNLinSolNumIters(s.linear)};
 }
 
 } // namespace osculate::solve

@@ -36,6 +36,14 @@ using VectorPtr = std::unique_ptr<std::remove_pointer_t<N_Vector>, VectorDeleter
 
 constexpr int recoverable = 1, fatal = -1;
 
+/// KINSOL's own messages: outcomes carry the cause.
+void say_nothing([[maybe_unused]] void* memory) {
+#if SUNDIALS_VERSION_MAJOR < 7 // from there on the context has handlers, see Impl
+    KINSetErrHandlerFn(
+        memory, [](int, const char*, const char*, char*, void*) {}, nullptr);
+#endif
+}
+
 // Newton's linear systems are solved to a fraction of the residual that shrinks with it, so that convergence stays
 // quadratic, and never further than the nonlinear tolerance can tell.
 constexpr double forcing_slope = 0.1, least_forcing = 1e-8, most_forcing = 1e-3, tolerance_share = 0.1;
@@ -45,6 +53,9 @@ constexpr int worth_trying = 2;
 
 struct KinsolSolver::Impl {
     Impl(Index n, Timings& t, Ranks* r, int side_by_side) : size(n), timings(t), ranks(r), threads(side_by_side) {
+#if SUNDIALS_VERSION_MAJOR >= 7
+        SUNContext_ClearErrHandlers(context);
+#endif
         z.reset(N_VNew_Serial(n, context));
         u_scale.reset(N_VNew_Serial(n, context));
         f_scale.reset(N_VNew_Serial(n, context));
@@ -59,7 +70,7 @@ struct KinsolSolver::Impl {
         linear->ops->getid = [](SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; };
         linear->ops->initialize = [](SUNLinearSolver) { return 0; };
         linear->ops->setup = [](SUNLinearSolver S, SUNMatrix) { return static_cast<Impl*>(S->content)->setup(); };
-        linear->ops->solve = [](SUNLinearSolver S, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+        linear->ops->solve = [](SUNLinearSolver S, SUNMatrix, N_Vector x, N_Vector b, sunrealtype) {
             return static_cast<Impl*>(S->content)->linear_solve(b, x);
         };
         linear->ops->free = [](SUNLinearSolver S) {
@@ -75,9 +86,15 @@ struct KinsolSolver::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    [[nodiscard]] Eigen::Map<Vector> values(N_Vector of) const { return {N_VGetArrayPointer(of), size}; }
-    [[nodiscard]] Eigen::Map<Vector> values(double* of) const { return {of, size}; }
-    [[nodiscard]] Eigen::Map<const Vector> values(const double* of) const { return {of, size}; }
+    [[nodiscard]] Eigen::Map<Vector> values(N_Vector of) const {
+        return {N_VGetArrayPointer(of), size};
+    }
+    [[nodiscard]] Eigen::Map<Vector> values(double* of) const {
+        return {of, size};
+    }
+    [[nodiscard]] Eigen::Map<const Vector> values(const double* of) const {
+        return {of, size};
+    }
 
     /// Runs a callback's body; an exception is kept for solve() to rethrow and becomes a fatal return.
     template <class Body> int guarded(Body&& body) noexcept {
@@ -252,8 +269,7 @@ struct KinsolSolver::Impl {
             memory, [](N_Vector at, N_Vector F, void* self) { return static_cast<Impl*>(self)->residual(at, F); },
             z.get()));
         call(KINSetUserData(memory, this));
-        call(KINSetErrHandlerFn(
-            memory, [](int, const char*, const char*, char*, void*) {}, nullptr)); // outcomes carry the cause
+        say_nothing(memory);
         call(KINSetLinearSolver(memory, linear, handle));
         call(KINSetJacFn(memory, [](N_Vector, N_Vector, SUNMatrix, void*, N_Vector, N_Vector) { return 0; }));
         call(KINSetMaxSetupCalls(memory, 1));    // full Newton

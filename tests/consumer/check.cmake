@@ -22,10 +22,19 @@ if(PYTHON)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${moved}/lib/python3/dist-packages ${PYTHON} -B -c
       "import osculate; osculate.Run('${SOURCE}/tests/scenes/press.yaml', {'output.template': 'planted', 'solver.linear_solver': 'multigrid'}).run()")
 endif()
-run(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${FOLDER}/consumer -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${moved}
-    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS}
-    -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_BUILD_TYPE=)
-run(${CMAKE_COMMAND} --build ${FOLDER}/consumer)
+function(build source folder)
+  run(${CMAKE_COMMAND} -S ${source} -B ${folder} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${moved}
+      -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS}
+      -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_BUILD_TYPE= ${ARGN})
+  run(${CMAKE_COMMAND} --build ${folder})
+endfunction()
+
+# contact geometry needs neither solvers nor libraries for files, whose packages cannot be found here
+build(${SOURCE}/tests/consumer/geometry ${FOLDER}/geometry -DCMAKE_DISABLE_FIND_PACKAGE_SUNDIALS=ON
+      -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON -DCMAKE_DISABLE_FIND_PACKAGE_muparser=ON -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON)
+run(${FOLDER}/geometry/geometry)
+
+build(${SOURCE}/tests/consumer ${FOLDER}/consumer)
 run(${FOLDER}/consumer/consumer ${SOURCE}/tests/scenes/press.yaml)
 if(NOT said MATCHES "time 1 s: force [^ ]+ [^ ]+ 1\\.00000[0-9]e\\+05 N")
   message(FATAL_ERROR "expected a force of 1e5 N along z at the end, as the block is pressed by it; found\n${said}")

@@ -1,6 +1,7 @@
 """How runs go, stop and fail."""
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -173,6 +174,13 @@ class Scenes(unittest.TestCase):
         self.assertEqual(len(list(run)), 2)
         with self.assertRaises(osculate.SceneError):
             osculate.Scene.parse("bodies: 3")
+
+    def test_go_to_other_processes(self):
+        settings = {"contact.joint.friction": 0.25}
+        for scene in (osculate.Scene(PRESS, settings), osculate.Scene.parse(PRESS.read_text(), settings)):
+            there = pickle.loads(pickle.dumps(scene))
+            self.assertEqual((there.name, there.yaml), (scene.name, scene.yaml))
+            self.assertEqual(len(list(osculate.Run(there))), 4)
 
 
 class Module(unittest.TestCase):

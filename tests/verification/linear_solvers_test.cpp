@@ -133,6 +133,40 @@ stages: {press: {displacement: {top: {x: 0.2 mm, y: 0 m, z: -1 mm}}}}
     EXPECT_LT(difference(direct, multigrid), same);
 }
 
+/// A free rigid tool, a cantilever on a moment at one end, whose columns are soft, and a motion after the rest.
+TEST(LinearSolvers, GiveTheSameWithRigidBodiesAndCouplings) {
+    const auto path = support::scene_file("rigid.yaml", R"(
+bodies:
+  beam:
+    mesh: {block: {size: [2 m, 0.4 m, 0.4 m], divisions: [16, 4, 4]}}
+    material: {linear_elastic: {E: 100 MPa, nu: 0.3, density: 1000 kg/m^3}}
+  tool:
+    rigid_surface: {sphere: {centre: [1.2 m, 0.2 m, 0.8 m], radius: 40 cm}}
+    rigid: {fix: [x, y, rx, rz], mass: 100 kg, inertia: [5, 5, 5]}
+sets:
+  left: {body: beam, surface: x_min}
+  right: {body: beam, surface: x_max}
+  top: {body: beam, surface: z_max}
+supports: {left: {fix: [x, y, z]}}
+couplings: {grip: {set: right, reference_point: [2.2 m, 0.2 m, 0.2 m], fix: [y]}}
+contact: {tip: {slave: top, master: {rigid_surface: tool}, friction: 0.3}}
+stages:
+  touch: {motion: {tool: {z: -5 mm, ry: 0 deg}}}
+  press: {force: {tool: [0 N, 0 N, -20 kN], grip: [1 kN, 0 N, 5 kN]}, moment: {tool: [0 N m, 100 N m, 0 N m], grip: [0 N m, 2 kN m, 0 N m]}}
+  spring_back: {analysis: dynamic, duration: 20 ms, steps: 4, force: {tool: [0 N, 0 N, 0 N]}}
+)");
+    const support::FloatingPointTraps suspended(false);
+    SceneRun direct, multigrid;
+    const auto by = [](const char* solver) {
+        return std::vector<scene::Override>{{"solver.tolerance", "1e-12"}, {"solver.linear_solver", solver}};
+    };
+    support::run_scene(direct, path, by("direct"));
+    support::run_scene(multigrid, path, by("multigrid"));
+    EXPECT_TRUE(multigrid.plan.stages.front().tangent.multigrid);
+    ASSERT_EQ(direct.steps.size(), multigrid.steps.size());
+    EXPECT_LT(difference(direct, multigrid), same);
+}
+
 TEST(LinearSolvers, CondenseWhereThatCostsLess) {
     using equilibrium::CondensationCost;
     EXPECT_TRUE((CondensationCost{6, 1, 1e9}.pays()));

@@ -43,6 +43,9 @@ struct TangentChoice {
     [[nodiscard]] bool operator==(const TangentChoice&) const = default;
 };
 
+/// Why multigrid is not to be taken, however many nodes there are; null: nothing bars it.
+[[nodiscard]] const char* bars_multigrid(const model::Model& model, LinearSolver asked);
+
 /// Made for a stage, from the model, the pairs in force and the user's request; with general contact again for other pairs.
 /// @param follows  whether a pressure follows its faces
 /// @param scope    see condensation_cost()

@@ -128,7 +128,8 @@ struct Model {
 
 /// Displacements, or velocities, of led and tied nodes, ends of sectors and skins from those of the nodes that they follow.
 void move_tied(const Model& model, Field& u);
-/// Nodes that follow others by ties, cyclic symmetry or equations, and each of those that they follow, ascending.
+/// Nodes that follow others, skins apart, and each of those that they follow, ascending; rotations of rigid bodies follow their
+/// reference points here.
 [[nodiscard]] std::vector<std::pair<Index, Index>> followed_nodes(const Model& model);
 /// Directions along which equations lead nodes.
 [[nodiscard]] std::vector<linear::LedDirection> led_directions(const Model& model);

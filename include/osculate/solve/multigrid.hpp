@@ -4,6 +4,7 @@
 #include "osculate/solve/direct_solver.hpp"
 #include "osculate/solve/nodal_matrix.hpp"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,14 @@ struct NodalUnknowns {
     std::vector<Vec3> arm;             ///< (n) from the middle of its body, over the body's size
     std::vector<int> owner;            ///< (n) the process of each, see Share; empty: there is one process
     std::vector<Index> coupled;        ///< nodes that may be coupled, ascending; of several processes alone
+
+    /// A node of no body that many nodes follow, as those of rigid bodies.
+    struct Hub {
+        Index node = -1;
+        std::array<SparseIndex, 3> equation{-1, -1, -1}; ///< of each local component; -1: held
+        Mat3 frame = Mat3::Identity();
+    };
+    std::vector<Hub> hubs; ///< with a free component, ascending by node
 
     /// (3 x 6) displacements of a node by motions of its body without strain, in global components, held ones included.
     [[nodiscard]] Eigen::Matrix<double, 3, 6> motions(Index place) const {
@@ -45,6 +54,8 @@ public:
     [[nodiscard]] virtual FactorStatus couple(std::span<const NodalBlock> coupling) = 0;
     /// x approximates A^-1 b: linear and symmetric in b; b and x (equations) must not overlap.
     virtual void cycle(const double* b, double* x) = 0;
+    /// Cycles that the last couple() took, for hubs.
+    [[nodiscard]] virtual Index cycles_to_couple() const = 0;
 };
 
 /// Loads PETSc at the first call.

@@ -46,11 +46,13 @@ std::vector<PlanItem> plan_items(const scene::Scene& scene, const Plan& plan) {
     const auto cost = equilibrium::condensation_cost(plan.model, plan.pairs_at_start(), plan.scope());
     const bool condensed = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.condensed; });
     const bool multigrid = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.multigrid; });
-    const bool direct =
-        (unsymmetric && asked == LinearSolver::direct) || (rigid && !couplings && !contact && !follows && !tied);
+    const bool direct = !multigrid && ((unsymmetric && asked == LinearSolver::direct) ||
+                                       (rigid && !couplings && !contact && !follows && !tied));
+    const char* bar = equilibrium::bars_multigrid(plan.model, asked);
     say("multigrid", multigrid,
         multigrid ? fmt::format("multigrid cycles over {} nodes instead of factors", plan.model.nodes())
-                  : "too few nodes for multigrid to pay off, or the scene asks for another solver");
+        : bar     ? bar
+                  : "the nodes are too few for it to pay off");
     const bool grows = std::ranges::any_of(plan.stages, [](const time::Stage& s) { return s.tangent.grows; });
     say("condensation", condensed,
         grows       ? std::string("on the contact nodes that bear, as long as it costs less than factorisations")

@@ -28,10 +28,9 @@ ProcessMemory process_memory(const Plan& plan) {
 std::vector<Fault> cannot_be_shared(const model::Model& model) {
     constexpr std::size_t few = 8; // nodes that lead one; with more, GMRES on multigrid does not converge
     const bool means = std::ranges::any_of(model.led, [](const model::LedNode& one) { return one.by.size() > few; });
-    const char* what = !model.rigid.empty()  ? "rigid bodies or couplings"
-                       : !model.skin.empty() ? "contact of faces with midside nodes"
-                       : means               ? "equations between means of many nodes"
-                                             : nullptr;
+    const char* what = !model.skin.empty() ? "contact of faces with midside nodes"
+                       : means             ? "equations between means of many nodes"
+                                           : nullptr;
     if (what == nullptr) return {};
     return {fault("scene", "a run without --distributed: processes cannot share this yet", what)};
 }

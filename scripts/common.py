@@ -1,6 +1,9 @@
 """What the Python commands of scripts/ have in common: each puts this folder first on sys.path and takes from here."""
 import argparse
+import datetime
 import os
+import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +14,15 @@ ONE_THREAD = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 def program():
     """The program itself: of OSCULATE_BUILD, default build/release; scripts/build makes it."""
     return ROOT / os.environ.get("OSCULATE_BUILD", "build/release") / "osculate"
+
+
+STAMP = re.compile(r"\n\*Osculate (\d+\.\d+\.\d+), (\d{4}-\d\d-\d\d)\.\*\n$")
+
+
+def stamp(page):
+    """Says in the last line of a page that was written by which version, and when."""
+    version = subprocess.run([program(), "--version"], capture_output=True, text=True, check=True).stdout.split()[-1]
+    page.write_text(page.read_text() + f"\n*Osculate {version}, {datetime.date.today().isoformat()}.*\n")
 
 
 def parser(about):

@@ -37,6 +37,13 @@ build() { # [TARGET...]
     OSCULATE_BUILD=$folder "$scripts/build" "$@"
 }
 
+# Last line of a page that was written: by which version, and when.
+stamp() { # PAGE
+    local version
+    version=$("$folder/osculate" --version)
+    printf '\n*Osculate %s, %s.*\n' "${version#osculate }" "$(date +%F)" >>"$1"
+}
+
 # BLAS in one thread: the sparse solvers call small dense kernels, where threads cost more than they give.
 one_thread() { export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1; }
 one_thread_unless_told() { export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1} OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}; }

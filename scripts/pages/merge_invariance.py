@@ -52,7 +52,7 @@ def counted(lines):
 
 def main():
     page, part = Path(sys.argv[1]), Path(sys.argv[2])
-    old, new = sections(page.read_text()), sections(part.read_text())
+    old, new = sections(re.sub(r"\n\*Osculate [^\n]*\*\n$", "", page.read_text())), sections(part.read_text())
     replaced = {scene(line) for line in new[""] if is_row(line)}
     lines = []
     for heading, body in old.items():

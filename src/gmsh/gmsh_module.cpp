@@ -357,7 +357,8 @@ double cubes(const Eigen::AlignedBox3d& box, const Vec3& point, const std::funct
 class SizeCallback {
 public:
     explicit SizeCallback(std::function<double(const Vec3&)> size_at) {
-        gmsh::model::mesh::setSizeCallback([at = std::move(size_at)](int, int, double x, double y, double z) {
+        // later versions also give the size so far
+        gmsh::model::mesh::setSizeCallback([at = std::move(size_at)](int, int, double x, double y, double z, auto...) {
             return at({x, y, z});
         });
     }

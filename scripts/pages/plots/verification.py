@@ -12,8 +12,10 @@ import shutil
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import scoreboard
 import study_file
+from common import STAMP
 from markdown import number, seconds, table
 
 DOCS = Path("docs/verification")
@@ -325,7 +327,7 @@ def pages():
 def check():
     texts = pages()
     wrong = [f"{path} is not what {DATA} makes it" for path, text in texts.items()
-             if not path.is_file() or path.read_text() != text]
+             if not path.is_file() or STAMP.sub("", path.read_text()) != text]
     wrong += [f"{name} has no data" for name in study_file.names() if DOCS / f"{name}.md" not in texts]
     wrong += [f"{path} belongs to no study" for path in sorted(DOCS.glob("*.md")) if path not in texts]
     drawn = {plot for name in study_file.names() for plot in images(name)}

@@ -87,6 +87,13 @@ const char* bars_multigrid(const model::Model& model, LinearSolver asked) {
         return "no body deforms";
     if (!model.led.empty() && asked == LinearSolver::automatic)
         return "equations between means of many nodes take it several times as many cycles";
+    const auto stiff = [&](const auto& pair) {
+        const std::vector<Index>& slaves = pair->slaves().node;
+        const model::RigidBody* body = slaves.empty() ? nullptr : model::rigid_body_of(model, slaves.front());
+        return body != nullptr && !body->coupling;
+    };
+    if (asked == LinearSolver::automatic && !model.share && std::ranges::any_of(model.pairs, stiff))
+        return "a rigid body is the slave of a pair, which takes it many cycles";
     return nullptr;
 }
 

@@ -1,5 +1,7 @@
 /// The way Newton's linear systems are solved is no part of the answer.
 
+#include "osculate/app/load.hpp"
+#include "osculate/equilibrium/tangent_choice.hpp"
 #include "support/floating_point_traps.hpp"
 #include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
@@ -165,6 +167,28 @@ stages:
     EXPECT_TRUE(multigrid.plan.stages.front().tangent.multigrid);
     ASSERT_EQ(direct.steps.size(), multigrid.steps.size());
     EXPECT_LT(difference(direct, multigrid), same);
+}
+
+TEST(LinearSolvers, LeaveRigidSlavesToFactors) {
+    const auto bar = [](const std::string& roles, LinearSolver asked) {
+        const auto path = support::scene_file("roles.yaml", R"(
+bodies:
+  ground: {mesh: {block: {size: [1 m, 1 m, 1 m], divisions: [3, 3, 3]}}, material: {linear_elastic: {E: 1 MPa, nu: 0.3}}}
+  stone:
+    mesh: {block: {origin: [0.2 m, 0.2 m, 1 m], size: [0.5 m, 0.5 m, 0.5 m], divisions: [2, 2, 2]}}
+    rigid: {density: 3000 kg/m^3}
+sets: {bed: {body: ground, surface: z_min}, top: {body: ground, surface: z_max}, sole: {body: stone, surface: z_min}}
+supports: {bed: {fix: [x, y, z]}}
+contact: {base: {)" + roles + R"(, friction: 0.3}}
+stages: {press: {force: {stone: [0 N, 0 N, -10 N]}}}
+)");
+        Timings unused;
+        const app::LoadedScene loaded = app::load(path, {}, 1, unused);
+        return equilibrium::bars_multigrid(loaded.plan.model, asked) != nullptr;
+    };
+    EXPECT_TRUE(bar("slave: sole, master: {set: top}", LinearSolver::automatic));
+    EXPECT_FALSE(bar("slave: sole, master: {set: top}", LinearSolver::multigrid));
+    EXPECT_FALSE(bar("slave: top, master: {set: sole}", LinearSolver::automatic));
 }
 
 TEST(LinearSolvers, CondenseWhereThatCostsLess) {

@@ -33,7 +33,12 @@ std::string yaml(const py::handle& value) {
 
 std::vector<scene::Override> list(const py::dict& overrides) {
     std::vector<scene::Override> result;
-    for (const auto& [key, value] : overrides) result.push_back({key.cast<std::string>(), yaml(value)});
+    for (const auto& [key, value] : overrides) {
+        if (!py::isinstance<py::str>(key))
+            throw py::type_error("overrides: expected paths of keys such as 'solver.tolerance', found " +
+                                 py::repr(key).cast<std::string>());
+        result.push_back({key.cast<std::string>(), yaml(value)});
+    }
     return result;
 }
 

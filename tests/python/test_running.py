@@ -175,6 +175,12 @@ class Scenes(unittest.TestCase):
         with self.assertRaises(osculate.SceneError):
             osculate.Scene.parse("bodies: 3")
 
+    def test_name_overrides_that_are_wrong(self):
+        with self.assertRaisesRegex(TypeError, "such as 'solver.tolerance', found 5"):
+            osculate.Scene(PRESS, {5: 1})
+        with self.assertRaisesRegex(osculate.SceneError, "contact.joint.friction: expected a number >= 0, found a list of 2"):
+            osculate.Scene(PRESS, {"contact.joint.friction": [1, 2]})
+
     def test_go_to_other_processes(self):
         settings = {"contact.joint.friction": 0.25}
         for scene in (osculate.Scene(PRESS, settings), osculate.Scene.parse(PRESS.read_text(), settings)):

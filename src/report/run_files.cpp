@@ -43,6 +43,24 @@ std::optional<output::NumberTable> read_table(const fs::path& path, const std::s
     return std::nullopt;
 }
 
+/// Shows files by their names: a report is mailed, and where they lie on the machine of the run is nobody's business.
+void leave_out_folders(scene::Scene& scene, std::string& text) {
+    const auto shorten = [&](std::string& path) {
+        if (!fs::path(path).is_absolute()) return;
+        const std::string name = fs::path(path).filename().string();
+        for (std::size_t at = text.find(path); at != std::string::npos; at = text.find(path, at + name.size()))
+            text.replace(at, path.size(), name);
+        path = name;
+    };
+    shorten(scene.output.template_name);
+    for (auto& [name, body] : scene.bodies)
+        std::visit(
+            [&](auto& source) {
+                if constexpr (requires { source.path; }) shorten(source.path);
+            },
+            body.mesh.source);
+}
+
 void read_scene(const fs::path& folder, RunFiles& files) {
     const fs::path path = folder / "scene.yaml";
     if (!fs::exists(path)) {
@@ -53,6 +71,7 @@ void read_scene(const fs::path& folder, RunFiles& files) {
     files.scene_text = file_content(path);
     try {
         files.scene = scene::read_scene(path.string());
+        leave_out_folders(*files.scene, files.scene_text);
     } catch (const SceneError& error) {
         files.notes.push_back(fmt::format("scene.yaml cannot be read by this version, so that it is shown as it is: {}",
                                           error.faults().empty() ? error.what() : error.faults().front().message()));

@@ -161,11 +161,12 @@ std::string reproduce_section(const RunFiles& files) {
     std::string after = "gives the same numbers with any number of threads";
     if (!version.empty()) after += ", with osculate " + escaped(version);
     if (files.scene) {
-        std::vector<std::string> meshes;
-        add_files(scene::outline(*files.scene), meshes);
-        if (!meshes.empty()) after += ". It reads meshes from files, which the report does not hold: ";
-        for (std::size_t m = 0; m < meshes.size(); ++m)
-            after += (m > 0 ? ", " : "") + element("code", escaped(meshes[m]));
+        std::vector<std::string> names;
+        add_files(scene::outline(*files.scene), names);
+        if (const std::string& own = files.scene->output.template_name; own.ends_with(".yaml")) names.push_back(own);
+        if (!names.empty()) after += ". It looks beside it for files that the report does not hold: ";
+        for (std::size_t k = 0; k < names.size(); ++k)
+            after += (k > 0 ? ", " : "") + element("code", escaped(names[k]));
     }
     text += element("p", after + ".");
     text += "<div class=\"tools\"><button type=\"button\" data-copy=\"command\">Copy command</button>"

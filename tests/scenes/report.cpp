@@ -55,6 +55,25 @@ TEST_F(Report, TheSceneInItRunsAgainWithItsChanges) {
     EXPECT_EQ(content(folder / "again/history.csv"), content(folder / "run/history.csv"));
 }
 
+/// Where files lie on the machine of the run is nobody's business.
+TEST_F(Report, NamesFilesWithoutTheirFolders) {
+    std::filesystem::copy_file(scene_file("configs/tutorials/meshes/pad.vtu"), folder / "pad.vtu");
+    std::ofstream(folder / "own.yaml") << "body_fields: [displacement]\nhistory: [reactions]\n";
+    std::ofstream(folder / "pad.yaml") << R"(
+bodies: {pad: {mesh: {file: {path: pad.vtu}}, material: {linear_elastic: {E: 1 MPa, nu: 0.3}}}}
+sets: {bed: {body: pad, surface: under}, top: {body: pad, surface: top}}
+supports: {bed: {fix: [x, y, z]}}
+stages: {press: {pressure: {top: 1 kPa}}}
+output: {template: own.yaml}
+)";
+    ASSERT_EQ(osculate({"run", "pad.yaml", "-o", "run", "--quiet"}).code, 0);
+    EXPECT_EQ(osculate({"report", "run"}).code, 0);
+    const std::string html = page();
+    EXPECT_EQ(html.find(folder.string()), std::string::npos);
+    EXPECT_THAT(missing(html, {"path: pad.vtu", "template: own.yaml", "<code>pad.vtu</code>, <code>own.yaml</code>"}),
+                IsEmpty());
+}
+
 TEST_F(Report, OfARunWithoutFramesOrContactSaysWhatIsMissing) {
     run(press, {"output.frame_every=0", "output.history=[reactions]"});
     const Outcome outcome = osculate({"report", "run"});

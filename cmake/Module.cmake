@@ -1,9 +1,7 @@
-# The Python module takes the modules in; no symbol is ever replaced from outside: calls stay direct.
+# The Python module and the modules that scenes load take these in; no symbol is ever replaced from outside: calls stay direct.
 function(osculate_position_independent target)
-  if(OSCULATE_PYTHON)
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
-  endif()
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
 endfunction()
 # osculate_module(NAME LINKS public... PRIVATE_LINKS private...): static library of src/NAME with headers in
 # include/osculate/NAME, installed as osculate::NAME. A module without sources becomes an interface library.

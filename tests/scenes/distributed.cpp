@@ -33,6 +33,9 @@ protected:
                 for (std::size_t row = 0; row < first.rows.size(); ++row)
                     if (!first.text(row, column).empty()) visit(row, column); // not in this stage
         };
+        for (const std::string& column : first.columns)
+            for (std::size_t row = 0; row < first.rows.size(); ++row)
+                EXPECT_EQ(first.text(row, column).empty(), second.text(row, column).empty()) << column;
         double largest = 0; // a force
         each([&](std::size_t row, const std::string& column) {
             largest = std::max(largest, std::abs(first.number(row, column)));

@@ -12,7 +12,7 @@ struct Estimate {
     double seconds = 0; ///< of one processor
     double bytes = 0;   ///< peak memory
     /// The 98 shipped scenes of docs/data/estimates.csv, to which the figures are fitted, cost between estimate /
-    /// factor and estimate * factor, except eight, most of whose tangents are factorised repeatedly.
+    /// factor and estimate * factor, except ten that its test names, most of whose tangents are factorised repeatedly.
     static constexpr double factor = 3;
 };
 

@@ -10,6 +10,10 @@ export const clock = {
   listen(listener) {
     this.listeners.push(listener);
   },
+  /// Before all that listens is made anew.
+  forget() {
+    this.listeners = [];
+  },
   show(frame) {
     this.frame = Math.max(0, Math.min(this.times.length - 1, frame));
     for (const listener of this.listeners) listener();

@@ -1,6 +1,15 @@
 // What the page holds: one JSON, and arrays in base64, deflated.
 
-export const report = JSON.parse(document.getElementById("report-data").textContent);
+const read = () => JSON.parse(document.getElementById("report-data").textContent);
+
+export let report = read();
+
+/// Takes the data of another page of the same run in place of this one's.
+export function renew(page) {
+  for (const old of document.querySelectorAll("script[id^=array-], #report-data")) old.remove();
+  for (const one of page.querySelectorAll("script[id^=array-], #report-data")) document.body.append(document.adoptNode(one));
+  report = read();
+}
 
 async function bytes(name) {
   const text = atob(document.getElementById(name).textContent);

@@ -1,7 +1,10 @@
 // Light and dark, the list of contents, buttons that copy and save.
 
+const listeners = new Set();
+
 export function onThemeChange(listener) {
-  document.addEventListener("themechange", listener);
+  listeners.add(listener);
+  return () => listeners.delete(listener);
 }
 
 export function cssColour(name) {
@@ -11,7 +14,7 @@ export function cssColour(name) {
 export function makeTheme() {
   const show = (theme) => {
     document.documentElement.dataset.theme = theme;
-    document.dispatchEvent(new Event("themechange"));
+    for (const listener of listeners) listener();
   };
   document.getElementById("theme").addEventListener("click",
     () => show(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
@@ -20,6 +23,7 @@ export function makeTheme() {
 
 export function makeContents() {
   const contents = document.getElementById("contents");
+  contents.replaceChildren();
   for (const section of document.querySelectorAll("main > section")) {
     const link = document.createElement("a");
     link.href = "#" + section.id;

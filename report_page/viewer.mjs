@@ -257,7 +257,7 @@ class Viewer {
     this.draw();
   }
 
-  make() {
+  make(settings) {
     const stage = make("div", {class: "stage"}, this.renderer.domElement);
     this.legend = make("div", {class: "legend3"});
     stage.append(this.legend);
@@ -267,19 +267,53 @@ class Viewer {
     if (this.quantities.has(wanted)) this.field.value = wanted;
     clock.times = report.view.times;
     clock.listen(() => this.update());
-    let moved = false; // by hand
-    this.controls.addEventListener("start", () => (moved = true));
+    this.controls.addEventListener("start", () => (this.moved = true)); // by hand
     new ResizeObserver(() => {
       const {clientWidth: width, clientHeight: height} = stage;
       if (width === 0 || height === 0) return;
       this.renderer.setSize(width, height, false);
       this.camera.aspect = width / height;
       this.camera.updateProjectionMatrix();
-      if (!moved) this.look(report.view.eye);
+      if (!this.moved) this.look(report.view.eye);
       this.draw();
     }).observe(stage);
-    onThemeChange(() => this.retint());
-    clock.show(this.frames - 1);
+    this.forget = onThemeChange(() => this.retint());
+    this.take(settings);
+  }
+
+  /// What was chosen, for a viewer of the same bodies at more times.
+  settings() {
+    const {position} = this.camera, {target} = this.controls;
+    return {
+      moved: this.moved ? {position: position.toArray(), target: target.toArray()} : undefined,
+      time: clock.frame < this.frames - 1 ? clock.time : undefined, // the last one stays the last one
+      chosen: [this.field, this.bands, this.span, this.scale].map((one) => one.value),
+      checked: new Map([...this.place.querySelectorAll("input[type=checkbox]")].map((box) => [box.name, box.checked])),
+    };
+  }
+
+  take(settings) {
+    if (settings) {
+      [this.field, this.bands, this.span, this.scale].forEach((one, i) => (one.value = settings.chosen[i]));
+      for (const part of this.parts) part.shown = settings.checked.get(`body ${part.name}`) ?? part.shown;
+      for (const box of this.place.querySelectorAll("input[type=checkbox]")) box.checked = settings.checked.get(box.name) ?? box.checked;
+      if (settings.moved) {
+        this.moved = true;
+        this.camera.position.fromArray(settings.moved.position);
+        this.controls.target.fromArray(settings.moved.target);
+        this.controls.update();
+      }
+    }
+    if (settings?.time === undefined) clock.show(this.frames - 1);
+    else clock.seek(settings.time);
+  }
+
+  dispose() {
+    if (this.playing) this.toggle();
+    this.forget();
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss(); // browsers allow some sixteen of them
   }
 }
 
@@ -288,7 +322,8 @@ function hasWebGl() {
   return (canvas.getContext("webgl") ?? canvas.getContext("experimental-webgl")) !== null;
 }
 
-export async function makeViewer(place) {
+/// @param settings  of a viewer before this one
+export async function makeViewer(place, settings) {
   if (!hasWebGl()) throw new Error("this browser has no WebGL; the pictures below show start, middle and end");
   const shared = {
     bands: {value: 0}, map: {value: colourMap()},
@@ -299,5 +334,6 @@ export async function makeViewer(place) {
   for (const part of parts) part.carrier = parts.find((one) => one.kind === "body" && one.name === part.body) ?? part;
   const viewer = new Viewer(place, parts);
   viewer.makeStage(shared);
-  viewer.make();
+  viewer.make(settings);
+  return viewer;
 }

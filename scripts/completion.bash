@@ -32,7 +32,7 @@ _osculate() {
         words=$(osculate init --list | cut -d ' ' -f 1)
     elif [ "$command" = schema ]; then
         words="scene study template"
-    elif [ "$command" = diary ] || [ "$command" = resume ] || [ "$before" = -o ]; then
+    elif [ "$command" = diary ] || [ "$command" = report ] || [ "$command" = view ] || [ "$command" = film ] || [ "$command" = resume ] || [ "$before" = -o ]; then
         mapfile -t COMPREPLY < <(compgen -d -- "$word")
         return
     elif [ "$command" = import ]; then

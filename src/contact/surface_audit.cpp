@@ -1,7 +1,7 @@
 #include "osculate/contact/surface_audit.hpp"
 
 #include "contact/box_tree.hpp"
-#include "contact/triangle.hpp"
+#include "osculate/mesh/triangle.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -15,6 +15,8 @@
 namespace osculate::contact {
 
 namespace {
+using mesh::Triangle;
+
 /// Of the facet size. Less deep is touching.
 constexpr double touching = 1e-9;
 /// What facets of a smooth surface turn by at most.

@@ -1,19 +1,17 @@
 /// mesh::read_gmsh and mesh::mesh_cad by Gmsh: a module of its own, as Gmsh and Open CASCADE are large and may be missing.
 
 #include "gmsh/check_msh.hpp"
-#include "osculate/core/without_traps.hpp"
+#include "gmsh/session.hpp"
 #include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 #include "osculate/mesh/quality.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <functional>
 #include <gmsh.h>
 #include <limits>
@@ -27,56 +25,7 @@
 namespace osculate::mesh {
 namespace {
 
-constexpr double millimetre = 1e-3, pi = std::numbers::pi;
-
-/// Gmsh while it is in use: silent, on one thread, without files or options of the user, with a model of its own. A host, such
-/// as Python, may use Gmsh, too: its models and options are as before in the end. It is initialised once and never
-/// finalised: each time would keep some memory, and ever more of it.
-class Session {
-public:
-    Session() {
-        [[maybe_unused]] static const bool once = (gmsh::initialize(0, nullptr, false), true);
-        for (auto& [name, value] : options_) {
-            const double wanted = value;
-            gmsh::option::getNumber(name, value);
-            gmsh::option::setNumber(name, wanted);
-        }
-        gmsh::model::getCurrent(before_);
-        gmsh::model::add("osculate");
-    }
-    ~Session() {
-        try {
-            gmsh::model::remove();
-            gmsh::model::setCurrent(before_);
-            for (const auto& [name, value] : options_) gmsh::option::setNumber(name, value);
-        } catch (...) { // nothing is left to be done
-        }
-    }
-    Session(const Session&) = delete;
-    Session& operator=(const Session&) = delete;
-
-private:
-    std::string before_;
-    std::array<std::pair<const char*, double>, 3> options_{
-        {{"General.Terminal", 0}, {"General.NumThreads", 1}, {"General.AbortOnError", 2}}}; // which throws
-};
-
-/// What Gmsh throws, as MeshError.
-void guarded(const std::string& file, const std::function<void()>& act) {
-    const WithoutTraps gmsh;
-    try {
-        const Session session;
-        act();
-    } catch (const MeshError&) {
-        throw;
-    } catch (const std::string& reason) {
-        throw MeshError(file, "Gmsh: " + reason);
-    } catch (const std::exception& error) {
-        throw MeshError(file, std::string("Gmsh: ") + error.what());
-    } catch (...) {
-        throw MeshError(file, "Gmsh cannot read it");
-    }
-}
+constexpr double pi = std::numbers::pi;
 
 std::string physical_name(int dimension, int tag) {
     std::string name;
@@ -372,10 +321,6 @@ public:
     SizeCallback& operator=(const SizeCallback&) = delete;
 };
 
-void check_exists(const std::string& path) {
-    if (!std::filesystem::is_regular_file(path)) throw MeshError(path, "no such file");
-}
-
 } // namespace
 } // namespace osculate::mesh
 
@@ -393,25 +338,8 @@ extern "C" void osculate_gmsh_read(const std::string* path, RawMesh* mesh) {
 
 extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh) {
     check_exists(options->file);
-    std::string ending = std::filesystem::path(options->file).extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    const std::string format = ending == ".step" || ending == ".stp"   ? "step"
-                               : ending == ".iges" || ending == ".igs" ? "iges"
-                               : ending == ".brep"                     ? "brep"
-                                                                       : "";
-    if (format.empty())
-        throw MeshError(options->file,
-                        "no geometry has the ending '" + ending + "'; osculate reads .step .stp .iges .igs .brep");
-    const double unit =
-        format == "brep" ? 1 : millimetre; // lengths in which Gmsh works: its tolerances fit millimetres
     guarded(options->file, [&] {
-        gmsh::option::setString("Geometry.OCCTargetUnit", format == "brep" ? "" : "MM");
-        gmsh::vectorpair shapes;
-        gmsh::model::occ::importShapes(options->file, shapes, true, format);
-        gmsh::model::occ::synchronize();
-        gmsh::vectorpair volumes;
-        gmsh::model::getEntities(volumes, 3);
-        if (volumes.empty()) throw MeshError(options->file, "no solid; surfaces alone cannot be meshed");
+        const double unit = open_geometry(options->file);
         double low[3], high[3], diagonal = 0;
         gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
         for (int d = 0; d < 3; ++d) diagonal += (high[d] - low[d]) * (high[d] - low[d]);

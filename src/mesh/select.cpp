@@ -1,11 +1,14 @@
 #include "osculate/mesh/select.hpp"
 
 #include "mesh/sort_unique.hpp"
+#include "osculate/mesh/triangle.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace osculate::mesh {
 namespace {
@@ -107,6 +110,55 @@ Region select_normal(const Mesh& mesh, const std::vector<Facet>& exterior, const
     region.nodes = nodes_of(region.facets);
     sort_unique(region.nodes);
     return region;
+}
+
+namespace {
+
+double distance(const Mesh& mesh, const Facet& facet, const Vec3& point) {
+    const auto corner = [&](int c) -> const Vec3& {
+        return mesh.nodes[static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(c)])];
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (int c = 1; c + 1 < facet.count; ++c)
+        least = std::min(least, (Triangle{corner(0), corner(c), corner(c + 1)}.closest(point) - point).norm());
+    return least;
+}
+
+/// Nodes of each facet, in an order that does not depend on where it begins.
+std::vector<std::vector<Index>> facets_of(const std::vector<Facet>& surface) {
+    std::vector<std::vector<Index>> all;
+    for (const Facet& facet : surface) {
+        all.emplace_back(facet.begin(), facet.end());
+        std::ranges::sort(all.back());
+    }
+    std::ranges::sort(all);
+    return all;
+}
+
+} // namespace
+
+std::vector<std::string> nearest_surfaces(const Mesh& mesh, const Vec3& point) {
+    std::vector<std::pair<double, std::string>> found;
+    for (const auto& [name, facets] : mesh.surfaces) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Facet& facet : facets) least = std::min(least, distance(mesh, facet, point));
+        if (std::isfinite(least)) found.emplace_back(least, name);
+    }
+    if (found.empty()) return {};
+    const double limit = std::ranges::min_element(found)->first + tolerance_of(mesh);
+    std::vector<std::string> names;
+    for (const auto& [at, name] : found) {
+        if (at > limit) continue;
+        const auto own = facets_of(mesh.surfaces.at(name));
+        const bool holds_another = std::ranges::any_of(found, [&, &itself = name](const auto& other) {
+            if (other.first > limit || other.second == itself) return false;
+            const auto theirs = facets_of(mesh.surfaces.at(other.second));
+            const bool within = std::ranges::includes(own, theirs);
+            return within && (theirs.size() < own.size() || other.second < itself); // of equal ones the first
+        });
+        if (!holds_another) names.push_back(name);
+    }
+    return names;
 }
 
 } // namespace osculate::mesh

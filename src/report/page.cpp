@@ -46,8 +46,9 @@ struct Status {
     std::string badge, mood; ///< mood: a class of the style sheet
 };
 
-Status status_of(const RunFiles& files) {
+Status status_of(const RunFiles& files, bool live) {
     const std::string status = files.status();
+    if (live && status == "running") return {"Runs", "warn"};
     if (status == "done") {
         const json expectation = object(files.summary, "expectation");
         if (expectation.contains("met") && expectation["met"] == false) return {"Completed, not as expected", "warn"};
@@ -147,7 +148,7 @@ json stage_ends(const RunFiles& files) {
 }
 
 /// The scripts as one module each, found by name without any request.
-std::string scripts(bool three) {
+std::string scripts(bool three, bool live) {
     std::string text;
     const auto library = [&](const char* name) { text += "<script>" + std::string(asset(name)) + "</script>\n"; };
     if (three) {
@@ -157,13 +158,19 @@ std::string scripts(bool three) {
     if (!asset("d3.min.js").empty()) library("d3.min.js");
     std::string imports;
     for (const Asset& one : assets()) {
-        if (!one.name.ends_with(".mjs")) continue;
+        if (!one.name.ends_with(".mjs") || (one.name == "live.mjs" && !live)) continue;
         imports +=
             fmt::format("{}\"{}\":\"data:text/javascript;base64,{}\"", imports.empty() ? "" : ",\n",
                         one.name.substr(0, one.name.size() - 4), base64(Bytes(one.content.begin(), one.content.end())));
     }
     text += "<script type=\"importmap\">{\"imports\":{" + imports + "}}</script>\n";
     return text + "<script type=\"module\">import \"main\";</script>\n";
+}
+
+std::string live_tag(const PageOptions& options) {
+    if (!options.live) return "";
+    return fmt::format("<meta name=\"osculate-live\" content=\"{}\" data-stamp=\"{}\">\n", options.live->token,
+                       options.live->stamp);
 }
 
 /// Contact surfaces move with their bodies, which the scene names.
@@ -225,7 +232,7 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
     const RunFiles files = read_run_files(run_folder);
     page.notes = files.notes;
     page.notes.insert(page.notes.end(), options.notes.begin(), options.notes.end());
-    if (files.status() == "running")
+    if (files.status() == "running" && !options.live)
         page.notes.insert(page.notes.begin(),
                           "The run had not ended when this report was written: it shows what there was.");
 
@@ -247,7 +254,7 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
     data.json["stages"] = stage_ends(files);
     const std::string plots = drawing ? plots_of(files, options, data, page.notes) : "";
 
-    const Status status = status_of(files);
+    const Status status = status_of(files, options.live.has_value());
     std::string body;
     body += failure_section(files);
     std::string pictures; // of all frames, before any are thinned out
@@ -277,7 +284,8 @@ Page make_page(const fs::path& run_folder, const PageOptions& options) {
                                             {"sections", body},
                                             {"licences", escaped(asset("licences.txt"))},
                                             {"data", data.html()},
-                                            {"scripts", scripts(three)}});
+                                            {"live", live_tag(options)},
+                                            {"scripts", scripts(three, options.live.has_value())}});
     return page;
 }
 

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
 #include <png.h>
 #include <set>
 #include <stdexcept>
@@ -148,6 +149,13 @@ public:
         }
     }
 
+    /// Whether a projected point is in front of all triangles but its own.
+    [[nodiscard]] bool shows(const Vec3& p) const {
+        const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
+        constexpr double before = 1.5; // samples
+        return x >= 0 && y >= 0 && x < width_ && y < height_ && p.z() + before >= depth_[index(x, y)];
+    }
+
     [[nodiscard]] Bytes png() const {
         const int w = width_ / samples, h = height_ / samples;
         Bytes pixels;
@@ -193,54 +201,22 @@ private:
     std::vector<bool> lined_; ///< samples a line has darkened already
 };
 
-std::set<std::pair<std::uint32_t, std::uint32_t>> edges_of(const MovingPart& part) {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+/// @param outlines  only those of a single facet
+std::set<std::pair<std::uint32_t, std::uint32_t>> edges_of(const MovingPart& part, bool outlines) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> facets;
     for (const auto& f : part.facets)
         for (std::size_t c = 0; c < 4; ++c) {
             const std::uint32_t a = f[c], b = f[(c + 1) % 4];
-            if (a != b) edges.insert({std::min(a, b), std::max(a, b)});
+            if (a != b) ++facets[{std::min(a, b), std::max(a, b)}];
         }
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& [edge, count] : facets)
+        if (!outlines || count == 1) edges.insert(edge);
     return edges;
 }
 
-} // namespace
-
-const std::vector<std::array<std::uint8_t, 3>>& colour_map() {
-    static const std::vector<std::array<std::uint8_t, 3>> viridis{{65, 68, 135},  {53, 95, 141},  {42, 120, 142},
-                                                                  {33, 145, 140}, {34, 168, 132}, {68, 191, 112},
-                                                                  {122, 209, 81}, {189, 223, 38}, {253, 231, 37}};
-    return viridis;
-}
-
-ShownField field_to_show(const MovingSurfaces& surfaces) {
-    ShownField shown;
-    for (const char* name : {"von_mises", "displacement"}) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (const MovingPart& part : surfaces.parts) {
-            const PartField* field = part.find(name);
-            if (part.kind != PartKind::body || field == nullptr) continue;
-            shown.unit = field->unit;
-            for (std::size_t f = 0; f < surfaces.times.size(); ++f)
-                for (std::size_t p = 0; p < part.points.size(); ++p)
-                    if (const double value = magnitude(*field, f, p); std::isfinite(value)) {
-                        low = std::min(low, value);
-                        high = std::max(high, value);
-                    }
-        }
-        if (low > high) continue;
-        shown.name = name;
-        shown.low = low;
-        shown.high = high > low ? high : low + 1;
-        return shown;
-    }
-    return shown;
-}
-
-Bytes draw(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptions& options) {
-    if (surfaces.times.empty()) return {};
-    const WithoutTraps positions_may_be_no_numbers;
-    const Projection project(surfaces, options);
-    if (!project.valid()) return {};
+Canvas drawn(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptions& options,
+             const Projection& project) {
     Canvas canvas(samples * options.width, samples * options.height);
     std::vector<std::vector<Corner>> corners;
     for (const MovingPart& part : surfaces.parts) {
@@ -261,8 +237,77 @@ Bytes draw(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptio
     constexpr std::size_t too_dense = 60000; // facets whose edges would cover them
     for (std::size_t k = 0; k < corners.size(); ++k)
         if (!corners[k].empty() && surfaces.parts[k].facets.size() < too_dense)
-            for (const auto& [a, b] : edges_of(surfaces.parts[k])) canvas.line(corners[k][a].at, corners[k][b].at);
-    return canvas.png();
+            for (const auto& [a, b] : edges_of(surfaces.parts[k], options.outlines))
+                canvas.line(corners[k][a].at, corners[k][b].at);
+    return canvas;
+}
+
+} // namespace
+
+const std::vector<std::array<std::uint8_t, 3>>& colour_map() {
+    static const std::vector<std::array<std::uint8_t, 3>> viridis{{65, 68, 135},  {53, 95, 141},  {42, 120, 142},
+                                                                  {33, 145, 140}, {34, 168, 132}, {68, 191, 112},
+                                                                  {122, 209, 81}, {189, 223, 38}, {253, 231, 37}};
+    return viridis;
+}
+
+ShownField shown_field(const MovingSurfaces& surfaces, const std::string& name) {
+    ShownField shown;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const MovingPart& part : surfaces.parts) {
+        const PartField* field = part.find(name);
+        if (part.kind != PartKind::body || field == nullptr) continue;
+        shown.unit = field->unit;
+        for (std::size_t f = 0; f < surfaces.times.size(); ++f)
+            for (std::size_t p = 0; p < part.points.size(); ++p)
+                if (const double value = magnitude(*field, f, p); std::isfinite(value)) {
+                    low = std::min(low, value);
+                    high = std::max(high, value);
+                }
+    }
+    if (low > high) return {};
+    shown.name = name;
+    shown.low = low;
+    shown.high = high > low ? high : low + 1;
+    return shown;
+}
+
+ShownField field_to_show(const MovingSurfaces& surfaces) {
+    const ShownField stress = shown_field(surfaces, "von_mises");
+    return stress.name.empty() ? shown_field(surfaces, "displacement") : stress;
+}
+
+Bytes draw(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptions& options) {
+    if (surfaces.times.empty()) return {};
+    const WithoutTraps positions_may_be_no_numbers;
+    const Projection project(surfaces, options);
+    if (!project.valid()) return {};
+    return drawn(surfaces, frame, options, project).png();
+}
+
+PictureWithPlaces draw(const MovingSurfaces& surfaces, std::size_t frame, const PictureOptions& options,
+                       const std::vector<std::vector<Vec3>>& things) {
+    PictureWithPlaces picture{{}, std::vector<std::optional<Eigen::Vector2d>>(things.size())};
+    if (surfaces.times.empty()) return picture;
+    const WithoutTraps positions_may_be_no_numbers;
+    const Projection project(surfaces, options);
+    if (!project.valid()) return picture;
+    const Canvas canvas = drawn(surfaces, frame, options, project);
+    picture.png = canvas.png();
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        std::vector<Eigen::Vector2d> seen;
+        Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+        for (const Vec3& x : things[i])
+            if (const Vec3 at = project(x); canvas.shows(at)) {
+                seen.emplace_back(at.head<2>() / samples);
+                middle += seen.back();
+            }
+        if (seen.empty()) continue;
+        middle /= static_cast<double>(seen.size());
+        picture.places[i] =
+            *std::ranges::min_element(seen, {}, [&](const Eigen::Vector2d& at) { return (at - middle).squaredNorm(); });
+    }
+    return picture;
 }
 
 std::string with_legend(const Bytes& png, const PictureOptions& options, const std::string& title) {

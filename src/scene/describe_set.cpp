@@ -39,6 +39,10 @@ void describe(Visitor& v, SelectNormal& s) {
              s.angle);
 }
 
+void describe(Visitor& v, SelectNearest& s) {
+    point(v, "point", "A point on that surface, away from its edges, or close to it.", s.point);
+}
+
 } // namespace
 
 void describe(Visitor& v, SelectBox& s) {
@@ -48,7 +52,7 @@ void describe(Visitor& v, SelectBox& s) {
 
 void describe(Visitor& v, SetSpec& set) {
     v.text({.name = "body", .meaning = "Body the set belongs to.", .required = true, .names = Names::body}, set.body);
-    static const Words tags{"surface", "nodes", "plane", "cylinder", "box", "normal", "node_numbers"};
+    static const Words tags{"surface", "nodes", "plane", "cylinder", "box", "normal", "node_numbers", "nearest"};
     constexpr std::size_t nodes = 1; // surface and nodes are both a SelectNamed
     const std::size_t index = set.select.index();
     const auto* by_name = std::get_if<SelectNamed>(&set.select);
@@ -62,36 +66,39 @@ void describe(Visitor& v, SetSpec& set) {
                 set.select);
         });
     };
-    v.one_of({.tags = tags,
-              .active = by_name ? (by_name->nodes ? nodes : 0) : index + 1,
-              .required = true,
-              .choose =
-                  [&](std::size_t i) {
-                      emplace(set.select, i <= nodes ? 0 : i - 1, std::make_index_sequence<6>{});
-                      if (i == nodes) std::get<SelectNamed>(set.select).nodes = true;
-                  },
-              .describe =
-                  [&](std::size_t i) {
-                      switch (i) {
-                      case 0:
-                          return name(
-                              {.name = "surface", .meaning = "A surface that the mesh names.", .required = true},
-                              std::get<SelectNamed>(set.select));
-                      case nodes:
-                          return name({.name = "nodes", .meaning = "A node set that the mesh names.", .required = true},
-                                      std::get<SelectNamed>(set.select));
-                      case 2: return group("plane", "Exterior facets in a plane.");
-                      case 3: return group("cylinder", "Exterior facets on a cylinder.");
-                      case 4: return group("box", "Exterior facets inside a box.");
-                      case 5: return group("normal", "Exterior facets that face a direction.");
-                      default:
-                          return v.integers({.name = "node_numbers",
-                                             .meaning = "Nodes by their numbers in the mesh file.",
-                                             .range = {.low = 0, .high = 2147483647},
-                                             .required = true},
-                                            std::get<SelectNumbers>(set.select).numbers);
-                      }
-                  }});
+    v.one_of(
+        {.tags = tags,
+         .active = by_name ? (by_name->nodes ? nodes : 0) : index + 1,
+         .required = true,
+         .choose =
+             [&](std::size_t i) {
+                 emplace(set.select, i <= nodes ? 0 : i - 1, std::make_index_sequence<7>{});
+                 if (i == nodes) std::get<SelectNamed>(set.select).nodes = true;
+             },
+         .describe =
+             [&](std::size_t i) {
+                 switch (i) {
+                 case 0:
+                     return name({.name = "surface", .meaning = "A surface that the mesh names.", .required = true},
+                                 std::get<SelectNamed>(set.select));
+                 case nodes:
+                     return name({.name = "nodes", .meaning = "A node set that the mesh names.", .required = true},
+                                 std::get<SelectNamed>(set.select));
+                 case 2: return group("plane", "Exterior facets in a plane.");
+                 case 3: return group("cylinder", "Exterior facets on a cylinder.");
+                 case 4: return group("box", "Exterior facets inside a box.");
+                 case 5: return group("normal", "Exterior facets that face a direction.");
+                 case 7:
+                     return group("nearest", "The surface that the mesh names, such as face_<number> of a geometry, "
+                                             "nearest to a point.");
+                 default:
+                     return v.integers({.name = "node_numbers",
+                                        .meaning = "Nodes by their numbers in the mesh file.",
+                                        .range = {.low = 0, .high = 2147483647},
+                                        .required = true},
+                                       std::get<SelectNumbers>(set.select).numbers);
+                 }
+             }});
 }
 
 void describe(Visitor& v, Support& support) {

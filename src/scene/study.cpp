@@ -93,6 +93,12 @@ Named<double> Study::parameters_of(const Combination& combination) const {
     return numbers;
 }
 
+std::optional<double> Study::place_of(const StudyCoordinate& coordinate, std::size_t value) const {
+    const AxisValue& at = axes[coordinate.axis].values[value];
+    if (const double* parameter = find(at.parameters, coordinate.name)) return *parameter;
+    return coordinate.name == axes[coordinate.axis].name ? at.number : std::nullopt;
+}
+
 const std::vector<std::string>& contact_columns() {
     static const std::vector<std::string> names{
         "X",      "Y",      "Z",      "x",       "y",        "z",        "ux",

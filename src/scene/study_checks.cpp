@@ -144,6 +144,16 @@ void check_study(const Study& study, const NamedFunctions& functions, const std:
     for (const StudyAxis& axis : study.axes)
         for (const AxisValue& value : axis.values)
             if (names(value) != names(axis.values.front())) return; // another
+    double runs = 1; // counted, not made: there may be more than fit into memory
+    std::string product;
+    for (const StudyAxis& axis : study.axes) {
+        runs *= static_cast<double>(axis.values.size());
+        product += (product.empty() ? "" : " x ") + std::to_string(axis.values.size());
+    }
+    constexpr double most_runs = 100000;
+    if (runs > most_runs)
+        return faults.push_back(fault_at({study.path, 0, 0}, "axes", "at most 100000 combinations of their values",
+                                         product + (study.axes.size() > 1 ? " of them" : "")));
     StudyChecker checker(study, functions, faults);
     if (!checker.constants()) return;
     const std::vector<Combination> combinations = study.combinations();

@@ -38,7 +38,35 @@ Json map(const char* meaning, const Json& properties) {
             {"additionalProperties", false}};
 }
 
-/// {key, values}, {scenes}, or a map of values.
+Json named(const char* meaning, const Json& item, bool required) {
+    Json schema{{"description", meaning}, {"type", "object"}, {"additionalProperties", item}};
+    if (required) schema["minProperties"] = 1;
+    return schema;
+}
+
+Json sampled() {
+    const Json number{{"description", "A number, with the unit that the key takes."}, {"type", {"number", "string"}}};
+    Json variable =
+        map("A number that is varied.", {{"key", {{"description", "Key path of the scene, or a list of them."}}},
+                                         {"from", number},
+                                         {"to", number},
+                                         {"spacing", one_of_words("Of its values.", {"linear", "logarithmic"})}});
+    variable["required"] = {"key", "from", "to"};
+    Json schema =
+        map("Runs whose variables are spread evenly over a box, all at once.",
+            {{"sample", {{"description", "How."}, {"enum", {"latin_hypercube", "sobol"}}}},
+             {"runs", {{"description", "How many."}, {"type", "integer"}, {"minimum", 2}, {"maximum", 10000}}},
+             {"seed",
+              {{"description", "Of the random numbers; the same runs for the same seed."},
+               {"type", "integer"},
+               {"minimum", 0},
+               {"default", 1}}},
+             {"variables", named("What is varied, by name.", variable, true)}});
+    schema["required"] = {"sample", "runs", "variables"};
+    return schema;
+}
+
+/// {key, values}, {scenes}, {sample, runs, variables}, or a map of values.
 Json axis() {
     const Json value = map("A value of the axis.", {{"set", settings("Settings of its runs: key path to value.")},
                                                     {"scene", text("Scene file in place of the study's.")},
@@ -46,7 +74,9 @@ Json axis() {
                                                      {{"description", "Numbers that formulas may use."},
                                                       {"type", "object"},
                                                       {"additionalProperties", {{"type", {"number", "string"}}}}}}});
-    Json schema{{"description", "An axis: {key, values}, {scenes}, or a map of named values."}, {"type", "object"}};
+    Json schema{
+        {"description", "An axis: {key, values}, {scenes}, {sample, runs, variables}, or a map of named values."},
+        {"type", "object"}};
     schema["minProperties"] = 1;
     const Json plain{{"type", {"string", "number"}}};
     // `key` and `scenes` may also be names of values, whose maps they then have
@@ -61,7 +91,10 @@ Json axis() {
         {"then",
          {{"properties", {{"scenes", text("Scene files; * and ? in their names.")}}}, {"additionalProperties", false}}},
         {"else",
-         {{"additionalProperties", value}, {"propertyNames", {{"pattern", "^[A-Za-z0-9_-][A-Za-z0-9_.-]*$"}}}}}};
+         {{"if", {{"required", {"sample"}}, {"properties", {{"sample", plain}}}}},
+          {"then", sampled()},
+          {"else",
+           {{"additionalProperties", value}, {"propertyNames", {{"pattern", "^[A-Za-z0-9_-][A-Za-z0-9_.-]*$"}}}}}}}};
     return schema;
 }
 
@@ -97,9 +130,32 @@ Json quantity() {
     return schema;
 }
 
-Json named(const char* meaning, const Json& item, bool required) {
-    Json schema{{"description", meaning}, {"type", "object"}, {"additionalProperties", item}};
-    if (required) schema["minProperties"] = 1;
+Json logarithmic() {
+    return {{"description", "Axes of the plot that are logarithmic."},
+            {"type", "array"},
+            {"items", {{"enum", {"x", "y"}}}}};
+}
+
+Json curves() {
+    Json schema = map("A curve for every combination of the other axes.",
+                      {{"quantity", text("What is plotted.")},
+                       {"over", text("Axis, or parameter of its values, that it is plotted over.")},
+                       {"logarithmic", logarithmic()}});
+    schema["required"] = {"quantity", "over"};
+    return schema;
+}
+
+Json contours() {
+    Json schema = map("A map for every combination of the other axes.",
+                      {{"quantity", text("What is plotted.")},
+                       {"over",
+                        {{"description", "Two axes, or parameters of their values, that it is plotted over."},
+                         {"type", "array"},
+                         {"items", {{"type", "string"}}},
+                         {"minItems", 2},
+                         {"maxItems", 2}}},
+                       {"logarithmic", logarithmic()}});
+    schema["required"] = {"quantity", "over"};
     return schema;
 }
 
@@ -125,7 +181,12 @@ Json run_study_schema() {
         {"abscissa", formula("What errors are plotted against; default h where that is a number, else dofs.")},
         {"abscissa_label", text("Its axis label.")},
         {"problems", names("Axes whose values are other problems, not other ways to solve one.")},
-        {"plots", map("How plots look.", {{"colour_by", names("Axes whose values get a colour of their own.")}})},
+        {"plots", map("What is plotted, and how.",
+                      {{"colour_by", names("Axes whose values get a colour of their own.")},
+                       {"curves", named("Quantities over an axis, by name. Default: those without a reference over "
+                                        "every axis of numbers.",
+                                        curves(), false)},
+                       {"contours", named("Quantities over two axes, by name.", contours(), false)}})},
         {"repeats",
          {{"description", "Number of times that every run is done."},
           {"type", "integer"},

@@ -1,4 +1,5 @@
 #include "mesh/file_tests.hpp"
+#include "osculate/mesh/cad_listing.hpp"
 #include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/quality.hpp"
 #include "support/source_tree.hpp"
@@ -8,12 +9,15 @@
 #include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
+#include <map>
+#include <numbers>
 
 namespace osculate::mesh {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Key;
@@ -222,6 +226,66 @@ TEST_F(GmshFiles, GeometryIsMeshedTheSameEveryTime) {
     for (const auto& [name, facets] : quadratic.surfaces)
         for (const Facet& facet : facets) curved += facet_area_vector(facet, quadratic.nodes).norm();
     EXPECT_GT(curved, area) << "middle nodes stand on the round face";
+}
+
+/// A quarter of a cylinder of radius 0.5 and length 1: all of its measures are known.
+TEST_F(GmshFiles, GeometryIsListedWithItsMeasures) {
+    constexpr double pi = std::numbers::pi, exact = 1e-9;
+    const CadListing listing = list_cad(support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep");
+    ASSERT_EQ(listing.solids.size(), 1U);
+    EXPECT_NEAR(listing.solids[0].measure, pi / 16, exact);
+    const double middle = 4 * 0.5 / (3 * pi); // of mass, of a quarter of a disc
+    EXPECT_LT((listing.solids[0].centre - Vec3(middle, middle, 0.5)).norm(), exact);
+    std::map<std::string, double> areas;
+    for (const CadEntity& face : listing.faces) {
+        areas[face.type] += face.measure;
+        EXPECT_THAT(face.of, ElementsAre(1));
+        if (face.type != "Cylinder") continue;
+        EXPECT_NEAR(face.radius, 0.5, exact);
+        EXPECT_LT((face.axis - Vec3::UnitZ()).norm(), exact);
+    }
+    EXPECT_NEAR(areas["Cylinder"], pi / 4, exact);
+    EXPECT_NEAR(areas["Plane"], 2 * pi / 16 + 2 * 0.5, exact);
+    double length = 0;
+    for (const CadEntity& edge : listing.edges) {
+        length += edge.measure;
+        EXPECT_EQ(edge.of.size(), 2U) << "faces on both sides";
+        EXPECT_NEAR(edge.radius, edge.type == "Circle" ? 0.5 : 0, exact);
+    }
+    EXPECT_NEAR(length, 2 * pi / 4 + 3 + 4 * 0.5, exact);
+    double flat = 0;
+    for (std::size_t f = 0; f < listing.faces.size(); ++f)
+        for (const auto& [a, b, c] : listing.triangles[f]) {
+            const auto at = [&](int p) { return listing.points[static_cast<std::size_t>(p)]; };
+            flat += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+        }
+    EXPECT_NEAR(flat, 2 * pi / 16 + 1 + pi / 4, 0.02) << "triangles cover the faces";
+}
+
+/// STEP states its unit, which is not the metre.
+TEST_F(GmshFiles, GeometryIsListedInMetres) {
+    const CadListing listing = list_cad(support::source_tree() + "/configs/tutorials/geometry/bracket.step");
+    constexpr double pi = std::numbers::pi;
+    // a foot with two holes of 7 mm, a lug that ends in half a disc, its hole of 12 mm
+    const double volume = 60 * 40 * 8 - 2 * pi * 3.5 * 3.5 * 8 + 30 * 24 * 8 + pi * 15 * 15 / 2 * 8 - pi * 36 * 8;
+    EXPECT_NEAR(listing.solids.at(0).measure, 1e-9 * volume, 1e-9 * 1e-6 * volume);
+    int holes = 0;
+    for (const CadEntity& face : listing.faces)
+        holes += face.type == "Cylinder" && std::abs(face.radius - 0.0035) < 1e-9;
+    EXPECT_EQ(holes, 2);
+}
+
+TEST_F(GmshFiles, GeometryThatIsNoneIsNamed) {
+    const auto fault = [](const std::string& path) -> std::string {
+        try {
+            (void)list_cad(path);
+        } catch (const MeshError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(fault(write("none.step", "nothing")), HasSubstr("none.step"));
+    EXPECT_THAT(fault("nowhere.step"), HasSubstr("no such file"));
 }
 
 TEST_F(GmshFiles, ElementsAreSmallAroundAFocusAndGrowAwayFromIt) {

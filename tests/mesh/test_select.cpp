@@ -7,6 +7,7 @@
 namespace osculate::mesh {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -52,6 +53,20 @@ TEST_F(PlacedTube, IsSelectedByPlane) {
     const Region cut = select_plane(mesh, exterior, translation + 6 * rotation.col(1), rotation.col(1));
     EXPECT_THAT(cut.facets, IsEmpty());
     EXPECT_THAT(cut.nodes, SizeIs(14 * 4));
+}
+
+TEST_F(PlacedTube, KnowsTheSurfaceNearestToAPoint) {
+    const auto near = [&](const Vec3& x) { return nearest_surfaces(mesh, translation + rotation * x); };
+    EXPECT_THAT(near({0, 6, -2.9}), ElementsAre("inner")) << "beside it";
+    EXPECT_THAT(near({0, 6, -100}), ElementsAre("outer")) << "far away, and still the nearest";
+    EXPECT_THAT(near({0, 12.1, -3.5}), ElementsAre("y_max"));
+    EXPECT_THAT(near({0, 12, -4}), ElementsAre("outer", "y_max")) << "the edge between them";
+    mesh.surfaces["all"] = exterior;
+    EXPECT_THAT(near({0, 6, -2.9}), ElementsAre("inner")) << "the smallest that is there";
+    mesh.surfaces["an_alias"] = mesh.surfaces.at("inner");
+    EXPECT_THAT(near({0, 6, -2.9}), ElementsAre("an_alias")) << "of equal ones the first";
+    mesh.surfaces.clear();
+    EXPECT_THAT(near({0, 6, -2.9}), IsEmpty());
 }
 
 TEST_F(PlacedTube, IsSelectedByNormal) {

@@ -147,14 +147,20 @@ TEST(Schema, HasTheKeysOfStudies) {
     const Json schema = Json::parse(study_schema({"facets"}));
     const Json run = schema["else"]["properties"];
     const std::string study =
-        "axes: {a: {one: {odd: 1}, two: {}}}\nquantities: {q: {odd: 1}}\nplots: {odd: 1}\nodd: 1\n";
+        "axes:\n  a: {one: {odd: 1}, two: {}}\n  s: {sample: sobol, odd: 1, variables: {v: {odd: 1}}}\n"
+        "quantities: {q: {odd: 1}}\nplots: {odd: 1, curves: {c: {odd: 1}}, contours: {m: {odd: 1}}}\nodd: 1\n";
     const auto expect = [&](const std::string& at, const Json& properties) {
         EXPECT_THAT(known_keys(study, at), testing::UnorderedElementsAreArray(names(properties))) << at;
     };
     expect("odd", run);
-    expect("axes.a.one.odd", run["axes"]["additionalProperties"]["else"]["else"]["additionalProperties"]["properties"]);
+    const Json axis = run["axes"]["additionalProperties"]["else"]["else"]; // not a key, not scenes
+    expect("axes.a.one.odd", axis["else"]["additionalProperties"]["properties"]);
+    expect("axes.s.odd", axis["then"]["properties"]);
+    expect("axes.s.variables.v.odd", axis["then"]["properties"]["variables"]["additionalProperties"]["properties"]);
     expect("quantities.q.odd", run["quantities"]["additionalProperties"]["properties"]);
     expect("plots.odd", run["plots"]["properties"]);
+    expect("plots.curves.c.odd", run["plots"]["properties"]["curves"]["additionalProperties"]["properties"]);
+    expect("plots.contours.m.odd", run["plots"]["properties"]["contours"]["additionalProperties"]["properties"]);
     EXPECT_THAT(known_keys("surfaces: {}\nodd: 1\n", "odd"),
                 testing::UnorderedElementsAreArray(names(schema["then"]["properties"])));
 }

@@ -19,6 +19,8 @@ const std::string deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,
                          "*BOUNDARY\nfloor,1,3\nsides,1,2\n"
                          "*STEP\n*STATIC\n*DSLOAD\nlid,P,2.\n*NODE PRINT\nU\n*END STEP\n";
 
+const std::string press = scene_file("tests/scenes/press.yaml");
+
 class MeshCommand : public Program {
 protected:
     void SetUp() override {
@@ -84,6 +86,42 @@ TEST_F(MeshCommand, ImportedFacesThatAreLoadedTwiceRunWithBothLoads) {
     std::ofstream(folder / "twice.yaml") << osculate({"import", "twice.inp"}).out;
     ASSERT_EQ(osculate({"run", "twice.yaml", "-o", "run", "--quiet"}).code, 0);
     EXPECT_NEAR(Csv(folder / "run/history.csv").number(0, "pair.up_on_low.normal"), 3, 1e-9);
+}
+
+const std::string bracket = scene_file("configs/tutorials/geometry/bracket.step");
+
+/// Numbers, types and points of faces are what sets of a scene are made of; a picture shows where they are.
+TEST_F(MeshCommand, ListsTheFacesOfAGeometryAndDrawsThem) {
+    if (!OSCULATE_HAS_GMSH) GTEST_SKIP() << "built without Gmsh's library";
+    const Outcome outcome = osculate({"mesh", bracket, "--picture", "faces.svg"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("1 solid, 14 faces, 33 edges; from [-0.03, -0.02, 0] to [0.03, 0.02, 0.0"),
+                                   HasSubstr("volume_1  'bracket'"), HasSubstr("face_14"), HasSubstr("Cylinder"),
+                                   HasSubstr("0.006")));
+    const std::string picture = content(folder / "faces.svg");
+    for (int face = 1; face <= 14; ++face) // from one side or the other
+        EXPECT_THAT(picture, HasSubstr(">" + std::to_string(face) + "</text>"));
+    std::ofstream(folder / "bracket.yaml") << content(scene_file("configs/tutorials/bracket.yaml"));
+    std::filesystem::create_directory(folder / "geometry");
+    std::filesystem::copy_file(bracket, folder / "geometry/bracket.step");
+    const Outcome edge = osculate(
+        {"check", "bracket.yaml", "--set", "sets.screw_1={body: bracket, nearest: {point: [-30 mm, 0 mm, 8 mm]}}"});
+    EXPECT_EQ(edge.code, 2);
+    EXPECT_THAT(edge.err, HasSubstr("sets.screw_1.nearest: expected a point away from edges of surfaces, found one as "
+                                    "near to face_1 and face_3"));
+    const Outcome block =
+        osculate({"check", press, "--set", "sets.bed={body: base, nearest: {point: [0.7 m, 0.6 m, -1 m]}}"});
+    EXPECT_EQ(block.code, 0) << block.err << "surfaces of generated meshes have names, too";
+}
+
+TEST_F(MeshCommand, DrawsNoMesh) {
+    const Outcome outcome = osculate({"mesh", "deck.inp", "--picture", "faces.svg"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("--picture: expected a geometry"));
+    EXPECT_EQ(osculate({"mesh", bracket, "--part", "volume_1"}).code, 2);
+    const Outcome nowhere = osculate({"mesh", bracket, "--picture", "nowhere/faces.svg"});
+    EXPECT_EQ(nowhere.code, 2);
+    EXPECT_THAT(nowhere.err, HasSubstr(OSCULATE_HAS_GMSH ? "a file that can be written" : "libgmsh-dev"));
 }
 
 } // namespace

@@ -127,6 +127,63 @@ TEST_F(Study, HasARowForEveryRun) {
                 AllOf(HasSubstr("weight_work.svg"), HasSubstr("weight_convergence.png")));
 }
 
+/// The drag of a sliding block is mu P, whatever the mesh: a curve for each, a map, and sensitivities of samples.
+TEST_F(Study, ShowsQuantitiesOverItsAxes) {
+    const std::string file = write(R"(scene: )" + press + R"(
+axes:
+  friction: {key: contact.joint.friction, values: [0.3, 0.1, 0.2]}
+  E: {key: bodies.cap.material.linear_elastic.E, values: [10 MPa, 40 MPa]}
+  cells: {key: bodies.cap.mesh.block.divisions, values: [[2, 2, 1], [3, 3, 1]]}
+quantities:
+  drag: {unit: N, history: pair.joint.friction}
+plots:
+  curves: {drag: {quantity: drag, over: friction}}
+  contours: {map: {quantity: drag, over: [friction, E], logarithmic: [y]}}
+)");
+    const Outcome outcome = study({file, "-o", "s", "--quiet"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::string curves = content(folder / "s/drag_curves.csv");
+    EXPECT_THAT(curves, HasSubstr("friction,\"E 10 MPa, cells 2-2-1\",\"E 10 MPa, cells 3-3-1\",\"E 40 MPa, cells "
+                                  "2-2-1\",\"E 40 MPa, cells 3-3-1\"\n"));
+    std::istringstream lines(curves.substr(curves.find('\n') + 1));
+    for (const double mu : {0.1, 0.2, 0.3}) { // in the order of their numbers, not of the file
+        std::string line;
+        std::getline(lines, line);
+        std::istringstream cells(line);
+        std::string cell;
+        std::getline(cells, cell, ',');
+        EXPECT_EQ(std::stod(cell), mu);
+        while (std::getline(cells, cell, ',')) EXPECT_NEAR(std::stod(cell), mu * 1e5, 1e-3 * mu * 1e5);
+    }
+    EXPECT_THAT(content(folder / "s/map_contours.csv"),
+                AllOf(HasSubstr("others,friction,E,drag\n"), HasSubstr("\ncells 2-2-1,0.1,10,")));
+    EXPECT_THAT(content(folder / "s/study.md"), AllOf(HasSubstr("| friction | E 10 MPa, cells 2-2-1 |"),
+                                                      HasSubstr("| E, MPa \\\\ friction | 0.1 | 0.2 | 0.3 |")));
+    EXPECT_TRUE(fs::exists(folder / "s/drag_curves.svg") || outcome.out.find("no plots") != std::string::npos);
+    EXPECT_THAT(outcome.out, Not(HasSubstr("gnuplot failed")));
+}
+
+TEST_F(Study, SamplesTellWhatAQuantityDependsOn) {
+    const std::string file = write(R"(scene: )" + press + R"(
+axes:
+  sample:
+    sample: sobol
+    runs: 8
+    variables:
+      mu: {key: contact.joint.friction, from: 0.1, to: 0.5}
+      E: {key: bodies.cap.material.linear_elastic.E, from: 10 MPa, to: 40 MPa, spacing: logarithmic}
+quantities:
+  drag: {unit: N, history: pair.joint.friction}
+  flat: {value: 7}
+)");
+    const Outcome outcome = study({file, "-o", "s", "--quiet"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::string report = content(folder / "s/study.md");
+    EXPECT_THAT(report, AllOf(HasSubstr("| sample | mu | E, MPa |"), HasSubstr("| flat | - | - | - | 8 |")));
+    EXPECT_TRUE(std::regex_search(report, std::regex(R"(\| drag \| (1\.000|0\.999) \(1\.000\) \|)"))) << report;
+    EXPECT_TRUE(fs::exists(folder / "s/drag_over_mu_curves.csv"));
+}
+
 TEST_F(Study, RunsAgainOnlyWhatChanged) {
     const std::string file = write(small_study);
     ASSERT_EQ(study({file, "-o", "s", "--quiet"}).code, 0);

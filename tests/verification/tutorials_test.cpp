@@ -82,6 +82,24 @@ TEST(Tutorials, PadOfAFileLeavesAPrint) {
     EXPECT_GT(force(3), 4 * force(0)) << "the contact grows with the depth";
 }
 
+/// The bracket is the same on both sides of its pin, its free mesh is not.
+TEST(Tutorials, BracketHangsOnBothScrewsAlike) {
+    if (!OSCULATE_HAS_GMSH) GTEST_SKIP() << "built without Gmsh's library";
+    support::SceneRun run;
+    support::run_scene(run, support::shipped("tutorials/bracket.yaml"));
+    const double pull = run.steps.back().pairs[0].on_slave.z();
+    EXPECT_GT(pull, 1e4);
+    const auto on = [&](const std::string& name) {
+        double sum = 0;
+        for (std::size_t i = 0; i < run.plan.constrained_sets.size(); ++i)
+            if (run.plan.model.sets[static_cast<std::size_t>(run.plan.constrained_sets[i])].name == name)
+                sum = run.steps.back().reactions[i].z();
+        return sum;
+    };
+    EXPECT_NEAR(on("screw_1") + on("screw_2"), -pull, 1e-8 * pull);
+    EXPECT_NEAR(on("screw_1"), on("screw_2"), 0.03 * pull / 2) << "elements of 4 mm along holes of 7";
+}
+
 TEST(Tutorials, StackStandsStillUnderItsWeights) {
     support::SceneRun run;
     support::run_scene(run, support::shipped("tutorials/stack.yaml"));

@@ -10,7 +10,7 @@
 
 namespace osculate::app {
 
-/// A report cannot be written, although the folder is that of a run.
+/// A report or a film cannot be written, although the folder is that of a run. what() is the whole message.
 class ReportFailure : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -5,6 +5,8 @@
 #include "osculate/mesh/mesh.hpp"
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace osculate::mesh {
 
@@ -41,5 +43,10 @@ struct Region {
 /// Exterior facets whose outward normal is within `angle` (rad) of a direction, and their nodes.
 [[nodiscard]] Region select_normal(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& direction,
                                    double angle);
+
+/// Named surfaces that are nearest to a point: one, or several whose facets are as near to within the tolerance, as at an edge
+/// between them. A surface within another one, such as a face of a group of faces, stands for both.
+/// @returns  names, ascending; none where the mesh names no surface
+[[nodiscard]] std::vector<std::string> nearest_surfaces(const Mesh& mesh, const Vec3& point);
 
 } // namespace osculate::mesh

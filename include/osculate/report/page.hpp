@@ -5,11 +5,18 @@
 #include "osculate/time/attempt.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace osculate::report {
+
+/// Of a page that is served, not a file: it follows its run.
+struct LiveOptions {
+    std::string token; ///< with which it ends the run
+    std::string stamp; ///< of the run's files as the page shows them
+};
 
 /// Data besides the files of the run.
 struct PageOptions {
@@ -19,6 +26,7 @@ struct PageOptions {
     std::string diary;                                          ///< summary of the attempts in words, lines
     std::vector<std::string> notes;                             ///< missing data, sentences
     FrameBudget frames;
+    std::optional<LiveOptions> live{};
     std::size_t largest_view = 12'000'000; ///< largest size of the three-dimensional view in the page, bytes
 };
 

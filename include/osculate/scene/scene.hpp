@@ -45,9 +45,16 @@ struct SelectNumbers {
     bool operator==(const SelectNumbers&) const = default;
 };
 
+/// The named surface of the mesh that is nearest to a point.
+struct SelectNearest {
+    Vec3 point = Vec3::Zero();
+    bool operator==(const SelectNearest&) const = default;
+};
+
 struct SetSpec {
     std::string body;
-    std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal, SelectNumbers> select;
+    std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal, SelectNumbers, SelectNearest>
+        select;
     bool operator==(const SetSpec&) const = default;
 };
 

@@ -5,6 +5,8 @@
 #include "osculate/scene/reader.hpp"
 #include "osculate/scene/scene.hpp"
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,11 +29,43 @@ struct AxisValue {
     std::string scene; ///< absolute path; empty: the study's scene
     std::vector<StudySetting> settings;
     Named<double> parameters;
+    std::optional<double> number{}; ///< where all values of the axis are numbers, with one unit or none
+};
+
+/// What a sampled axis varies, all at once from value to value: parameters of its values.
+struct SampledVariable {
+    std::string name, unit; ///< unit as written
+    bool logarithmic = false;
 };
 
 struct StudyAxis {
     std::string name;
     std::vector<AxisValue> values;
+    std::string unit{};                       ///< of AxisValue::number, as written
+    std::vector<SampledVariable> variables{}; ///< of a sampled axis
+};
+
+/// An axis as abscissa: the axis itself, or a parameter of its values.
+struct StudyCoordinate {
+    std::size_t axis = 0;
+    std::string name, unit{};
+    bool logarithmic = false;
+    bool sampled = false; ///< other parameters change with it
+};
+
+/// A quantity over an axis: one curve for every combination of the others.
+struct StudyCurves {
+    std::string name;
+    std::size_t quantity = 0;
+    StudyCoordinate over;
+    bool logarithmic = false; ///< the quantity's own axis
+};
+
+/// A quantity over two axes: one map for every combination of the others.
+struct StudyContours {
+    std::string name;
+    std::size_t quantity = 0;
+    std::array<StudyCoordinate, 2> over;
 };
 
 enum class RowSource { summary, contact, body, history };
@@ -74,6 +108,8 @@ struct Study {
     std::string abscissa_label;
     std::vector<std::size_t> colour_by; ///< axes
     std::vector<std::size_t> problems;  ///< axes whose values are different problems, not different methods for one
+    std::vector<StudyCurves> curves;
+    std::vector<StudyContours> contours;
     int repeats = 1;
 
     /// All combinations to run; the last axis changes fastest.
@@ -90,6 +126,8 @@ struct Study {
     [[nodiscard]] Combination problem_of(const Combination& combination) const;
     /// Parameters and <axis>_index of a combination, in the same order for every combination.
     [[nodiscard]] Named<double> parameters_of(const Combination& combination) const;
+    /// Where a value of an axis lies on the coordinate; none where it has a name only.
+    [[nodiscard]] std::optional<double> place_of(const StudyCoordinate& coordinate, std::size_t value) const;
 };
 
 /// Column names of a contact or a body quantity, and names of the numbers of every run.

@@ -4,11 +4,11 @@
 #include "app/command/init_command.hpp"
 #include "app/command/mesh_command.hpp"
 #include "app/command/mistyped.hpp"
+#include "app/command/result_commands.hpp"
 #include "app/command/run_script.hpp"
 #include "app/command/study_command.hpp"
 #include "app/command/surface_command.hpp"
 #include "app/run/distributed.hpp"
-#include "osculate/app/diary.hpp"
 #include "osculate/app/load.hpp"
 #include "osculate/app/processes.hpp"
 #include "osculate/app/report.hpp"
@@ -69,10 +69,6 @@ struct Arguments {
 std::string assignment(const std::string& text) {
     const std::size_t equals = text.find('=');
     return equals != std::string::npos && equals > 0 ? "" : "expected name=value, found '" + text + "'";
-}
-
-void print(const std::string& text) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
 void add_folder(CLI::App* command, Arguments& arguments, const std::string& what) {
@@ -172,15 +168,6 @@ void show_run(const output::Summary& summary, const Arguments& arguments) {
             "note: {} of these steps found no solution while contact followed its facets and edges; they were "
             "solved with normals and places of contact held, to 1 % of a facet\n",
             summary.steps.held_geometry));
-}
-
-void report_run(const std::string& folder) {
-    const WrittenReport report = write_report(folder);
-    constexpr double mega = 1e6;
-    print(fmt::format("{} ({:.1f} MB); pictures and plots in {}\n", report.page.string(),
-                      static_cast<double>(std::filesystem::file_size(report.page)) / mega,
-                      (report.page.parent_path() / "report").string()));
-    for (const std::string& note : report.notes) print("  " + note + "\n");
 }
 
 void run_study(Arguments arguments) {
@@ -292,13 +279,13 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
     init->add_option("-o,--output", arguments.output, "The new scene file [TUTORIAL.yaml]")->type_name("FILE");
     check->add_flag("--json", arguments.json, "Print JSON, for programs");
     CLI::App* study = add_study_command(program, arguments);
-    CLI::App* steps = program.add_subcommand("diary", "Show what happened to every attempted step of a run, and why");
-    steps->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
-    CLI::App* report_page =
-        program.add_subcommand("report", "Write report.html of a run: one file that shows it, to mail or to keep");
-    report_page->add_option("DIR", arguments.run_folder, "Folder of the run's files")->required();
-    CLI::App* mesh = program.add_subcommand("mesh", "Show what a mesh file holds: sizes, parts, surfaces, node sets");
-    mesh->add_option("FILE", arguments.mesh.file, "Mesh file")->required();
+    const std::vector<Command> results = add_result_commands(program);
+    CLI::App* mesh = program.add_subcommand(
+        "mesh", "Show what a mesh file or a geometry holds: sizes, parts, surfaces, node sets; solids, faces, edges");
+    mesh->add_option("FILE", arguments.mesh.file, "Mesh file, or geometry: .step .stp .iges .igs .brep")->required();
+    mesh->add_option("--picture", arguments.mesh.picture,
+                     "Of a geometry: write a picture with the numbers of its faces")
+        ->type_name("FILE.svg");
     mesh->add_option("--part", arguments.mesh.part, "Only this part")->type_name("NAME");
     mesh->add_option("--piece", arguments.mesh.piece, "Only this connected piece, counted from 1")
         ->type_name("N")
@@ -329,6 +316,11 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
         return program.exit(error) == 0 ? done : bad_scene; // --help and --version come this way too
     }
 
+    for (const Command& command : results)
+        if (*command.app) {
+            command.act();
+            return done;
+        }
     if (*run && !arguments.emit.empty()) {
         print(write_run_script({arguments.scene, arguments.changes, arguments.output, arguments.checkpoint_every,
                                 std::max(1, arguments.processes), arguments.threads},
@@ -369,10 +361,6 @@ ExitCode run_command(int argc, char** argv, std::optional<Distributed>& together
         print(schema(arguments.schema));
     } else if (*init) {
         print(arguments.list ? tutorial_list() : init_scene(arguments.scene, arguments.output));
-    } else if (*steps) {
-        print(diary(arguments.run_folder));
-    } else if (*report_page) {
-        report_run(arguments.run_folder);
     } else {
         Timings unused;
         const LoadedScene loaded = load(arguments.scene, arguments.overrides(), arguments.threads, unused);
@@ -397,7 +385,7 @@ int guarded_command(int argc, char** argv, std::optional<Distributed>& together,
         for (const Fault& fault : error.faults()) fmt::print(stderr, "{}\n", fault.message());
         return bad_scene;
     } catch (const ReportFailure& error) {
-        fmt::print(stderr, "the report cannot be written: {}\n", error.what());
+        fmt::print(stderr, "{}\n", error.what());
         return bad_scene;
     } catch (const Interrupted& error) {
         fmt::print(stderr, "{}\n", error.what());

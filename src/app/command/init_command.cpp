@@ -64,6 +64,12 @@ std::string subject(const fs::path& path) {
     return sentence;
 }
 
+std::string with(std::string text, const std::string& shipped, const std::string& file) {
+    for (std::size_t at = 0; (at = text.find(shipped, at)) != std::string::npos; at += file.size())
+        text.replace(at, shipped.size(), file);
+    return text;
+}
+
 /// A tutorial for a folder of its own: its schema is named by where that is, or not at all; it is run by its new name.
 std::string adapted(std::string text, const std::string& name, const std::string& file) {
     if (is_modeline(text)) {
@@ -72,10 +78,7 @@ std::string adapted(std::string text, const std::string& name, const std::string
         text.erase(0, end + 1);
         if (fs::exists(schema)) text.insert(0, "# yaml-language-server: $schema=" + schema.string() + "\n");
     }
-    const std::string shipped = "configs/tutorials/" + name + ".yaml";
-    for (std::size_t at = 0; (at = text.find(shipped, at)) != std::string::npos; at += file.size())
-        text.replace(at, shipped.size(), file);
-    return text;
+    return with(std::move(text), "configs/tutorials/" + name + ".yaml", file);
 }
 
 void copy(const std::string& text, const fs::path& to) {
@@ -107,11 +110,19 @@ std::string init_scene(const std::string& name, const std::string& file) {
     const fs::path from = folder() / (name + ".yaml"), to = file.empty() ? name + ".yaml" : file;
     std::map<fs::path, fs::path> meshes; // copy -> source; bodies may share one
     for (const auto& [body, spec] : scene::read_scene(from.string()).bodies)
-        if (const auto* mesh = std::get_if<scene::FileMesh>(&spec.mesh.source))
-            meshes.emplace(to.parent_path() / fs::relative(mesh->path, folder()), mesh->path);
+        std::visit(
+            [&](const auto& source) {
+                if constexpr (requires { source.path; })
+                    meshes.emplace(to.parent_path() / fs::relative(source.path, folder()), source.path);
+            },
+            spec.mesh.source);
     for (const auto& [mesh, source] : meshes)
         if (fs::exists(mesh)) refuse(mesh.string(), "a mesh that is not there yet: nothing is overwritten", "a file");
-    copy(adapted(file_content(from), name, to.string()), to);
+    std::string adjusted = adapted(file_content(from), name, to.string());
+    for (const auto& [mesh, source] : meshes)
+        adjusted =
+            with(std::move(adjusted), "configs/tutorials/" + fs::relative(source, folder()).string(), mesh.string());
+    copy(adjusted, to);
     std::string text = fmt::format("{} written", to.string());
     for (const auto& [mesh, source] : meshes) {
         copy(file_content(source), mesh);

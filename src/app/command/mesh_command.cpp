@@ -1,18 +1,22 @@
 #include "app/command/mesh_command.hpp"
 
+#include "app/command/geometry_command.hpp"
 #include "app/fault.hpp"
 #include "app/plan/mesh_share.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
+#include "osculate/mesh/cad_listing.hpp"
 #include "osculate/mesh/mesh_error.hpp"
 
 #include <fmt/format.h>
 #include <iterator>
 
 namespace osculate::app {
-namespace {} // namespace
 
 std::string describe_mesh(const MeshCommand& command) {
     try {
+        if (mesh::is_cad(command.file)) return describe_geometry(command);
+        if (!command.picture.empty())
+            throw SceneError({fault("--picture", "a geometry: .step .stp .iges .igs .brep", "'" + command.file + "'")});
         const mesh::RawMesh raw = mesh::read_mesh_file(command.file);
         std::vector<std::string> notes;
         const mesh::Mesh m = mesh::make_mesh(raw, {command.part, command.piece, repairs_of(command.repair)}, &notes);

@@ -13,8 +13,10 @@ struct MeshCommand {
     std::string file, part;
     int piece = 0;
     std::vector<std::string> repair; ///< words of scenes
+    std::string picture;             ///< SVG of a geometry; empty: none
 };
 
+/// Of geometry solids, faces and edges; of a mesh:
 /// Sizes, parts, surfaces and node sets of a file's mesh, or of a part of it, and what was mended.
 /// Throws SceneError with all of its faults.
 [[nodiscard]] std::string describe_mesh(const MeshCommand& command);

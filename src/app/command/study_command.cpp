@@ -1,6 +1,7 @@
 #include "app/command/study_command.hpp"
 
 #include "app/study/run_folder.hpp"
+#include "app/study/study_curves.hpp"
 #include "app/study/study_emit.hpp"
 #include "app/study/study_files.hpp"
 #include "app/study/study_runner.hpp"
@@ -72,6 +73,7 @@ std::vector<std::string> files_of(const scene::Study& study, const std::vector<S
     for (const scene::StudyQuantity& q : study.quantities)
         for (const char* plot : {"_work", "_convergence"})
             for (const char* ending : {".svg", ".png"}) names.push_back(q.name + plot + ending);
+    for (std::string& file : curve_files(study)) names.push_back(std::move(file));
     for (const StudyCase& c : cases) {
         const std::string run = "runs/" + c.id + "/";
         for (const char* file : {record_file, messages_file, exit_code_file}) names.push_back(run + file);
@@ -115,6 +117,7 @@ std::string run_study(const std::string& path, const StudyOptions& options) {
         run_cases(cases, run, update);
     }
     write_study_report(study, cases, folder, command_of(path, options));
+    write_curve_tables(study, cases, folder);
     const std::string plots = write_study_plots(study, cases, folder);
 
     std::string text = fmt::format("{}: {} of {} runs done", study.name, count(cases, "done"), cases.size());

@@ -179,6 +179,19 @@ mesh::Region select(Draft& draft, const std::string& set_name, const std::string
     return {};
 }
 
+/// The named surface nearest to a point; a fault where the mesh names none, or two are as near.
+mesh::Region select(Draft& draft, const std::string& set_name, const std::string& body, const scene::SelectNearest& s,
+                    const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
+    const std::vector<std::string> nearest = mesh::nearest_surfaces(m, s.point - draft.plan.model.origin);
+    if (nearest.size() == 1) return *mesh::select_named(m, exterior, nearest.front());
+    draft.faults.push_back(
+        fault("sets." + set_name + ".nearest",
+              nearest.empty() ? "a body whose mesh names surfaces" : "a point away from edges of surfaces",
+              nearest.empty() ? "body '" + body + "', whose mesh names none"
+                              : fmt::format("one as near to {}", fmt::join(nearest, " and "))));
+    return {};
+}
+
 /// Nodes by their numbers; one fault where any number is of none.
 mesh::Region select(Draft& draft, const std::string& set_name, const std::string& body, const scene::SelectNumbers& s,
                     const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
@@ -305,6 +318,9 @@ void add_sets(Draft& draft) {
         const mesh::Region region = std::visit(
             Overloaded{
                 [&, &name = name, &spec = spec](const scene::SelectNamed& s) {
+                    return select(draft, name, spec.body, s, m, exterior);
+                },
+                [&, &name = name, &spec = spec](const scene::SelectNearest& s) {
                     return select(draft, name, spec.body, s, m, exterior);
                 },
                 [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point - o, s.normal); },

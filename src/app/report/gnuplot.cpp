@@ -1,12 +1,10 @@
 #include "app/report/gnuplot.hpp"
 
+#include "app/report/external_program.hpp"
 #include "osculate/core/printable.hpp"
 
-#include <cerrno>
-#include <fcntl.h>
+#include <cmath>
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace osculate::app {
 
@@ -28,20 +26,26 @@ std::string gnuplot_text(std::string_view text) {
     return result + "\"";
 }
 
+std::string gnuplot_log_tics(double least, double largest) {
+    constexpr double few_decades = 100;
+    if (largest > few_decades * least) return "autofreq";
+    std::string list;
+    for (int decade = static_cast<int>(std::floor(std::log10(least))) - 1; std::pow(10, decade) < 2 * largest; ++decade)
+        for (const int digit : {1, 2, 3, 5, 7}) {
+            const double at = digit * std::pow(10, decade);
+            if (at > least / 2 && at < 2 * largest)
+                list += fmt::format("{}'{:.3g}' {:.6g}", list.empty() ? "" : ", ", at, at);
+        }
+    return "(" + list + ")";
+}
+
 Gnuplot run_gnuplot(const std::filesystem::path& folder, const std::string& script, bool quiet) {
-    constexpr int not_found = 127, not_there = 126; // as shells have it
-    const pid_t child = fork();
-    if (child < 0) return Gnuplot::failed;
-    if (child == 0) {
-        if (chdir(folder.c_str()) != 0) _exit(not_there);
-        if (const int nowhere = quiet ? open("/dev/null", O_WRONLY) : -1; nowhere >= 0) dup2(nowhere, STDERR_FILENO);
-        execlp("gnuplot", "gnuplot", script.c_str(), static_cast<char*>(nullptr));
-        _exit(errno == ENOENT ? not_found : not_there);
+    switch (run_external(folder, {"gnuplot", script}, quiet)) {
+    case External::done: return Gnuplot::drawn;
+    case External::missing: return Gnuplot::missing;
+    case External::failed: break;
     }
-    int status = 0;
-    if (waitpid(child, &status, 0) != child || !WIFEXITED(status)) return Gnuplot::failed;
-    if (WEXITSTATUS(status) == not_found) return Gnuplot::missing;
-    return WEXITSTATUS(status) == 0 ? Gnuplot::drawn : Gnuplot::failed;
+    return Gnuplot::failed;
 }
 
 } // namespace osculate::app

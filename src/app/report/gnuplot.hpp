@@ -16,6 +16,9 @@ inline constexpr std::array gnuplot_colours{"#d55e00", "#0072b2", "#111111", "#0
 /// is the text, byte for byte, with a space for every control character.
 [[nodiscard]] std::string gnuplot_text(std::string_view text);
 
+/// Places of tics of a logarithmic axis, as gnuplot takes them: its own where there are decades enough, else "('0.2' 0.2, '0.5' 0.5)".
+[[nodiscard]] std::string gnuplot_log_tics(double least, double largest);
+
 enum class Gnuplot { drawn, missing, failed };
 
 /// Runs gnuplot on a script in its folder and waits for it. @param quiet  its warnings are of no concern

@@ -1,5 +1,6 @@
 #include "osculate/app/run_report.hpp"
 
+#include "app/report/run_page.hpp"
 #include "app/report/run_report_plots.hpp"
 #include "osculate/app/diary.hpp"
 #include "osculate/app/version.hpp"
@@ -13,21 +14,6 @@ namespace osculate::app {
 namespace fs = std::filesystem;
 
 namespace {
-
-void check_folder(const fs::path& folder) {
-    Fault fault;
-    fault.file = folder.string();
-    fault.expected = "the folder of a run";
-    std::error_code none;
-    if (!fs::is_directory(folder, none))
-        fault.found = fs::exists(folder, none) ? "a file" : "nothing of that name";
-    else if (!fs::exists(folder / "summary.json") && !fs::exists(folder / "scene.yaml")) {
-        fault.expected += ", which holds summary.json and scene.yaml";
-        fault.found = "neither of them in it";
-    } else
-        return;
-    throw SceneError({fault});
-}
 
 /// Whole or not at all: the file of before stays until its place is taken.
 void write_whole(const fs::path& path, const std::string& content) {
@@ -60,13 +46,34 @@ report::PageOptions options_for(const fs::path& folder) {
 
 } // namespace
 
+void check_run_folder(const fs::path& folder) {
+    Fault fault;
+    fault.file = folder.string();
+    fault.expected = "the folder of a run";
+    std::error_code none;
+    if (!fs::is_directory(folder, none))
+        fault.found = fs::exists(folder, none) ? "a file" : "nothing of that name";
+    else if (!fs::exists(folder / "summary.json") && !fs::exists(folder / "scene.yaml")) {
+        fault.expected += ", which holds summary.json and scene.yaml";
+        fault.found = "neither of them in it";
+    } else
+        return;
+    throw SceneError({fault});
+}
+
+report::Page live_page(const fs::path& run_folder, const report::LiveOptions& live) {
+    report::PageOptions options = options_for(run_folder);
+    options.live = live;
+    return report::make_page(run_folder, options);
+}
+
 WrittenReport write_report(const fs::path& run_folder) {
-    check_folder(run_folder);
+    check_run_folder(run_folder);
     try {
         output::OutputFolder run(run_folder, output::OutputFolder::Entry::beside);
         return write_report(run);
     } catch (const RunFailure& error) {
-        throw ReportFailure(error.what());
+        throw ReportFailure(std::string("the report cannot be written: ") + error.what());
     }
 }
 
@@ -84,7 +91,7 @@ WrittenReport write_report(output::OutputFolder& run) {
     } catch (const SceneError&) {
         throw;
     } catch (const std::runtime_error& error) { // fs::filesystem_error among them
-        throw ReportFailure(error.what());
+        throw ReportFailure(std::string("the report cannot be written: ") + error.what());
     }
 }
 

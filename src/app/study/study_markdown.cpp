@@ -1,3 +1,4 @@
+#include "app/study/study_curves.hpp"
 #include "app/study/study_files.hpp"
 #include "app/study/study_series.hpp"
 
@@ -54,13 +55,22 @@ std::string header(const Words& cells) {
 
 Words axis_names(const scene::Study& study) {
     Words names;
-    for (const scene::StudyAxis& axis : study.axes) names.push_back(axis.name);
+    for (const scene::StudyAxis& axis : study.axes) {
+        names.push_back(axis.name);
+        for (const scene::SampledVariable& v : axis.variables)
+            names.push_back(v.unit.empty() ? v.name : v.name + ", " + v.unit);
+    }
     return names;
 }
 
 Words axis_values(const scene::Study& study, const StudyCase& c) {
     Words names;
-    for (std::size_t a = 0; a < study.axes.size(); ++a) names.push_back(study.axes[a].values[c.combination[a]].name);
+    for (std::size_t a = 0; a < study.axes.size(); ++a) {
+        const scene::AxisValue& value = study.axes[a].values[c.combination[a]];
+        names.push_back(value.name);
+        for (const scene::SampledVariable& v : study.axes[a].variables)
+            names.push_back(number(*scene::find(value.parameters, v.name)));
+    }
     return names;
 }
 
@@ -260,9 +270,10 @@ void write_study_report(const scene::Study& study, const std::vector<StudyCase>&
     text += "Regenerate with `" + command + "`.\n\n";
     if (std::ranges::any_of(study.quantities, &scene::StudyQuantity::has_error)) {
         for (std::size_t k = 0; k < study.quantities.size(); ++k) text += quantity_section(study, cases, series, k);
+        text += curve_sections(study, cases);
         text += "## Runs\n\n" + run_table(study, cases) + "\n";
     } else {
-        text += tally(cases) + "\n" + value_matrix(study, cases) + "\n";
+        text += tally(cases) + "\n" + value_matrix(study, cases) + "\n" + curve_sections(study, cases);
     }
     std::size_t repeats = 0;
     for (const StudyCase& c : cases) repeats = std::max(repeats, c.record.repeats.size());

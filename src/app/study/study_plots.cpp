@@ -1,4 +1,5 @@
 #include "app/report/gnuplot.hpp"
+#include "app/study/study_curves.hpp"
 #include "app/study/study_files.hpp"
 #include "app/study/study_series.hpp"
 
@@ -107,20 +108,7 @@ private:
             constexpr double air = 1.25;
             return fmt::format("[{:.6g}:{:.6g}]", least / air, largest * air);
         }
-        /// Where decades are too far apart: "(0.2, 0.5, 1)".
-        [[nodiscard]] std::string tics() const {
-            constexpr double few_decades = 100;
-            if (largest > few_decades * least) return "autofreq";
-            std::string list;
-            for (int decade = static_cast<int>(std::floor(std::log10(least))) - 1; std::pow(10, decade) < 2 * largest;
-                 ++decade)
-                for (const int digit : {1, 2, 3, 5, 7}) {
-                    const double at = digit * std::pow(10, decade);
-                    if (at > least / 2 && at < 2 * largest)
-                        list += fmt::format("{}'{:.3g}' {:.6g}", list.empty() ? "" : ", ", at, at);
-                }
-            return "(" + list + ")";
-        }
+        [[nodiscard]] std::string tics() const { return gnuplot_log_tics(least, largest); }
     };
 
     std::string name_, data_, lines_;
@@ -154,6 +142,7 @@ std::string write_study_plots(const scene::Study& study, const std::vector<Study
     std::string plots;
     for (std::size_t k = 0; k < study.quantities.size(); ++k)
         if (study.quantities[k].has_error() && study.quantities[k].plot) plots += plots_of(study, cases, series, k);
+    plots += curve_plots(study, cases);
     if (plots.empty()) return "nothing to plot";
     {
         std::ofstream file(folder / "study.gp", std::ios::binary);

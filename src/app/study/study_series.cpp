@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 
 namespace osculate::app {
 
 namespace {
 
-/// "blend", "30 steps" for a value that is a number alone.
+/// "blend", "steps 30" for a value that is a number alone, "E 30 MPa" for one with a unit.
 std::string value_text(const scene::StudyAxis& axis, std::size_t value) {
     const std::string& name = axis.values[value].name;
+    if (axis.values[value].number && !axis.unit.empty())
+        return fmt::format("{} {} {}", axis.name, *axis.values[value].number, axis.unit);
     const bool number = name.find_first_not_of("0123456789.eE+-") == std::string::npos;
     return number ? axis.name + " " + name : name;
 }
@@ -24,22 +27,31 @@ std::string default_abscissa(const scene::Study& study) {
 
 } // namespace
 
+std::string name_of_others(const scene::Study& study, const scene::Combination& combination,
+                           const std::vector<std::size_t>& without) {
+    std::string name;
+    for (std::size_t a = 0; a < study.axes.size(); ++a)
+        if (std::ranges::count(without, a) == 0)
+            name += (name.empty() ? "" : ", ") + value_text(study.axes[a], combination[a]);
+    return name;
+}
+
 std::vector<StudySeries> make_series(const scene::Study& study, const std::vector<StudyCase>& cases) {
     std::vector<StudySeries> all;
     std::map<scene::Combination, std::size_t> known;
     std::map<scene::Combination, int> colours, styles;
     for (const StudyCase& c : cases) {
         scene::Combination key, colour, style;
-        std::string name;
         for (std::size_t a = 0; a < study.axes.size(); ++a) {
             if (static_cast<int>(a) == study.refine) continue;
             key.push_back(c.combination[a]);
             (std::ranges::count(study.colour_by, a) > 0 ? colour : style).push_back(c.combination[a]);
-            name += (name.empty() ? "" : ", ") + value_text(study.axes[a], c.combination[a]);
         }
         const auto [at, fresh] = known.emplace(key, all.size());
         if (fresh) {
             const int next_colour = static_cast<int>(colours.size()), next_style = static_cast<int>(styles.size());
+            const std::vector<std::size_t> refined(study.refine >= 0 ? 1 : 0, static_cast<std::size_t>(study.refine));
+            const std::string name = name_of_others(study, c.combination, refined);
             all.push_back({name.empty() ? study.name : name,
                            {},
                            colours.emplace(colour, next_colour).first->second,

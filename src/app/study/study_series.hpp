@@ -18,6 +18,10 @@ struct StudySeries {
     scene::Combination problem{};        ///< values of the study's `problems`
 };
 
+/// Names of the values of all axes but some: "blend, steps 30".
+[[nodiscard]] std::string name_of_others(const scene::Study& study, const scene::Combination& combination,
+                                         const std::vector<std::size_t>& without);
+
 [[nodiscard]] std::vector<StudySeries> make_series(const scene::Study& study, const std::vector<StudyCase>& cases);
 
 /// Error of a quantity over CPU seconds.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace osculate::contact {
+namespace osculate::mesh {
 
 struct Triangle {
     Vec3 a, b, c;
@@ -61,4 +61,4 @@ struct Triangle {
     }
 };
 
-} // namespace osculate::contact
+} // namespace osculate::mesh

@@ -1,0 +1,69 @@
+#include "scene/study_reader.hpp"
+
+#include <algorithm>
+
+namespace osculate::scene {
+
+void StudyReader::quantity(StudyQuantity& q) {
+    reader_.text({.name = "unit", .meaning = ""}, q.unit);
+    q.label = q.name;
+    reader_.text({.name = "label", .meaning = ""}, q.label);
+    const Tree& here = *tree_.find("quantities")->find(q.name);
+    Words sources;
+    for (const char* source : {"contact", "body", "history"})
+        if (here.find(source)) sources.emplace_back(source);
+    if (sources.size() > 1)
+        reader_.fault(here, {.name = q.name}, "only one of contact, body, history", join(sources, " and "));
+    std::string pair, body;
+    reader_.text({.name = "contact"}, pair);
+    reader_.text({.name = "body"}, body);
+    StudyText row;
+    text("history", "a formula of the columns of history.csv", row);
+    q.source = !pair.empty()   ? RowSource::contact
+               : !body.empty() ? RowSource::body
+               : !row.empty()  ? RowSource::history
+                               : RowSource::summary;
+    q.part = pair + body;
+    text("value", "a formula", q.value);
+    text("of", "a formula of a row", q.of);
+    text("exact", "a formula of a row", q.exact);
+    text("where", "a formula of a row", q.where);
+    text("order_by", "a formula of a row", q.order_by);
+    text("scale", "a formula of numbers", q.scale);
+    text("reference", "a formula of numbers, or finest", q.reference);
+    static const Words reductions{"last", "first", "min",       "max",    "mean",
+                                  "rms",  "sum",   "amplitude", "ripple", "roughness"};
+    std::size_t reduction = 0;
+    reader_.word({.name = "reduce"}, reductions, reduction);
+    q.reduce = reductions[reduction];
+    static const Words norms{"rms", "max", "mean"};
+    word(reader_, {.name = "norm"}, norms, q.norm);
+    reader_.flag({.name = "area"}, q.area);
+    static const Words errors{"relative", "absolute"};
+    std::size_t error = 0;
+    reader_.word({.name = "error"}, errors, error);
+    q.relative = error == 0;
+    reader_.flag({.name = "plot"}, q.plot);
+
+    const Key key{.name = q.name};
+    if (q.source == RowSource::history && q.value.empty()) {
+        if (!q.of.empty()) reader_.fault(here, key, "history without of: it is the formula of a row", "both");
+        q.of = row;
+    } else if (q.source == RowSource::history && row.text != "all") {
+        reader_.fault(here, key, "history: all where value says what to do with the rows", "'" + row.text + "'");
+    }
+    if (q.value.empty() == q.of.empty())
+        reader_.fault(here, key, q.source == RowSource::summary ? "contact, body or history, or value" : "value or of",
+                      q.value.empty() ? "neither" : "both");
+    if (q.source == RowSource::summary && !q.of.empty())
+        reader_.fault(here, key, "contact or body, where of is", "neither");
+    if (!q.value.empty() && !q.exact.empty()) reader_.fault(here, key, "exact beside of or history", "beside value");
+    if (!q.exact.empty() && !q.reference.empty()) reader_.fault(here, key, "reference or exact", "both");
+    if (q.area && (q.source != RowSource::contact || q.exact.empty()))
+        reader_.fault(here, key, "area with the exact values of contact", "area");
+    const bool ordered = q.reduce == "first" || q.reduce == "last" || q.reduce == "roughness";
+    if (!q.of.empty() && q.exact.empty() && ordered && q.source != RowSource::history && q.order_by.empty())
+        reader_.fault(here, key, "order_by for " + q.reduce + " of nodes, or another reduce", "none");
+}
+
+} // namespace osculate::scene

@@ -163,6 +163,30 @@ plots:
     EXPECT_THAT(outcome.out, Not(HasSubstr("gnuplot failed")));
 }
 
+/// A run that is missing leaves a gap, a quantity that does not vary no warning, and one without values no dead link.
+TEST_F(Study, DrawsGapsWhereRunsHaveNoValue) {
+    const std::string file = write(R"(scene: )" + press + R"(
+axes:
+  friction: {key: contact.joint.friction, values: [0.1, 0.2, 0.3]}
+  E: {key: bodies.cap.material.linear_elastic.E, values: [10 MPa, 40 MPa]}
+leave_out: [{friction: 0.2, E: 10 MPa}]
+quantities:
+  drag: {unit: N, history: pair.joint.friction}
+  flat: {value: 7}
+  never: {value: 0 / 0}
+plots:
+  curves: {drag: {quantity: drag, over: friction}, flat: {quantity: flat, over: E}, never: {quantity: never, over: E}}
+  contours: {drag: {quantity: drag, over: [friction, E]}}
+)");
+    const Outcome outcome = study({file, "-o", "s", "--quiet"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "") << "warnings of gnuplot";
+    EXPECT_THAT(content(folder / "s/study.gp"), AllOf(HasSubstr("boxxyerror"), Not(HasSubstr("nan"))));
+    EXPECT_THAT(content(folder / "s/drag_curves.csv"), HasSubstr("\n0.2,,"));
+    EXPECT_THAT(content(folder / "s/study.md"),
+                AllOf(HasSubstr("(drag_contours.png)"), Not(HasSubstr("(never_curves.png)"))));
+}
+
 TEST_F(Study, SamplesTellWhatAQuantityDependsOn) {
     const std::string file = write(R"(scene: )" + press + R"(
 axes:

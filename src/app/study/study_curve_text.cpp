@@ -52,7 +52,8 @@ std::string curve_section(const scene::Study& study, const std::vector<StudyCase
         }
         text += "\n";
     }
-    return text + fmt::format("![{} over {}]({}_curves.png)\n\n", q.label, plot.over.name, plot.name);
+    const bool any = std::ranges::any_of(curves, [](const StudyCurve& curve) { return !curve.points.empty(); });
+    return any ? text + fmt::format("![{} over {}]({}_curves.png)\n\n", q.label, plot.over.name, plot.name) : text;
 }
 
 std::string contour_section(const scene::Study& study, const std::vector<StudyCase>& cases,
@@ -60,7 +61,10 @@ std::string contour_section(const scene::Study& study, const std::vector<StudyCa
     const scene::StudyQuantity& q = study.quantities[plot.quantity];
     const auto& [x, y] = plot.over;
     std::string text = fmt::format("## {} over {} and {}\n\n", q.label, x.name, y.name);
+    bool any = false;
     for (const StudyMap& map : make_maps(study, cases, plot)) {
+        for (const auto& row : map.values)
+            any = any || std::ranges::any_of(row, [](double value) { return !std::isnan(value); });
         if (!map.name.empty()) text += map.name + ":\n\n";
         text += fmt::format("| {} \\\\ {} |", plain(label_of(y)), plain(label_of(x)));
         for (const std::size_t c : map.columns) text += " " + place(study, x, c) + " |";
@@ -72,7 +76,8 @@ std::string contour_section(const scene::Study& study, const std::vector<StudyCa
         }
         text += "\n";
     }
-    return text + fmt::format("![{} over {} and {}]({}_contours.png)\n\n", q.label, x.name, y.name, plot.name);
+    return any ? text + fmt::format("![{} over {} and {}]({}_contours.png)\n\n", q.label, x.name, y.name, plot.name)
+               : text;
 }
 
 std::string sensitivity_section(const scene::Study& study, const std::vector<StudyCase>& cases, std::size_t axis) {

@@ -153,6 +153,8 @@ TEST_F(View, FollowsARunAndEndsItBetweenTwoSteps) {
     ASSERT_EQ(page.status, 200) << page.body;
     const json before = state(port);
     EXPECT_EQ(before["status"], "running");
+    if (content("/proc/locks").find("FLOCK") == std::string::npos)
+        GTEST_SKIP() << "this kernel does not say who holds which lock: a run cannot be ended from here";
     EXPECT_EQ(before["can_end"], true);
     json after = before;
     for (int i = 0; i < 200 && after["stamp"] == before["stamp"]; ++i) {
@@ -190,6 +192,7 @@ TEST_F(View, AnswersToItsOwnNameAlone) {
         << "the loopback has other addresses: not listened on";
     // what the kernel lists as listening on the port
     std::ifstream sockets("/proc/net/tcp");
+    if (!sockets) GTEST_SKIP() << "this kernel does not list sockets";
     char hex[8];
     std::snprintf(hex, sizeof hex, ":%04X", static_cast<unsigned>(port));
     int listening = 0;

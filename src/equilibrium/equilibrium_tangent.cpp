@@ -1,5 +1,6 @@
 #include "osculate/equilibrium/equilibrium_tangent.hpp"
 
+#include "osculate/linear/gathered.hpp"
 #include "osculate/model/nodal_unknowns.hpp"
 #include "osculate/model/rigid_motion.hpp"
 
@@ -80,7 +81,7 @@ void EquilibriumTangent::begin(double mass_factor, bool changed) {
     if (!changed) return;
     in_force_ = false;
     fold_stiffness();
-    if (matrix_) matrix_->stiffness_changed();
+    take_to_matrix();
     if (preconditioner_) preconditioner_->stiffness_changed();
 }
 
@@ -88,8 +89,22 @@ void EquilibriumTangent::stiffness_replaced() {
     in_force_ = wear().usable = false;
     fold_stiffness();
     const linear::BlockMatrix& K = stiffness();
-    if (matrix_) matrix_->use(K);
+    if (matrix_ && !whole_) matrix_->use(K);
+    if (whole_) take_to_matrix();
     if (preconditioner_) preconditioner_->use(K);
+}
+
+void EquilibriumTangent::take_to_matrix() {
+    if (whole_)
+        matrix_ = nullptr, whole_ = nullptr; // gathered again if it is needed again
+    else if (matrix_)
+        matrix_->stiffness_changed();
+}
+
+const linear::BlockMatrix& EquilibriumTangent::whole_stiffness() {
+    if (stiffness().share() == nullptr) return stiffness();
+    if (!whole_) whole_ = std::make_unique<linear::BlockMatrix>(linear::gathered(stiffness()));
+    return *whole_;
 }
 
 void EquilibriumTangent::use_pattern(std::vector<linear::Coupling> couplings) {
@@ -262,14 +277,13 @@ const solve::SparseMatrix& EquilibriumTangent::jacobian() {
         const ScopedTimer timer(timings_, Part::assembly);
         const bool contact = unknowns_.couplings() > 0;
         if (contact) cover_patterns();
+        if (stale_matrix_) take_to_matrix();
+        stale_matrix_ = false;
         if (!matrix_) {
-            matrix_ = std::make_unique<linear::SystemMatrix>(constraints_, stiffness(), couplings_);
+            matrix_ = std::make_unique<linear::SystemMatrix>(constraints_, whole_stiffness(), couplings_);
             if (may_buckle_) matrix_->expect_buckling();
             if (!bodies_.bodies().symmetric()) matrix_->expect_unsymmetric();
-        } else if (stale_matrix_) {
-            matrix_->stiffness_changed();
         }
-        stale_matrix_ = false;
         if (!contact) return matrix_->matrix(); // constant without nonlinear elements: factorised once
         matrix_->reset();
     }

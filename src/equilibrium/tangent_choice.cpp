@@ -106,7 +106,7 @@ TangentChoice choose_tangent(const model::Model& model, const model::ContactPair
     const bool contact = !pairs.empty();
     TangentChoice choice;
     choice.multigrid = goes_by_multigrid(model, asked, pays);
-    choice.factorisable = !choice.multigrid || (nodes_with_equations(model) <= most && !model.share);
+    choice.factorisable = !choice.multigrid || nodes_with_equations(model) <= most; // of processes, the first does it
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned =
         choice.multigrid ||

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <sys/ioctl.h>
 #include <unistd.h>
+#include <utility>
 
 namespace osculate::output {
 
@@ -24,12 +26,38 @@ std::string clock_text(double seconds) {
 
 } // namespace
 
-std::string progress_line(const ProgressStep& step, double start, double end, double elapsed) {
+Eta::Eta(std::vector<ProgressStage> stages) : stages_(std::move(stages)) {}
+
+double Eta::end() const {
+    double time = 0;
+    for (const ProgressStage& stage : stages_) time += stage.duration;
+    return time;
+}
+
+double Eta::planned_until(double time) const {
+    double steps = 0;
+    for (const ProgressStage& stage : stages_) {
+        steps += std::clamp(time / stage.duration, 0.0, 1.0) * stage.steps;
+        time -= stage.duration;
+    }
+    return steps;
+}
+
+double Eta::rest(double time, double elapsed) {
+    const double now = planned_until(time), all = planned_until(end());
+    const bool first = reached_.empty();
+    reached_.push_back({now, elapsed});
+    const double half = 0.5 * (reached_.front().steps + now);
+    const Reached& from = *std::prev(std::ranges::upper_bound(reached_, half, {}, &Reached::steps));
+    if (first || !(now > from.steps) || !(elapsed >= from.elapsed)) return now >= all ? 0 : std::nan("");
+    return (elapsed - from.elapsed) / (now - from.steps) * std::max(0.0, all - now);
+}
+
+std::string progress_line(const ProgressStep& step, double end, double rest) {
     std::string line = fmt::format("t {:.6g}/{:.6g} s, step {}, dt {:.3g} s, Newton {}, contacts {}", step.time, end,
                                    step.step, step.dt, step.iterations, step.contacts);
     constexpr double longest = 1e9; // s; beyond it, and at the very start, an estimate says nothing
-    const double share = step.time - start, rest = elapsed * (end - step.time); // over share
-    if (share > 0 && rest >= 0 && rest < longest * share) line += ", ETA " + clock_text(rest / share);
+    if (rest >= 0 && rest < longest) line += ", ETA " + clock_text(rest);
     return line;
 }
 
@@ -37,13 +65,13 @@ Progress::Style Progress::style_of(std::FILE* stream) {
     return isatty(fileno(stream)) == 1 ? Style::live : Style::plain;
 }
 
-Progress::Progress(double start, double end, Style style, std::FILE* stream)
-    : start_(start), end_(end), style_(style), stream_(stream) {}
+Progress::Progress(std::vector<ProgressStage> stages, Style style, std::FILE* stream)
+    : eta_(std::move(stages)), style_(style), stream_(stream) {}
 
 void Progress::update(const ProgressStep& step) {
     if (style_ == Style::quiet) return;
     const double elapsed = std::chrono::duration<double>(clock::now() - begun_).count();
-    show(progress_line(step, start_, end_, elapsed));
+    show(progress_line(step, eta_.end(), eta_.rest(step.time, elapsed)));
 }
 
 void Progress::show(std::string line) {

@@ -116,6 +116,17 @@ void describe(Visitor& v, Plot& plot) {
           [&](const std::string& name, Curve& curve) { v.group({.name = name}, [&] { describe(v, curve); }); });
 }
 
+void describe(Visitor& v, Derivative& derivative) {
+    v.text({.name = "key", .meaning = "Path of a number of the scene, as for --set.", .required = true},
+           derivative.key);
+    v.number({.name = "change",
+              .meaning =
+                  "Relative change of the number between whose two sides the derivative is a difference: its error "
+                  "is of the order of the square.",
+              .range = {.low = 1e-8, .high = 1e-2}},
+             derivative.change);
+}
+
 } // namespace
 
 void describe_output(Visitor& v, Output& output) {
@@ -156,6 +167,12 @@ void describe_output(Visitor& v, Output& output) {
          .meaning = "Curves drawn at the end of the run, into plots/NAME.{csv,svg,png}; beside those of the template.",
          .item = "plot"},
         output.plots, group);
+    named(v,
+          {.name = "derivatives",
+           .meaning = "Derivatives of history.csv and of the probes by numbers of the scene, into derivatives/NAME; "
+                      "`NAME: KEY` is short for `NAME: {key: KEY}`.",
+           .item = "derivative"},
+          output.derivatives, group);
     v.flag({.name = "paraview",
             .meaning = "Write show_in_paraview.py beside the series, which shows it.",
             .default_text = from_template},

@@ -80,6 +80,9 @@ void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
     if (Tree* bodies = scene.find("bodies"); bodies && bodies->kind == Tree::Kind::map)
         for (Tree& body : bodies->children)
             if (Tree* mesh = body.find("mesh"); mesh && mesh->kind == Tree::Kind::map) expand_mesh(*mesh);
+    if (Tree* output = scene.find("output"); output && output->kind == Tree::Kind::map)
+        if (Tree* derivatives = output->find("derivatives"); derivatives && derivatives->kind == Tree::Kind::map)
+            for (Tree& derivative : derivatives->children) make_map(derivative, "key");
     Tree* pairs = scene.find("contact");
     if (!pairs || pairs->kind != Tree::Kind::map) return;
     for (Tree& pair : pairs->children) {

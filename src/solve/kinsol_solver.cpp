@@ -2,6 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/timing.hpp"
+#include "osculate/solve/direct_on_first.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +48,7 @@ void say_nothing([[maybe_unused]] void* memory) {
 // Newton's linear systems are solved to a fraction of the residual that shrinks with it, so that convergence stays
 // quadratic, and never further than the nonlinear tolerance can tell.
 constexpr double forcing_slope = 0.1, least_forcing = 1e-8, most_forcing = 1e-3, tolerance_share = 0.1;
+constexpr double linear_tolerance = 1e-10; // of solve_linear()
 /// Failures of a fresh preconditioner in one solve after which it is not tried again there.
 constexpr int worth_trying = 2;
 } // namespace
@@ -140,20 +142,24 @@ struct KinsolSolver::Impl {
         });
     }
 
+    [[nodiscard]] std::unique_ptr<DirectSolver> made(std::unique_ptr<DirectSolver> solver) const {
+        return ranks != nullptr ? make_direct_on_first(std::move(solver), *ranks) : std::move(solver);
+    }
+
     /// False where A is singular.
     bool factorise(const SparseMatrix& A) {
         if (direct != nullptr && A.pattern == factored_pattern && A.revision == factored_revision) return true;
         const ScopedTimer timer(timings, Part::factor);
         if (direct == nullptr || A.symmetric_positive_definite != is_cholesky) {
             is_cholesky = A.symmetric_positive_definite;
-            direct = is_cholesky ? make_cholesky() : make_lu();
+            direct = made(is_cholesky ? make_cholesky() : make_lu());
         }
         factored_pattern = 0;
         FactorStatus status = direct->factorise(A);
         ++factorisations;
         if (status == FactorStatus::indefinite && A.may_turn_indefinite) {
             is_cholesky = false;
-            direct = make_lu();
+            direct = made(make_lu());
             status = direct->factorise(A);
             ++factorisations;
         }
@@ -183,6 +189,7 @@ struct KinsolSolver::Impl {
 
     /// How far a solution may be off, |b - J x|.
     [[nodiscard]] double allowed_error(N_Vector b) const {
+        if (linear_alone) return linear_tolerance * std::sqrt(N_VDotProd(b, b));
         const double norm = std::sqrt(N_VDotProd(b, b)) * residual_scale;
         const double forcing = std::clamp(forcing_slope * norm, least_forcing, most_forcing);
         return std::max(forcing * norm, tolerance_share * tolerance) / residual_scale;
@@ -259,6 +266,16 @@ struct KinsolSolver::Impl {
         return false;
     }
 
+    /// Forgets what was tried before: no result may depend on it.
+    void begin(NonlinearProblem& solved) {
+        problem = &solved;
+        stopped = singular = unsolved = not_finite = false;
+        preconditioner_failures = own_failures = 0;
+        if (Preconditioner* p = solved.preconditioner(); p != nullptr && !p->lasts()) p->wear() = {};
+        failing_equation = -1;
+        error = nullptr;
+    }
+
     /// KINSOL keeps counters and scalings between calls; a fresh memory block per solve keeps calls independent.
     void create(const KinsolOptions& options) {
         if (memory != nullptr) KINFree(&memory);
@@ -300,6 +317,7 @@ struct KinsolSolver::Impl {
     std::uint64_t factored_pattern = 0, factored_revision = 0;
     double residual_scale = 1, last_residual = 0;
     long factorisations = 0, gmres_iterations = 0;
+    bool linear_alone = false; ///< no equilibrium is sought
     bool stopped = false, singular = false, unsolved = false, not_finite = false;
     SparseIndex failing_equation = -1;
     std::exception_ptr error;
@@ -317,19 +335,37 @@ long KinsolSolver::gmres_iterations() const {
     return impl_->gmres_iterations;
 }
 
+bool KinsolSolver::linearise(NonlinearProblem& problem) {
+    Impl& s = *impl_;
+    s.begin(problem);
+    s.linear_alone = true;
+    if (s.size == 0) return true;
+    const bool done = s.setup() == 0;
+    if (s.error) std::rethrow_exception(s.error);
+    return done;
+}
+
+bool KinsolSolver::solve_linear(const Vector& b, Vector& x) {
+    Impl& s = *impl_;
+    require(b.size() == s.size && s.linear_alone, "KinsolSolver: nothing was linearised");
+    x = Vector::Zero(s.size);
+    if (s.size == 0 || b.isZero(0)) return true;
+    Vector right = b;
+    const VectorPtr bs(N_VMake_Serial(s.size, right.data(), s.context)),
+        xs(N_VMake_Serial(s.size, x.data(), s.context));
+    const bool done = s.linear_solve(bs.get(), xs.get()) == 0;
+    if (s.error) std::rethrow_exception(s.error);
+    return done;
+}
+
 KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, const KinsolOptions& options) {
     Impl& s = *impl_;
     require(problem.size() == s.size && unknowns.size() == s.size && options.unknown_scale.size() == s.size,
             "KinsolSolver: sizes differ");
-    s.problem = &problem;
+    s.begin(problem);
+    s.linear_alone = false;
     s.residual_scale = options.residual_scale;
     s.tolerance = options.tolerance;
-    s.stopped = s.singular = s.unsolved = s.not_finite = false;
-    s.preconditioner_failures = s.own_failures = 0;
-    // no result may depend on what was tried before this call
-    if (Preconditioner* p = problem.preconditioner(); p != nullptr && !p->lasts()) p->wear() = {};
-    s.failing_equation = -1;
-    s.error = nullptr;
     if (s.size == 0) { // everything is held; KINSOL looks at the first entry of every vector
         KinsolResult nothing;
         Vector none;

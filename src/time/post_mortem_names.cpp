@@ -21,7 +21,7 @@ constexpr std::array<CauseWords, 17> causes{{
     {Cause::singular_tangent, "singular_tangent",
      "the tangent has no inverse: the equations contradict or repeat each other"},
     {Cause::linear_system, "linear_system",
-     "multigrid does not solve a linear system, and it is too large to be factorised, or shared among processes"},
+     "multigrid does not solve a linear system, and it is too large to be factorised"},
     {Cause::diverged, "diverged",
      "the iterates run away: there is no equilibrium near the last one, or the step is too long"},
     {Cause::status_cycle, "status_cycle", "contact statuses repeat in a cycle"},

@@ -2,6 +2,7 @@
 /// What all stages of a run have in common.
 
 #include "osculate/time/audit.hpp"
+#include "osculate/time/perturbed_run.hpp"
 #include "osculate/time/stepper.hpp"
 
 #include <memory>
@@ -16,6 +17,7 @@ struct RunContext {
     double characteristic_length = 1;       ///< m
     double largest_stiffness = 0;           ///< model::largest_stiffness
     std::unique_ptr<Audit> audit{};         ///< null: not wanted
+    std::vector<PerturbedPair*> beside{};   ///< runs that follow this one
     std::vector<double> shares_of_volume{}; ///< of volume_shares()
 
     /// model::volume_shares, made when first asked for.

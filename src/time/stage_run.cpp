@@ -3,6 +3,7 @@
 #include "osculate/model/general_contact.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
+#include "time/stage_state.hpp"
 #include "time/step_start.hpp"
 
 #include <algorithm>
@@ -25,27 +26,6 @@ equilibrium::TangentChoice tangent_choice(const model::Model& model, const Stage
                                        stage.dynamics.has_value(), !stage.follower_pressures.empty(),
                                        state.scope.get());
 }
-/// Gives the state the pairs of a stage: what is not in force touches nothing.
-const model::State& change_pairs(RunContext& context, const Stage& stage, model::State& state) {
-    const auto bodies_of = [&](const model::ContactPair& pair) {
-        const Index a = model::body_index(context.model, pair.slaves().node.front()),
-                    b = model::body_index(context.model, pair.master_nodes().front());
-        return std::pair(std::min(a, b), std::max(a, b));
-    };
-    std::set<std::pair<Index, Index>> apart, together;
-    for (std::size_t p = 0; p < context.model.pairs.size(); ++p) {
-        model::ContactHistory& history = state.contact[p];
-        history.pair = stage.pairs.empty() ? context.model.pairs[p] : stage.pairs[p];
-        (history.pair->options().in_force ? together : apart).insert(bodies_of(*history.pair));
-        if (history.pair->options().in_force) continue;
-        auto master = history.master;
-        history = opened(history.pair);
-        history.master = std::move(master);
-    }
-    for (const auto& bodies : together) apart.erase(bodies);
-    if (context.audit) context.audit->pass_over(std::move(apart));
-    return state;
-}
 } // namespace
 
 Machinery::Machinery(RunContext& context, const Stage& stage, const equilibrium::Dynamics* dynamics,
@@ -63,27 +43,17 @@ Machinery::Machinery(RunContext& context, const Stage& stage, const equilibrium:
 StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, StepObserver& observer,
                    const Checkpoint* from)
     : context_(context), stage_(stage), progress_(progress), observer_(observer),
-      constraints_(context.model.nodes(), stage.constraints, model::dependent_nodes(context.model),
-                   model::led_directions(context.model)),
-      dynamics_(stage.dynamics), machinery_(std::make_unique<Machinery>(context, stage, dynamics(), constraints_,
-                                                                        change_pairs(context, stage, progress.state))) {
+      constraints_(constraints_of(context.model, stage)), dynamics_(stage.dynamics),
+      machinery_(std::make_unique<Machinery>(context, stage, dynamics(), constraints_,
+                                             change_pairs(context, stage, progress.state))) {
     const model::Model& model = context.model;
-    if (from == nullptr) {
-        progress_.displacement_start.reset(model.X.size());
-        for (Index node = 0; node < model.nodes(); ++node)
-            progress_.displacement_start[node] = constraints_.to_local(node, progress_.state.u[node]);
-        progress_.stage_start = progress_.state.time;
-        progress_.reached = 0;
-        progress_.impact = false;
-        progress_.dt = stage.duration / stage.steps; // not end - begin: round-off would make every step another one
-    }
-    if (dynamics_ && progress_.state.v.empty())
-        start_motion(
-            context_, stage, constraints_, load_at(model, stage, constraints_, progress_.displacement_start, 0),
-            machinery_->choice.multigrid ? MassSolution::by_conjugate_gradients : MassSolution::by_factors, progress_);
-    else if (dynamics_ && from == nullptr)
-        revalue_interfaces(progress_.ledger, model, progress_.state);
+    if (from == nullptr) begin_stage(stage, constraints_, progress_);
+    if (dynamics_ && (from == nullptr || progress_.state.v.empty()))
+        begin_dynamics(context_, stage, constraints_,
+                       machinery_->choice.multigrid ? MassSolution::by_conjugate_gradients : MassSolution::by_factors,
+                       progress_);
     if (dynamics_) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);
+    for (PerturbedPair* runs : context_.beside) runs->begin_stage(progress_.stage);
     targets_ = times_to_hit(stage, progress_.stage_start);
     if (context.model.general && !progress_.state.scope) {
         const double speed =
@@ -115,26 +85,6 @@ void StageRun::run() {
     }
 }
 
-equilibrium::StepLoad StageRun::mean_load(const StepAttempt& attempt, Field& u) const {
-    const model::State& state = progress_.state;
-    const double start = progress_.stage_start;
-    equilibrium::StepLoad load =
-        load_at(context_.model, stage_, constraints_, progress_.displacement_start, attempt.time - start);
-    if (!dynamics_) {
-        if (context_.options.predictor) predict(context_.model, constraints_, load.prescribed, u);
-        return load;
-    }
-    const equilibrium::StepLoad before =
-        load_at(context_.model, stage_, constraints_, progress_.displacement_start, state.time - start);
-    const double alpha = dynamics_->integrator.alpha_f;
-    for (std::size_t i = 0; i < u.size(); ++i) {
-        load.force[i] = (1 - alpha) * load.force[i] + alpha * before.force[i];
-        u[i] = dynamics_->integrator.predictor(state.u[i], state.v[i], state.a[i], attempt.dt);
-    }
-    for (std::size_t p = 0; p < load.pressures.size(); ++p) load.pressures[p].start = before.pressures[p].end;
-    return load;
-}
-
 StepAttempt StageRun::prepare() {
     const model::State& state = progress_.state;
     const StepperOptions& options = context_.options;
@@ -148,7 +98,12 @@ StepAttempt StageRun::prepare() {
     if (dynamics_)
         dynamics_->integrator = progress_.impact ? equilibrium::backward_euler() : stage_.dynamics->integrator;
     Field u = state.u;
-    equilibrium::StepLoad load = mean_load(attempt, u);
+    equilibrium::StepLoad load = mean_load(context_.model, stage_, constraints_, dynamics(), progress_, attempt.time);
+    if (dynamics_)
+        for (std::size_t i = 0; i < u.size(); ++i)
+            u[i] = dynamics_->integrator.predictor(state.u[i], state.v[i], state.a[i], attempt.dt);
+    else if (options.predictor)
+        predict(context_.model, constraints_, load.prescribed, u);
     if (dynamics_) attempt.force = load.force;
     if (bounded() && !machinery_->located) machinery_->collisions.begin_step(state);
     machinery_->located = true;
@@ -314,6 +269,7 @@ void StageRun::commit(StepAttempt& attempt) {
         throw RunFailure(
             "the processes do not hold the same displacements any more; do they run on processors of one kind?");
     equilibrium().commit();
+    if (!context_.beside.empty()) lead(attempt);
     const double moved = context_.model.general ? largest_distance(attempt.next.u, progress_.state.u).value : 0;
     attempt.next.scope = progress_.state.scope;
     progress_.state = attempt.next; // in place: its arrays stay where they are for whoever looks at them
@@ -324,7 +280,7 @@ void StageRun::commit(StepAttempt& attempt) {
     observer_.attempted(attempts_.back(), equilibrium().records());
     observer_.accepted({progress_.state, equilibrium(), attempt.dt, attempt.iterations, stage_,
                         dynamics_ ? &progress_.ledger : nullptr, attempt.audit});
-    refit_patches();
+    refit_patches(context_.model, progress_);
     machinery_->located = false;
     if (const auto& general = context_.model.general) {
         const model::ContactScope& scope = *progress_.state.scope;
@@ -342,6 +298,16 @@ void StageRun::commit(StepAttempt& attempt) {
     progress_.dt = std::max(attempt.decision.dt, attempt.proposed);
     progress_.impact = attempt.decision.impact;
     observer_.between_steps([this] { return checkpoint(); });
+}
+
+void StageRun::lead(const StepAttempt& attempt) {
+    solve::KinsolSolver& solver = machinery_->solver;
+    const bool regular = solver.linearise(equilibrium());
+    const auto inverse = [&](const Vector& F, Vector& dz) { return regular && solver.solve_linear(F, dz); };
+    const BesideStep step{attempt.z,  equilibrium().statuses(), attempt.time,
+                          attempt.dt, progress_.impact,         equilibrium().reference_force()};
+    for (PerturbedPair* runs : context_.beside) runs->follow(step, inverse);
+    equilibrium().rollback(); // what this needed leaves no trace in the run
 }
 
 void StageRun::reject(const StepAttempt& attempt) {
@@ -368,20 +334,6 @@ Checkpoint StageRun::checkpoint() const {
     for (const model::ContactHistory& history : progress_.state.contact)
         now.patches.push_back(history.master->refitted_patches());
     return now;
-}
-
-void StageRun::refit_patches() {
-    const model::Model& model = context_.model;
-    Field x;
-    for (model::ContactHistory& history : progress_.state.contact) {
-        std::shared_ptr<const contact::MasterSurface>& master = history.master;
-        if (!master->refits()) continue;
-        if (x.empty()) x = sum(model.X, progress_.state.u);
-        const auto refitted = master->refitted(history.pair->vertices(x));
-        if (!refitted) continue;
-        progress_.counts.refreshed_patches += refitted->refits_done() - master->refits_done();
-        master = refitted;
-    }
 }
 
 void StageRun::install(std::vector<model::ContactHistory> contact, model::ContactScope scope) {

@@ -62,7 +62,6 @@ public:
 
 private:
     [[nodiscard]] StepAttempt prepare();
-    [[nodiscard]] equilibrium::StepLoad mean_load(const StepAttempt& attempt, Field& u) const;
     [[nodiscard]] bool wants_trial(const StepAttempt& attempt) const;
     /// With the statuses known at the start; its solution is where the equilibrium with contact starts from.
     void trial(StepAttempt& attempt);
@@ -71,12 +70,12 @@ private:
     void gather_dynamic_evidence(StepAttempt& attempt);
     [[nodiscard]] const equilibrium::Dynamics* dynamics() const { return dynamics_ ? &*dynamics_ : nullptr; }
     void commit(StepAttempt& attempt);
+    /// Takes the runs beside this one over an accepted step.
+    void lead(const StepAttempt& attempt);
     void reject(const StepAttempt& attempt);
     /// Its row of the diary.
     [[nodiscard]] Attempt row_of(const StepAttempt& attempt);
     [[nodiscard]] Checkpoint checkpoint() const;
-    /// Fits strongly bent patches of the accepted state's masters anew.
-    void refit_patches();
     /// Looks for the pairs of general contact anew, from the accepted state on.
     /// @param expected  largest motion of a node in the next step, m
     void find_pairs(double expected, std::vector<model::WatchedNode> watched = {});

@@ -4,15 +4,13 @@
 #include "osculate/time/post_mortem.hpp"
 #include "time/run_context.hpp"
 #include "time/stage_run.hpp"
+#include "time/stage_state.hpp"
 
 namespace osculate::time {
 
 Stepper::Stepper(const model::Model& model, std::vector<Stage> stages, StepperOptions options, Timings& timings)
     : stages_(std::move(stages)), context_(new RunContext{model, options, timings}) {
-    progress_.state.u.reset(model.X.size());
-    for (const auto& pair : model.pairs) progress_.state.contact.push_back(model::opened(pair));
-    progress_.state.material = model::initial_history(model);
-    progress_.state.rigid.resize(model.rigid.size());
+    progress_ = at_rest(model);
     Vec3 low = model.X[0], high = low;
     for (const Vec3& X : model.X) {
         low = low.cwiseMin(X);
@@ -48,6 +46,10 @@ void Stepper::run(StepObserver& observer) {
             throw;
         }
     }
+}
+
+void Stepper::lead(std::vector<PerturbedPair*> beside) {
+    context_->beside = std::move(beside);
 }
 
 void Stepper::resume(Checkpoint checkpoint) {

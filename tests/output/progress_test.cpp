@@ -1,6 +1,7 @@
 #include "osculate/output/progress.hpp"
 #include "output/temporary_folder.hpp"
 
+#include <cmath>
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <memory>
@@ -29,24 +30,40 @@ protected:
 const ProgressStep first{1, 1, 1, 7, 221}, second{2, 2, 1, 2, 5};
 
 TEST_F(ProgressLine, TellsTimeStepIterationsContactsAndEta) {
-    const double elapsed = 60; // for a tenth of the scene, so the rest takes nine times as long
-    EXPECT_EQ(progress_line({3, 4, 0.5, 2, 221}, 1, 31, elapsed),
+    EXPECT_EQ(progress_line({3, 4, 0.5, 2, 221}, 31, 540),
               "t 4/31 s, step 3, dt 0.5 s, Newton 2, contacts 221, ETA 0:09:00");
-    EXPECT_THAT(progress_line({3, 2, 1, 2, 0}, 0, 4, 7384), EndsWith("ETA 2:03:04"));
-    EXPECT_THAT(progress_line({3, 4, 1, 2, 0}, 0, 4, 100), EndsWith("ETA 0:00:00"));
+    EXPECT_THAT(progress_line({3, 2, 1, 2, 0}, 4, 7384), EndsWith("ETA 2:03:04"));
+    EXPECT_THAT(progress_line({3, 4, 1, 2, 0}, 4, 0), EndsWith("ETA 0:00:00"));
 }
 
 TEST_F(ProgressLine, GivesNoEtaWhereNoneIsKnown) {
-    EXPECT_THAT(progress_line({0, 0, 1, 2, 0}, 0, 4, 100), Not(HasSubstr("ETA"))); // at the start: 100 * 4 / 0
-    EXPECT_THAT(progress_line({0, 0, 1, 2, 0}, 0, 0, 0), Not(HasSubstr("ETA")));
-    EXPECT_THAT(progress_line({0, 1e-12, 1, 2, 0}, 0, 4, 100), Not(HasSubstr("ETA")));
+    for (const double rest : {std::nan(""), 1e10})
+        EXPECT_THAT(progress_line({0, 0, 1, 2, 0}, 4, rest), Not(HasSubstr("ETA")));
+    EXPECT_TRUE(std::isnan(Eta({{4, 4}}).rest(1, 100))) << "the first step may have cost anything";
+}
+
+TEST(Eta, CountsPlannedStepsNotTime) {
+    Eta eta({{100, 2}, {1, 10}}); // a slow load in two steps, then ten quick ones
+    EXPECT_EQ(eta.end(), 101);
+    (void)eta.rest(50, 3);
+    EXPECT_DOUBLE_EQ(eta.rest(100, 6), 30);
+    EXPECT_DOUBLE_EQ(eta.rest(100.5, 21), 15);
+    EXPECT_DOUBLE_EQ(eta.rest(101, 36), 0);
+}
+
+TEST(Eta, ForgetsHowTheRunBegan) {
+    Eta eta({{1, 100}});
+    (void)eta.rest(0.01, 50); // a dear first step
+    double rest = 0;
+    for (int k = 2; k <= 20; ++k) rest = eta.rest(0.01 * k, 50 + k);
+    EXPECT_NEAR(rest, 80, 1e-9);
 }
 
 TEST_F(ProgressLine, IsALinePerStepWhenPiped) {
     const File stream = file();
     EXPECT_EQ(Progress::style_of(stream.get()), Progress::Style::plain);
     {
-        Progress progress(0, 2, Progress::style_of(stream.get()), stream.get());
+        Progress progress({{2, 2}}, Progress::style_of(stream.get()), stream.get());
         progress.update(first);
         EXPECT_THAT(log(), EndsWith("\n")) << "a reader has to wait for the line";
         progress.update(second);
@@ -58,19 +75,19 @@ TEST_F(ProgressLine, IsALinePerStepWhenPiped) {
 TEST_F(ProgressLine, ShowsAnyLineInPlaceOfTheLast) {
     const File stream = file();
     {
-        Progress progress(0, 1, Progress::Style::live, stream.get());
+        Progress progress({{1, 1}}, Progress::Style::live, stream.get());
         progress.show("run 1/2");
         progress.show("run 2/2");
     }
     EXPECT_EQ(log(), "\rrun 1/2\x1b[K\rrun 2/2\x1b[K\n");
-    Progress(0, 1, Progress::Style::quiet, stream.get()).show("nothing");
+    Progress({{1, 1}}, Progress::Style::quiet, stream.get()).show("nothing");
     EXPECT_THAT(log(), Not(HasSubstr("nothing")));
 }
 
 TEST_F(ProgressLine, IsOneLineOnATerminal) {
     const File stream = file();
     {
-        Progress progress(0, 2, Progress::Style::live, stream.get());
+        Progress progress({{2, 2}}, Progress::Style::live, stream.get());
         progress.update(first);
         progress.update(second);
         EXPECT_EQ(std::ranges::count(log(), '\n'), 0);
@@ -84,7 +101,7 @@ TEST_F(ProgressLine, IsOneLineOnATerminal) {
 TEST_F(ProgressLine, SaysNothingWhenQuiet) {
     const File stream = file();
     {
-        Progress progress(0, 2, Progress::Style::quiet, stream.get());
+        Progress progress({{2, 2}}, Progress::Style::quiet, stream.get());
         progress.update(first);
     }
     EXPECT_EQ(log(), "");
@@ -99,7 +116,7 @@ TEST_F(ProgressLine, NeverWrapsOnANarrowTerminal) {
     const winsize size{24, columns, 0, 0};
     ASSERT_EQ(ioctl(master, TIOCSWINSZ, &size), 0);
     EXPECT_EQ(Progress::style_of(terminal.get()), Progress::Style::live);
-    Progress progress(0, 2, Progress::Style::live, terminal.get());
+    Progress progress({{2, 2}}, Progress::Style::live, terminal.get());
     progress.update(first);
     std::string seen(4096, '\0');
     seen.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(master, seen.data(), seen.size()))));

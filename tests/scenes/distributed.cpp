@@ -103,6 +103,21 @@ TEST_F(DistributedRun, SharesDynamics) {
     expect_the_same(folder / "run_1", folder / "run_3", 1e-9);
 }
 
+/// A slave 1e6 times as stiff, on which GMRES with multigrid does not converge: the first process factorises for all.
+TEST_F(DistributedRun, FactorisesWhereGmresFails) {
+    const std::string stiff = scene_file("configs/extreme/stiff_slave.yaml"),
+                      options = "--set solver.tolerance=1e-10 --set solver.linear_solver=multigrid ";
+    ASSERT_EQ(osculate({"run", stiff, "--quiet", "--set", "solver.tolerance=1e-10", "--set",
+                        "solver.linear_solver=multigrid", "-o", "alone"})
+                  .code,
+              0);
+    for (const int ranks : {1, 2}) {
+        const std::string name = "run_" + std::to_string(ranks);
+        ASSERT_EQ(with_ranks(ranks, stiff, options + "-o " + name), 0) << content(folder / "said.txt");
+        expect_the_same(folder / "alone", folder / name, 1e-8);
+    }
+}
+
 TEST_F(DistributedRun, SharesGeneralContact) {
     for (const int ranks : {1, 3})
         ASSERT_EQ(with_ranks(ranks, scene,

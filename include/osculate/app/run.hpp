@@ -59,6 +59,8 @@ struct RunOptions {
 class Interrupted : public std::runtime_error {
 public:
     Interrupted(int signal, double time, std::filesystem::path directory);
+    /// The same of a run that cannot go on later: without a checkpoint.
+    Interrupted(int signal, double time);
     [[nodiscard]] int signal() const noexcept { return signal_; }
 
 private:

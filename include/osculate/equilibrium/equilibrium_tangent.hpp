@@ -70,8 +70,11 @@ public:
 private:
     /// Stiffness of the bodies over nodes that have equations.
     [[nodiscard]] const linear::BlockMatrix& stiffness() const;
-    /// Takes over new values of the bodies' stiffness.
+    /// The same with the rows of all processes.
+    [[nodiscard]] const linear::BlockMatrix& whole_stiffness();
+    /// Takes over new values of the bodies' stiffness: into what dependent nodes leave of it, into the matrix.
     void fold_stiffness();
+    void take_to_matrix();
     void update_stiffness();
     void cover_patterns();
     /// Discards the matrix: it is rebuilt when needed, with the pattern of these couplings.
@@ -89,7 +92,8 @@ private:
     bool may_buckle_, products_;                               ///< products_: see TangentChoice
     std::vector<linear::Coupling> couplings_, kept_couplings_; ///< pattern of the matrix: current, at the last commit
     long patterns_built_ = 0, kept_patterns_ = 0;
-    std::unique_ptr<linear::SystemMatrix> matrix_;                  ///< null: not needed yet
+    std::unique_ptr<linear::BlockMatrix> whole_;   ///< see whole_stiffness(); null: one process, or not needed yet
+    std::unique_ptr<linear::SystemMatrix> matrix_; ///< null: not needed yet
     std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< see TangentChoice; null: not used
     linear::KeptFactors made_for_,
         kept_for_;          ///< the preconditioner's factors: those that serve, those at the last commit

@@ -84,6 +84,13 @@ struct Plot {
     bool operator==(const Plot&) const = default;
 };
 
+/// Derivatives of the tables by a number of the scene, in derivatives/NAME.
+struct Derivative {
+    std::string key;      ///< dotted path of the number, as for --set
+    double change = 1e-5; ///< of the number, relative to it, by which it is made
+    bool operator==(const Derivative&) const = default;
+};
+
 struct Output {
     std::string template_name = "contact";  ///< or the absolute path of a user's template
     std::vector<std::string> body_fields;   ///< see output::all_fields
@@ -95,6 +102,7 @@ struct Output {
     int frame_every = 1;     ///< accepted steps between frames; 0: none
     Named<Probe> probes;
     Named<Plot> plots;
+    Named<Derivative> derivatives;
     bool paraview = false;      ///< write show_in_paraview.py next to the series
     bool report = false;        ///< write report.html at the end
     bool failed_iterate = true; ///< write the last iterate of a failed run

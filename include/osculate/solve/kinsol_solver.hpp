@@ -144,6 +144,10 @@ public:
     /// Solves F(z) = 0 from the start value in z (n), which contains the last iterate afterwards. Rethrows whatever the
     /// problem's callbacks threw.
     [[nodiscard]] KinsolResult solve(NonlinearProblem& problem, Vector& z, const KinsolOptions& options);
+    /// Linearises at the problem's last residual. @returns false if J is singular
+    [[nodiscard]] bool linearise(NonlinearProblem& problem);
+    /// x = J^-1 b, to 1e-10 of |b|. @returns false if J is singular. @pre linearise(), and no residual since
+    [[nodiscard]] bool solve_linear(const Vector& b, Vector& x);
     /// Number of factorisations during the life of this solver.
     [[nodiscard]] long factorisations() const;
     /// Number of GMRES iterations on the whole tangent during the life of this solver.

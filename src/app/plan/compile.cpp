@@ -1,6 +1,7 @@
 #include "osculate/app/compile.hpp"
 
 #include "app/fault.hpp"
+#include "app/plan/check_derivatives.hpp"
 #include "app/plan/draft.hpp"
 #include "app/plan/draft_share.hpp"
 #include "app/plan/plan_items.hpp"
@@ -87,6 +88,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     draft.plan.probes = make_probes(scene, draft.plan.model, draft.faults);
     throw_faults(draft);
     check_plots(scene, draft.plan, draft.faults);
+    check_derivatives(scene, draft.ranks != nullptr, draft.faults);
     throw_faults(draft);
     if (draft.ranks) check_distributed(draft);
     throw_faults(draft);

@@ -126,6 +126,9 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
     list.say("probes", !plan.probes.empty(),
              plan.probes.empty() ? "none is asked for" : fmt::format("{} table(s) in probes/", plan.probes.size()),
              {0, places, "places a row"});
+    list.say("derivatives", !out.derivatives.empty(),
+             out.derivatives.empty() ? "none is asked for" : "two runs of a changed scene follow this one for each",
+             {0, 2 * static_cast<double>(out.derivatives.size() * model.nodes()), "nodes a step"});
     list.say("plots", !out.plots.empty(), out.plots.empty() ? "none is asked for" : "drawn at the end of the run",
              {0, static_cast<double>(out.plots.size()), "pictures"});
     list.say("show_in_paraview.py", frames && out.paraview,

@@ -7,6 +7,7 @@
 #include "osculate/app/version.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/core/file_content.hpp"
+#include "osculate/scene/locate.hpp"
 #include "osculate/scene/units.hpp"
 #include "osculate/scene/writer.hpp"
 
@@ -96,6 +97,7 @@ output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& 
     RunRecorder::Settings heeding = settings;
     heeding.interruption = interruption ? &*interruption : nullptr;
     if (settings.from != nullptr) stepper.resume(settings.from->run);
+    if (settings.derivatives != nullptr) stepper.lead(settings.derivatives->runs());
     RunRecorder recorder(loaded.scene, loaded.plan, stepper, timings, heeding);
     try {
         if (beside != nullptr) {
@@ -134,6 +136,21 @@ bool writes(const RunOptions& options) {
     return !options.ranks || options.ranks->rank() == 0;
 }
 
+/// Null where the scene asks for none.
+std::unique_ptr<Derivatives> derivatives_of(const LoadedScene& loaded, const RunOptions& options, Timings& timings) {
+    const auto& asked = loaded.scene.output.derivatives;
+    if (asked.empty()) return nullptr;
+    if (options.checkpoint_every.steps > 0 || options.checkpoint_every.seconds > 0)
+        refuse("--checkpoint-every", "a run without output.derivatives, which are in no checkpoint",
+               "'" + asked.front().first + "'");
+    try {
+        return std::make_unique<Derivatives>(loaded, options.threads, timings);
+    } catch (const SceneError& error) {
+        if (loaded.path.empty()) throw;
+        throw SceneError(scene::locate(error.faults(), loaded.path));
+    }
+}
+
 /// And all else that takes time, memory or room.
 void leave_out_frames(scene::Output& output) {
     output.report = output.paraview = output.failed_iterate = false;
@@ -170,25 +187,36 @@ Interrupted::Interrupted(int signal, double time, fs::path directory)
                                      directory.string())),
       signal_(signal) {}
 
+Interrupted::Interrupted(int signal, double time)
+    : std::runtime_error(
+          fmt::format("interrupted at {} s; a run with output.derivatives cannot go on later: run it again",
+                      scene::number_text(time))),
+      signal_(signal) {}
+
 output::Summary run(const std::string& scene_path, const std::vector<scene::Override>& overrides,
                     const RunOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
     LoadedScene loaded = load(scene_path, overrides, options.threads, timings, options.ranks);
     if (!writes(options)) leave_out_frames(loaded.scene.output);
+    const auto derivatives = derivatives_of(loaded, options, timings);
     OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
                         RunRecorder::files(loaded.scene, loaded.plan));
     if (options.entered) options.entered(folder.path());
-    return run(loaded, {&folder, options.threads, options.quiet, begin, options.checkpoint_every}, timings);
+    RunRecorder::Settings settings{&folder, options.threads, options.quiet, begin, options.checkpoint_every};
+    settings.derivatives = derivatives.get();
+    return run(loaded, settings, timings);
 }
 
 output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& timings, const RunOptions& options,
                     time::StepObserver* beside) {
+    const auto derivatives = derivatives_of(loaded, options, timings);
     OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
                         RunRecorder::files(loaded.scene, loaded.plan));
     if (options.entered) options.entered(folder.path());
-    const RunRecorder::Settings settings{&folder, options.threads, options.quiet, std::chrono::steady_clock::now(),
-                                         options.checkpoint_every};
+    RunRecorder::Settings settings{&folder, options.threads, options.quiet, std::chrono::steady_clock::now(),
+                                   options.checkpoint_every};
+    settings.derivatives = derivatives.get();
     return run(loaded, stepper, timings, settings, beside, options.heed_signals);
 }
 
@@ -227,6 +255,9 @@ std::optional<output::Summary> resume(const fs::path& directory, const fs::path&
         refuse(scene_path, "the scene the checkpoint was written for", "another one");
     if (output::fingerprint(loaded.plan.model) != file.meshes)
         refuse(scene_path, "the meshes the checkpoint was written for", "others");
+    if (!loaded.scene.output.derivatives.empty())
+        refuse(scene_path, "a scene without output.derivatives, whose runs are in no checkpoint",
+               "'" + loaded.scene.output.derivatives.front().first + "'");
     if (!writes(options)) {
         copy_tables(file, directory, options.directory);
         leave_out_frames(loaded.scene.output);

@@ -39,6 +39,12 @@ template <class F> void on_disk(Timings& timings, F&& write) {
     }
 }
 
+std::vector<output::ProgressStage> planned(const Plan& plan) {
+    std::vector<output::ProgressStage> stages;
+    for (const time::Stage& stage : plan.stages) stages.push_back({stage.duration, stage.steps});
+    return stages;
+}
+
 double seconds(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -48,8 +54,7 @@ double seconds(const timeval& time) {
 RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time::Stepper& stepper, Timings& timings,
                          Settings settings)
     : scene_(scene), plan_(plan), stepper_(stepper), timings_(timings), settings_(std::move(settings)),
-      progress_(0, stepper.end_time(),
-                settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)),
+      progress_(planned(plan), settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)),
       checks_(plan.model, scene.expect) {
     const scene::Output& out = scene.output;
     const fs::path& folder = directory();
@@ -97,6 +102,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
                 std::vector<std::string>{"attempt", "iteration", "residual", "status_changes", "open", "stick", "slip",
                                          "facet_changes"},
                 kept("iterations.csv"));
+        if (settings_.derivatives != nullptr) settings_.derivatives->open(files);
         if (resumed()) recall(*settings_.from);
     });
     checkpoint_step_ = summary_.steps.accepted;
@@ -123,6 +129,8 @@ std::vector<std::string> RunRecorder::files(const scene::Scene& scene, const Pla
             for (const char* side : {".slave", ".master"})
                 names.push_back(folder + "frames/" + pair->name() + side + "_*.vtp");
     };
+    const std::vector<std::string> derivatives = Derivatives::files(scene, plan);
+    names.insert(names.end(), derivatives.begin(), derivatives.end());
     if (scene.output.failed_iterate) frames(std::string(failed_folder) + "/");
     if (scene.output.frame_every > 0) {
         frames("");
@@ -210,7 +218,9 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
             settings_.folder->claim(frames_->files(summary_.steps.accepted));
             frames_->write(snapshot, summary_.steps.accepted);
         }
-        write_probes(snapshot, last);
+        const std::vector<std::size_t> due = probes_due(last);
+        for (const std::size_t p : due) probes_[p].write(snapshot);
+        if (settings_.derivatives != nullptr) settings_.derivatives->accepted(step, due);
     });
     write_summary();
     if (settings_.quiet) return;
@@ -220,15 +230,21 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
     progress_.update({summary_.steps.accepted, step.state.time, step.dt, step.iterations, contacts});
 }
 
-void RunRecorder::write_probes(const output::Snapshot& snapshot, bool last) {
+std::vector<std::size_t> RunRecorder::probes_due(bool last) const {
+    std::vector<std::size_t> due;
     for (std::size_t p = 0; p < probes_.size(); ++p)
-        if (last || summary_.steps.accepted % plan_.probes[p].every == 0) probes_[p].write(snapshot);
+        if (last || summary_.steps.accepted % plan_.probes[p].every == 0) due.push_back(p);
+    return due;
 }
 
 void RunRecorder::between_steps(const std::function<time::Checkpoint()>& checkpoint) {
     int signal = settings_.interruption != nullptr ? settings_.interruption->signal() : 0;
     const Share* share = plan_.model.share.get();
     if (share != nullptr) signal = static_cast<int>(share->ranks().largest(signal)); // it may reach one process alone
+    if (settings_.derivatives != nullptr) {                                          // their runs are in no checkpoint
+        if (signal != 0) throw Interrupted(signal, stepper_.state().time);
+        return;
+    }
     const CheckpointEvery& every = settings_.checkpoint_every;
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - checkpoint_time_;
     if (signal == 0 && (every.steps == 0 || summary_.steps.accepted - checkpoint_step_ < every.steps) &&
@@ -391,6 +407,8 @@ void RunRecorder::count_up() {
         summary_.audit->on = plan_.stepper.audit;
     }
     summary_.warnings = checks_.warnings();
+    if (settings_.derivatives == nullptr) return;
+    for (std::string& warning : settings_.derivatives->warnings()) summary_.warnings.push_back(std::move(warning));
 }
 
 } // namespace osculate::app

@@ -1,6 +1,7 @@
 #pragma once
 /// Writes the files of a run while it goes.
 
+#include "app/run/derivatives.hpp"
 #include "app/run/interruption.hpp"
 #include "osculate/app/compile.hpp"
 #include "osculate/app/run.hpp"
@@ -36,6 +37,7 @@ public:
         CheckpointEvery checkpoint_every{};
         const output::CheckpointFile* from = nullptr; ///< what the run goes on from; null: it begins
         const Interruption* interruption = nullptr;   ///< null: nothing to heed
+        Derivatives* derivatives = nullptr;           ///< whose runs the stepper leads; null: none
     };
 
     /// Removes what an earlier run left in the folder, writes the resolved scene and the state before the first step; or
@@ -80,7 +82,8 @@ private:
     [[nodiscard]] Spent spent_so_far() const;
     void write_initial_frame();
     void write_failed(const time::FailedIterate& iterate);
-    void write_probes(const output::Snapshot& snapshot, bool last);
+    /// Numbers of the plan's probes that have a row at the current step.
+    [[nodiscard]] std::vector<std::size_t> probes_due(bool last) const;
     void write_summary();
     void count_up(); ///< what the summary says by now
     /// Plots, then the report, of the run's files once they are complete; they say what could not be made, and go on.

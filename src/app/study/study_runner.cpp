@@ -39,7 +39,7 @@ class Runner {
 public:
     Runner(std::vector<StudyCase>& cases, const StudyRunOptions& options, const std::function<void()>& finished)
         : cases_(cases), options_(options), finished_(finished),
-          progress_(0, 1, options.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)) {}
+          progress_({}, options.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)) {}
 
     void run();
 

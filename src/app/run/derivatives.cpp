@@ -1,0 +1,280 @@
+#include "app/run/derivatives.hpp"
+
+#include "app/fault.hpp"
+#include "osculate/output/history.hpp"
+#include "osculate/output/probe_file.hpp"
+#include "osculate/scene/number_at.hpp"
+#include "osculate/scene/writer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace osculate::app {
+
+namespace {
+
+using output::Cell;
+
+std::string folder_of(const std::string& name) {
+    return "derivatives/" + name + "/";
+}
+
+bool dynamic(const Plan& plan) {
+    return std::ranges::any_of(plan.stages, [](const time::Stage& stage) { return stage.dynamics.has_value(); });
+}
+
+std::vector<Index> sets_of(const scene::Scene& scene, const Plan& plan) {
+    return scene.output.history_reactions ? plan.constrained_sets : std::vector<Index>{};
+}
+
+/// Whether a column of history.csv changes smoothly with a number of the scene.
+bool is_smooth(const std::string& column) {
+    static const std::set<std::string> not_smooth{"dt", "iterations", "open", "stick", "slip"};
+    return !not_smooth.contains(column.substr(column.rfind('.') + 1));
+}
+
+/// What differs between two plans whose unknowns must be the same; empty: nothing.
+std::string difference(const Plan& a, const Plan& b) {
+    const auto shape = [](const model::Model& model) {
+        std::vector<Index> numbers{model.nodes()};
+        for (const model::Body& body : model.bodies) numbers.push_back(body.mesh.element_count());
+        return numbers;
+    };
+    if (shape(a.model) != shape(b.model)) return "another mesh";
+    const auto pairs = [](const model::Model& model) {
+        std::vector<std::vector<Index>> nodes;
+        for (const auto& pair : model.pairs) {
+            nodes.push_back(pair->slaves().node);
+            nodes.push_back(pair->master_nodes());
+        }
+        return nodes;
+    };
+    if (pairs(a.model) != pairs(b.model)) return "other contact nodes";
+    const auto held = [](const std::vector<time::Stage>& stages) {
+        std::vector<std::size_t> counts;
+        for (const time::Stage& stage : stages) counts.push_back(stage.constraints.size());
+        return counts;
+    };
+    if (held(a.stages) != held(b.stages)) return "other supports";
+    return {};
+}
+
+/// Whether a column of a probe says where a sample is in the undeformed model.
+bool is_place(const std::string& column) {
+    static const std::set<std::string> places{"s", "X", "Y", "Z"};
+    return places.contains(column);
+}
+
+/// What a column is measured in: columns of one kind have one round-off.
+std::string kind_of(const std::string& column) {
+    if (column.starts_with("energy.")) return "energy";
+    std::string name = column.substr(column.rfind('.') + 1);
+    if (name.size() > 2 && name[name.size() - 2] == '_') name.resize(name.size() - 2);
+    return name == "normal" || name == "friction" || name == "reaction" || name == "contact_force" ? "force" : name;
+}
+
+double number_in(const Cell& cell) {
+    const double* value = std::get_if<double>(&cell);
+    return value != nullptr ? *value : std::nan("");
+}
+
+Cell cell_of(double value) {
+    return std::isnan(value) ? Cell{std::string()} : Cell{value};
+}
+
+} // namespace
+
+/// One derivative: the two changed scenes, and its tables.
+struct Derivatives::One {
+    struct Side {
+        scene::Scene scene;
+        Plan plan;
+    };
+
+    std::string name;
+    double step = 0; ///< of the number, SI
+    std::unique_ptr<time::PerturbedPair> runs;
+    std::array<std::unique_ptr<Side>, 2> sides; ///< below, above
+    std::unique_ptr<output::CsvTable> history;
+    std::vector<std::unique_ptr<output::CsvTable>> probes;
+    std::vector<std::size_t> columns;                                ///< of history.csv
+    std::vector<double> largest_value, largest_change, largest_kink; ///< of these columns
+    std::vector<std::string> column_names;
+};
+
+Derivatives::Derivatives(const LoadedScene& loaded, int threads, Timings& timings) : loaded_(loaded) {
+    const std::string resolved = scene::write_scene(loaded.scene);
+    std::vector<Fault> faults;
+    for (const auto& [name, derivative] : loaded.scene.output.derivatives) {
+        std::string found;
+        const auto number = scene::number_at(resolved, derivative.key, found);
+        if (!number) continue; // a fault of check_derivatives()
+        auto one = std::make_unique<One>();
+        one->name = name;
+        one->step = std::abs(number->value) * derivative.change;
+        for (std::size_t k = 0; k < one->sides.size(); ++k) {
+            const double value = number->value + (k == 0 ? -one->step : one->step);
+            const std::string where = "output.derivatives." + name + ".key";
+            try {
+                auto side = std::make_unique<One::Side>();
+                side->scene = scene::parse_scene(resolved, "the scene with another number", {number->set(value)});
+                side->scene.output.derivatives.clear();
+                side->scene.output.plots.clear();
+                side->plan = compile(side->scene, threads, timings);
+                if (const std::string other = difference(loaded.plan, side->plan); !other.empty())
+                    faults.push_back(fault(where, "a number that leaves mesh, pairs and supports as they are",
+                                           fmt::format("{} at {:g}", other, value)));
+                one->sides[k] = std::move(side);
+            } catch (const SceneError& error) {
+                faults.push_back(
+                    fault(where, "a number that may be changed a little both ways",
+                          fmt::format("at {:.10g}, {}: expected {}, found {}", value, error.faults().front().key,
+                                      error.faults().front().expected, error.faults().front().found)));
+            }
+        }
+        all_.push_back(std::move(one));
+    }
+    if (!faults.empty()) throw SceneError(std::move(faults));
+    time::StepperOptions options = loaded.plan.stepper;
+    options.audit = false;
+    const auto run_of = [&](const One::Side& side) {
+        return std::make_unique<time::PerturbedRun>(side.plan.model, side.plan.stages, options, timings);
+    };
+    for (const auto& one : all_)
+        one->runs = std::make_unique<time::PerturbedPair>(run_of(*one->sides[0]), run_of(*one->sides[1]));
+}
+
+Derivatives::~Derivatives() = default;
+
+std::vector<std::string> Derivatives::files(const scene::Scene& scene, const Plan& plan) {
+    std::vector<std::string> names;
+    for (const auto& [name, derivative] : scene.output.derivatives) {
+        names.push_back(folder_of(name) + "history.csv");
+        for (const PlannedProbe& probe : plan.probes)
+            names.push_back(folder_of(name) + output::ProbeFile::relative_path(probe.name));
+    }
+    return names;
+}
+
+std::vector<time::PerturbedPair*> Derivatives::runs() const {
+    std::vector<time::PerturbedPair*> runs;
+    for (const auto& one : all_) runs.push_back(one->runs.get());
+    return runs;
+}
+
+void Derivatives::open(output::OutputFolder& folder) {
+    const Plan& plan = loaded_.plan;
+    folder.claim(files(loaded_.scene, plan));
+    const std::vector<std::string> all = output::History::columns(plan.model, loaded_.scene.output.history_pairs,
+                                                                  sets_of(loaded_.scene, plan), dynamic(plan));
+    for (const auto& one : all_) {
+        for (std::size_t c = 0; c < all.size(); ++c)
+            if (c == 0 || is_smooth(all[c])) {
+                one->columns.push_back(c);
+                one->column_names.push_back(all[c]);
+            }
+        one->largest_value.assign(one->columns.size(), 0);
+        one->largest_change = one->largest_kink = one->largest_value;
+        const std::filesystem::path& path = folder.path();
+        one->history =
+            std::make_unique<output::CsvTable>(path / (folder_of(one->name) + "history.csv"), one->column_names);
+        for (const PlannedProbe& probe : plan.probes) {
+            std::vector<std::string> names{"time"};
+            for (const output::ProbeColumn& column : probe.probe->columns()) names.push_back(column.name);
+            one->probes.push_back(std::make_unique<output::CsvTable>(
+                path / (folder_of(one->name) + output::ProbeFile::relative_path(probe.name)), names));
+        }
+    }
+}
+
+void Derivatives::accepted(const time::AcceptedStep& step, const std::vector<std::size_t>& probes) {
+    const auto snapshot_of = [&](const Plan& plan, const model::State& state,
+                                 const equilibrium::Equilibrium& equilibrium) {
+        return output::Snapshot(plan.model, state, equilibrium.contact(),
+                                output::nodal_reactions(equilibrium.constraints(), equilibrium.unbalanced()), {},
+                                step.dt);
+    };
+    const auto history_of = [&](const Plan& plan, const output::Snapshot& snapshot,
+                                const equilibrium::Equilibrium& equilibrium, const time::Ledger* ledger) {
+        return output::History::cells(snapshot, equilibrium.constraints(), step.dt, step.iterations,
+                                      loaded_.scene.output.history_pairs, sets_of(loaded_.scene, plan), dynamic(plan),
+                                      ledger);
+    };
+    const auto here = history_of(loaded_.plan, snapshot_of(loaded_.plan, step.state, step.equilibrium),
+                                 step.equilibrium, step.ledger);
+    for (const auto& one : all_) {
+        if (!one->runs->lost().empty()) continue;
+        std::array<std::optional<output::Snapshot>, 2> at;
+        std::array<std::vector<Cell>, 2> cells;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Plan& plan = one->sides[k]->plan;
+            const time::PerturbedRun& run = k == 0 ? one->runs->below() : one->runs->above();
+            at[k].emplace(snapshot_of(plan, run.state(), run.equilibrium()));
+            cells[k] = history_of(plan, *at[k], run.equilibrium(), run.ledger());
+        }
+        std::vector<Cell> row{step.state.time};
+        for (std::size_t i = 1; i < one->columns.size(); ++i) {
+            const std::size_t c = one->columns[i];
+            const double below = number_in(cells[0][c]), above = number_in(cells[1][c]), now = number_in(here[c]);
+            row.push_back(cell_of((above - below) / (2 * one->step)));
+            if (std::isnan(above - below)) continue;
+            one->largest_value[i] = std::max(one->largest_value[i], std::abs(now));
+            one->largest_change[i] = std::max(one->largest_change[i], std::abs(above - below));
+            one->largest_kink[i] = std::max(one->largest_kink[i], std::abs(above + below - 2 * now));
+        }
+        one->history->row(row);
+        for (const std::size_t p : probes) {
+            const auto below = one->sides[0]->plan.probes[p].probe->rows(*at[0]),
+                       above = one->sides[1]->plan.probes[p].probe->rows(*at[1]);
+            const auto& columns = loaded_.plan.probes[p].probe->columns();
+            for (std::size_t r = 0; r < std::min(below.size(), above.size()); ++r) {
+                std::vector<Cell> cells_now{step.state.time};
+                for (std::size_t c = 0; c < columns.size(); ++c)
+                    cells_now.push_back(is_place(columns[c].name)
+                                            ? cell_of(above[r][c])
+                                            : cell_of((above[r][c] - below[r][c]) / (2 * one->step)));
+                one->probes[p]->row(cells_now);
+            }
+        }
+    }
+}
+
+std::vector<std::string> Derivatives::warnings() const {
+    constexpr double bent = 0.05;      // of the change: what one step of Newton leaves out is then no trifle
+    constexpr double round_off = 1e-7; // of the value: what the solver's tolerance leaves
+    std::vector<std::string> list;
+    for (const auto& one : all_) {
+        if (const std::string& lost = one->runs->lost(); !lost.empty()) {
+            list.push_back(fmt::format("derivative '{}' ends before its run does: {}", one->name, lost));
+            continue;
+        }
+        std::map<std::string, double> values; // largest of a kind
+        for (std::size_t i = 1; i < one->columns.size(); ++i) {
+            double& value = values[kind_of(one->column_names[i])];
+            value = std::max(value, one->largest_value[i]);
+        }
+        std::string worst;
+        double most = bent;
+        for (std::size_t i = 1; i < one->columns.size(); ++i) {
+            const double kink = one->largest_kink[i], change = one->largest_change[i];
+            if (one->column_names[i].ends_with(".penetration") || // closed gaps: round-off
+                kink <= round_off * values[kind_of(one->column_names[i])] || kink <= most * change)
+                continue;
+            most = kink / change;
+            worst = one->column_names[i];
+        }
+        if (!worst.empty())
+            list.push_back(
+                fmt::format("derivative '{}': {} changes by {:.2g} more one way than the other; where contact "
+                            "opens or begins to slide it has a kink, otherwise change `change`",
+                            one->name, worst, most));
+    }
+    return list;
+}
+
+} // namespace osculate::app

@@ -57,7 +57,7 @@ std::string progress_line(const ProgressStep& step, double end, double rest) {
     std::string line = fmt::format("t {:.6g}/{:.6g} s, step {}, dt {:.3g} s, Newton {}, contacts {}", step.time, end,
                                    step.step, step.dt, step.iterations, step.contacts);
     constexpr double longest = 1e9; // s; beyond it, and at the very start, an estimate says nothing
-    if (rest >= 0 && rest < longest) line += ", ETA " + clock_text(rest);
+    if (std::isfinite(rest) && rest >= 0 && rest < longest) line += ", ETA " + clock_text(rest);
     return line;
 }
 

@@ -130,6 +130,7 @@ TEST_F(DerivativesOfRuns, SayWhatTheyCannotHave) {
     EXPECT_THAT(said(blocks, {"output.derivatives={p: contact.joint.friction}", "contact={general: {friction: 0.2}}",
                               "output.probes={}", "output.plots={}"}),
                 HasSubstr("contact by named pairs"));
+    EXPECT_THAT(said(blocks, {"output.derivatives={p: stages.press.duration}"}), HasSubstr("of what is simulated"));
     EXPECT_THAT(said(blocks, {"output.derivatives={p: contact.joint.friction}"}, {"--checkpoint-every", "2"}),
                 HasSubstr("a run without output.derivatives"));
 }

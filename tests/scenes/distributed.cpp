@@ -277,7 +277,7 @@ TEST_F(DistributedRun, GivesUpWithAPostMortemAndAllFrames) {
 /// Every component of every node is held or driven, so that no grid has an unknown; both sides of the contact are held.
 TEST_F(DistributedRun, NeedsNoUnknownsButContactForces) {
     EXPECT_EQ(with_ranks(2, scene_file("configs/extreme/driven_through_a_wall.yaml"), "-o run"), 3);
-    EXPECT_THAT(content(folder / "said.txt"), testing::HasSubstr("cause       linear_system: "));
+    EXPECT_THAT(content(folder / "said.txt"), testing::HasSubstr("cause       singular_tangent: "));
 }
 
 TEST_F(DistributedRun, NamesAProcessThatHasNoRoom) {

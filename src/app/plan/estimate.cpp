@@ -145,6 +145,10 @@ Estimate estimate(const scene::Scene& scene, const Plan& plan) {
     for (const CostTerm& term : cost_terms(scene, plan)) result.seconds += term.count * term.seconds;
     result.bytes =
         bytes(plan, any(&equilibrium::TangentChoice::multigrid), any(&equilibrium::TangentChoice::condensed));
+    // of each, two models and some half of a run, see docs/data/derivatives.md
+    const auto derivatives = static_cast<double>(scene.output.derivatives.size());
+    result.seconds *= 1 + 0.5 * derivatives;
+    result.bytes *= 1 + derivatives;
     return result;
 }
 

@@ -2,6 +2,6 @@
 
 namespace osculate::app {
 
-inline constexpr const char* version = "0.1.0"; ///< project version in CMakeLists.txt
+inline constexpr const char* version = "0.2.0"; ///< project version in CMakeLists.txt
 
 } // namespace osculate::app

@@ -6,6 +6,7 @@
 #include "osculate/scene/number_at.hpp"
 #include "osculate/scene/writer.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -247,6 +248,9 @@ void Derivatives::accepted(const time::AcceptedStep& step, const std::vector<std
 std::vector<std::string> Derivatives::warnings() const {
     constexpr double bent = 0.05;      // of the change: what one step of Newton leaves out is then no trifle
     constexpr double round_off = 1e-7; // of the value: what the solver's tolerance leaves
+    Eigen::AlignedBox3d box;
+    for (const Vec3& X : loaded_.plan.model.X) box.extend(X);
+    const double length = box.diagonal().norm();
     std::vector<std::string> list;
     for (const auto& one : all_) {
         if (const std::string& lost = one->runs->lost(); !lost.empty()) {
@@ -258,6 +262,9 @@ std::vector<std::string> Derivatives::warnings() const {
             double& value = values[kind_of(one->column_names[i])];
             value = std::max(value, one->largest_value[i]);
         }
+        // of a moment that is 0 only its forces tell the round-off
+        for (const auto& [moment, force] : {std::pair{"moment", "force"}, std::pair{"angular", "linear"}})
+            values[moment] = std::max(values[moment], length * values[force]);
         std::string worst;
         double most = bent;
         for (std::size_t i = 1; i < one->columns.size(); ++i) {

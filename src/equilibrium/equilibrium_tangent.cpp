@@ -89,16 +89,20 @@ void EquilibriumTangent::stiffness_replaced() {
     in_force_ = wear().usable = false;
     fold_stiffness();
     const linear::BlockMatrix& K = stiffness();
-    if (matrix_ && !whole_) matrix_->use(K);
-    if (whole_) take_to_matrix();
+    if (whole_)
+        take_to_matrix();
+    else if (matrix_)
+        matrix_->use(K);
     if (preconditioner_) preconditioner_->use(K);
 }
 
 void EquilibriumTangent::take_to_matrix() {
-    if (whole_)
-        matrix_ = nullptr, whole_ = nullptr; // gathered again if it is needed again
-    else if (matrix_)
+    if (whole_) { // gathered again if it is needed again
+        matrix_ = nullptr;
+        whole_ = nullptr;
+    } else if (matrix_) {
         matrix_->stiffness_changed();
+    }
 }
 
 const linear::BlockMatrix& EquilibriumTangent::whole_stiffness() {

@@ -93,7 +93,8 @@ void PerturbedPair::follow(const BesideStep& step, const LinearSolve& inverse) {
     Vector F_below, F_above, dz;
     for (const auto& [side, F] : {std::pair{below_.get(), &F_below}, std::pair{above_.get(), &F_above}})
         if (const std::string why = side->begin_step(step, *F); !why.empty()) return lose(why);
-    if (!inverse(0.5 * (F_below - F_above), dz)) return lose("the tangent of the scene has no inverse");
+    if (!inverse(0.5 * (F_below - F_above), dz))
+        return lose("the linear system with the tangent of the scene has no solution");
     const Vector z_below = step.z - dz, z_above = step.z + dz;
     for (const auto& [side, z] : {std::pair{below_.get(), &z_below}, std::pair{above_.get(), &z_above}})
         if (const std::string why = side->evaluate(step, *z, F_above); !why.empty()) return lose(why);

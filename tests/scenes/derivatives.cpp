@@ -110,6 +110,23 @@ TEST_F(DerivativesOfRuns, LeaveTheRunAsItIs) {
     }
 }
 
+TEST_F(DerivativesOfRuns, ThatAreZeroAreWarnedOf) {
+    const Outcome outcome = osculate({"run", blocks, "-o", "run", "--quiet", "--set",
+                                      "output.derivatives={p: bodies.upper.initial_velocity.2}", "--set",
+                                      "bodies.upper.initial_velocity=[0, 0, 1]"}); // in statics
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("derivative 'p' is 0"));
+}
+
+/// A block on a slope whose tangent is its friction: it slides with a little less.
+TEST_F(DerivativesOfRuns, WithAKinkAreWarnedOf) {
+    const Outcome outcome =
+        osculate({"run", scene_file("configs/tutorials/block_on_incline.yaml"), "-o", "run", "--quiet", "--set",
+                  "contact.sole.friction=0.5", "--set", "output.derivatives={p: contact.sole.friction}"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("more one way than the other"));
+}
+
 TEST_F(DerivativesOfRuns, SayWhatTheyCannotHave) {
     const auto said = [&](const std::string& scene, const Changes& changes, const Changes& options = {}) {
         std::vector<std::string> arguments{"run", scene, "-o", "refused", "--quiet"};

@@ -146,7 +146,7 @@ public:
     [[nodiscard]] KinsolResult solve(NonlinearProblem& problem, Vector& z, const KinsolOptions& options);
     /// Linearises at the problem's last residual. @returns false if J is singular
     [[nodiscard]] bool linearise(NonlinearProblem& problem);
-    /// x = J^-1 b, to 1e-10 of |b|. @returns false if J is singular. @pre linearise(), and no residual since
+    /// x = J^-1 b (n), to |b - J x| <= 1e-10 |b|. @returns false if J is singular, or too large to be factorised where GMRES fails. @pre linearise(), and no residual since
     [[nodiscard]] bool solve_linear(const Vector& b, Vector& x);
     /// Number of factorisations during the life of this solver.
     [[nodiscard]] long factorisations() const;

@@ -79,6 +79,7 @@ std::string kind_of(const std::string& column) {
     return name == "normal" || name == "friction" || name == "reaction" || name == "contact_force" ? "force" : name;
 }
 
+/// NaN: no number.
 double number_in(const Cell& cell) {
     const double* value = std::get_if<double>(&cell);
     return value != nullptr ? *value : std::nan("");
@@ -97,8 +98,9 @@ struct Derivatives::One {
         Plan plan;
     };
 
-    std::string name;
-    double step = 0; ///< of the number, SI
+    std::string name, key;
+    double step = 0;      ///< of the number, SI
+    bool changes = false; ///< whether anything that is written has a derivative other than 0
     std::unique_ptr<time::PerturbedPair> runs;
     std::array<std::unique_ptr<Side>, 2> sides; ///< below, above
     std::unique_ptr<output::CsvTable> history;
@@ -117,6 +119,7 @@ Derivatives::Derivatives(const LoadedScene& loaded, int threads, Timings& timing
         if (!number) continue; // a fault of check_derivatives()
         auto one = std::make_unique<One>();
         one->name = name;
+        one->key = derivative.key;
         one->step = std::abs(number->value) * derivative.change;
         for (std::size_t k = 0; k < one->sides.size(); ++k) {
             const double value = number->value + (k == 0 ? -one->step : one->step);
@@ -224,6 +227,7 @@ void Derivatives::accepted(const time::AcceptedStep& step, const std::vector<std
             const double below = number_in(cells[0][c]), above = number_in(cells[1][c]), now = number_in(here[c]);
             row.push_back(cell_of((above - below) / (2 * one->step)));
             if (std::isnan(above - below)) continue;
+            one->changes = one->changes || above != below;
             one->largest_value[i] = std::max(one->largest_value[i], std::abs(now));
             one->largest_change[i] = std::max(one->largest_change[i], std::abs(above - below));
             one->largest_kink[i] = std::max(one->largest_kink[i], std::abs(above + below - 2 * now));
@@ -235,10 +239,13 @@ void Derivatives::accepted(const time::AcceptedStep& step, const std::vector<std
             const auto& columns = loaded_.plan.probes[p].probe->columns();
             for (std::size_t r = 0; r < std::min(below.size(), above.size()); ++r) {
                 std::vector<Cell> cells_now{step.state.time};
-                for (std::size_t c = 0; c < columns.size(); ++c)
+                for (std::size_t c = 0; c < columns.size(); ++c) {
+                    one->changes =
+                        one->changes || (!std::isnan(above[r][c] - below[r][c]) && above[r][c] != below[r][c]);
                     cells_now.push_back(is_place(columns[c].name)
                                             ? cell_of(above[r][c])
                                             : cell_of((above[r][c] - below[r][c]) / (2 * one->step)));
+                }
                 one->probes[p]->row(cells_now);
             }
         }
@@ -253,33 +260,39 @@ std::vector<std::string> Derivatives::warnings() const {
     const double length = box.diagonal().norm();
     std::vector<std::string> list;
     for (const auto& one : all_) {
-        if (const std::string& lost = one->runs->lost(); !lost.empty()) {
+        if (const std::string& lost = one->runs->lost(); !lost.empty())
             list.push_back(fmt::format("derivative '{}' ends before its run does: {}", one->name, lost));
+        if (!one->changes && one->runs->lost().empty()) {
+            list.push_back(fmt::format("derivative '{}' is 0: nothing that the run writes changes with '{}'", one->name,
+                                       one->key));
             continue;
         }
-        std::map<std::string, double> values; // largest of a kind
+        std::map<std::string, double> values, changes; // largest of a kind
         for (std::size_t i = 1; i < one->columns.size(); ++i) {
-            double& value = values[kind_of(one->column_names[i])];
-            value = std::max(value, one->largest_value[i]);
+            const std::string kind = kind_of(one->column_names[i]);
+            values[kind] = std::max(values[kind], one->largest_value[i]);
+            changes[kind] = std::max(changes[kind], one->largest_change[i]);
         }
         // of a moment that is 0 only its forces tell the round-off
         for (const auto& [moment, force] : {std::pair{"moment", "force"}, std::pair{"angular", "linear"}})
-            values[moment] = std::max(values[moment], length * values[force]);
+            for (auto* of_kind : {&values, &changes})
+                (*of_kind)[moment] = std::max((*of_kind)[moment], length * (*of_kind)[force]);
         std::string worst;
         double most = bent;
         for (std::size_t i = 1; i < one->columns.size(); ++i) {
-            const double kink = one->largest_kink[i], change = one->largest_change[i];
-            if (one->column_names[i].ends_with(".penetration") || // closed gaps: round-off
-                kink <= round_off * values[kind_of(one->column_names[i])] || kink <= most * change)
+            const std::string kind = kind_of(one->column_names[i]);
+            const double kink = one->largest_kink[i], change = changes[kind];
+            if (kind == "penetration" || // of closed gaps: round-off
+                kink <= round_off * values[kind] || kink <= most * change)
                 continue;
             most = kink / change;
             worst = one->column_names[i];
         }
         if (!worst.empty())
-            list.push_back(
-                fmt::format("derivative '{}': {} changes by {:.2g} more one way than the other; where contact "
-                            "opens or begins to slide it has a kink, otherwise change `change`",
-                            one->name, worst, most));
+            list.push_back(fmt::format(
+                "derivative '{}': {} changes by {:.2g} more one way than the other, so that the derivative may be "
+                "wrong; where contact opens, begins to slide or passes from facet to facet it has a kink",
+                one->name, worst, most));
     }
     return list;
 }

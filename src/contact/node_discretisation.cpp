@@ -17,16 +17,27 @@ public:
 
     int evaluate(const PairPositions& at, FacetTracking& tracking, std::vector<ContactPoint>& points,
                  int threads) override {
-        at.master.place(tracking.hits, at.vertices, threads, placement_);
+        place(at, tracking, threads);
         const auto count = static_cast<Index>(points.size());
         side_.resize(points.size(), -1);
         parallel_for(threads, count, [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j)
-                at.master.evaluate(at.slaves[j], tracking.hits[j], at.vertices, points[j], nullptr, placement_.get());
+                if (tracking.owns(j))
+                    at.master.evaluate(at.slaves[j], tracking.hits[j], at.vertices, points[j], nullptr,
+                                       placement_.get());
         });
+        seen_.resize(points.size());
+        for (Index j = 0; j < count; ++j)
+            if (tracking.owns(j)) seen_[j] = points[j].found ? points[j].side : -1;
+        if (tracking.share != nullptr)
+            tracking.share->exchange([&](Index j, std::vector<double>& numbers) { numbers.push_back(seen_[j]); },
+                                     [&](Index j, const double* number) {
+                                         seen_[j] = static_cast<Index>(*number);
+                                         return number + 1;
+                                     });
         // a point in a crease may see now one side, now the other, above the same facet
         for (Index j = 0; j < count; ++j) {
-            const Index now = points[j].found ? points[j].side : -1;
+            const Index now = seen_[j];
             if (now >= 0 && side_[j] >= 0 && now != side_[j] && at.master.tells_apart(side_[j], now) &&
                 ++tracking.changes[j] >= tracking.changes_before_latch)
                 tracking.facet[j] = now;
@@ -82,8 +93,16 @@ public:
     }
 
 private:
+    void place(const PairPositions& at, const FacetTracking& tracking, int threads) {
+        if (tracking.share == nullptr) return at.master.place(tracking.hits, at.vertices, threads, placement_);
+        const auto first = tracking.hits.begin();
+        const std::vector<FacetHit> own(first + tracking.share->begin(), first + tracking.share->end());
+        at.master.place(own, at.vertices, threads, placement_);
+    }
+
     const mesh::HalfEdgeSurface& surface_;
     std::vector<Index> side_; ///< (slaves) ContactPoint::side at the last evaluation
+    std::vector<Index> seen_; ///< (slaves) scratch: at this one
     std::unique_ptr<Placement> placement_;
 };
 

@@ -31,9 +31,9 @@ public:
     PetrovGalerkin(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& vertices,
                    const std::vector<SlaveFacet>& facets, const std::vector<Vec3>& S, std::vector<Mat3> in_plane)
         : surface_(surface), weights_(surface, facets, S, least_cover), nodes_(make_node_discretisation(surface)),
-          past_end_(surface), in_plane_(std::move(in_plane)), raw_(S.size()), ends_(S.size()), carriers_(S.size(), 0),
-          moving_(S.size(), 0), normal_length_(S.size(), 1.0), outside_(S.size(), 0), alone_(S.size(), 0),
-          below_(facets.size(), -1) {
+          past_end_(surface), in_plane_(std::move(in_plane)), raw_(S.size()), ends_(S.size()), area_(S.size(), 0),
+          carriers_(S.size(), 0), moving_(S.size(), 0), normal_length_(S.size(), 1.0), outside_(S.size(), 0),
+          alone_(S.size(), 0), below_(facets.size(), -1) {
         std::vector<std::vector<Vec3>> corners;
         for (Index f = 0; f < weights_.facet_count(); ++f) corners.push_back(weights_.X(f));
         if (!corners.empty()) filter_ = MasterFilter(surface, vertices, with_images(mesh_metric(corners)));
@@ -60,6 +60,7 @@ public:
         const int changed = nodes_->evaluate(smooth, tracking, raw_, threads);
         parallel_for(threads, weights_.facet_count(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f) {
+                if (!is_needed(f, tracking)) continue;
                 if (is_far(f, tracking)) {
                     weights_.leave_out(f);
                     continue;
@@ -79,9 +80,11 @@ public:
                 weights_.update(f, at, std::move(seeds));
             }
         });
+        if (tracking.share != nullptr) share_facets(*tracking.share);
         parallel_for(threads, static_cast<Index>(points.size()), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
-                const double share = weights_.share(j);
+                if (!tracking.owns(j)) continue;
+                const double share = area_[j] = weights_.share(j);
                 outside_[j] = !raw_[j].found && !raw_[j].behind && share > 0 && tracking.hits[j].facet >= 0;
                 if (outside_[j]) past_end_.evaluate(at.slaves[j], tracking.hits[j], smooth, ends_[j], raw_[j]);
                 alone_[j] = raw_[j].found && !(share > 0);
@@ -172,8 +175,16 @@ public:
     [[nodiscard]] bool overlooks() const override { return true; }
 
     [[nodiscard]] double loaded_area(Index j, double tributary) const override {
-        const double share = weights_.share(j);
-        return share > 0 ? share : tributary;
+        return area_[j] > 0 ? area_[j] : tributary;
+    }
+
+    void pack(Index j, std::vector<double>& numbers) const override {
+        numbers.insert(numbers.end(), {area_[j], static_cast<double>(carriers_[j])});
+    }
+    const double* unpack(Index j, const double* numbers) override {
+        area_[j] = *numbers++;
+        carriers_[j] = static_cast<Index>(*numbers++);
+        return numbers;
     }
 
 private:
@@ -198,9 +209,9 @@ private:
     PetrovGalerkin(const PetrovGalerkin& other)
         : Discretisation(other), surface_(other.surface_), weights_(other.weights_), nodes_(other.nodes_->clone()),
           past_end_(other.past_end_), filter_(other.filter_), in_plane_(other.in_plane_), filtered_(other.filtered_),
-          filtered_tails_(other.filtered_tails_), raw_(other.raw_), ends_(other.ends_), carriers_(other.carriers_),
-          moving_(other.moving_), normal_length_(other.normal_length_), outside_(other.outside_), alone_(other.alone_),
-          below_(other.below_) {
+          filtered_tails_(other.filtered_tails_), raw_(other.raw_), ends_(other.ends_), area_(other.area_),
+          carriers_(other.carriers_), moving_(other.moving_), normal_length_(other.normal_length_),
+          outside_(other.outside_), alone_(other.alone_), below_(other.below_) {
         for (ContactPoint& point : raw_) point.trace.reset(); // refers to the other's placement
         for (PastEnd::Point& end : ends_) end.side.trace.reset();
     }
@@ -224,6 +235,26 @@ private:
     [[nodiscard]] bool is_far(Index f, const FacetTracking& tracking) const {
         return !tracking.far.empty() &&
                std::ranges::all_of(weights_.corners(f), [&](Index j) { return tracking.far[j] != 0; });
+    }
+
+    /// Whether a slave facet has a corner that this process evaluates.
+    [[nodiscard]] bool is_needed(Index f, const FacetTracking& tracking) const {
+        return tracking.share == nullptr ||
+               std::ranges::any_of(weights_.corners(f), [&](Index j) { return tracking.owns(j); });
+    }
+
+    /// Gives all processes below_ of each facet, from the one that evaluates its first corner.
+    void share_facets(const SlaveShare& share) {
+        const auto for_each = [&](Index j, auto&& use) {
+            for (const auto& [f, corner] : weights_.around(j))
+                if (corner == 0) use(below_[f]);
+        };
+        share.exchange(
+            [&](Index j, std::vector<double>& numbers) { for_each(j, [&](Index facet) { numbers.push_back(facet); }); },
+            [&](Index j, const double* number) {
+                for_each(j, [&](Index& facet) { facet = static_cast<Index>(*number++); });
+                return number;
+            });
     }
 
     [[nodiscard]] Vec3 centre(Index f, const PairPositions& at) const {
@@ -337,6 +368,7 @@ private:
     std::vector<Vec3> filtered_, filtered_tails_; ///< vertices at the last evaluation, m
     std::vector<ContactPoint> raw_;               ///< (slaves) over the filtered surface
     std::vector<PastEnd::Point> ends_;            ///< (slaves) of those beyond the boundary
+    std::vector<double> area_;                    ///< (slaves) m^2, of the facets' parts above the master
     std::vector<Index> carriers_, moving_;        ///< (slaves) nodes that carry force; on which the weights depend
     std::vector<double> normal_length_;           ///< (slaves) of the raw normal in the symmetry planes
     std::vector<char> outside_;                   ///< (slaves) beyond the boundary: over the surface, extended

@@ -34,6 +34,11 @@ ContactTerm::ContactTerm(const model::ContactPairs& pairs, const linear::Constra
     }
 }
 
+void ContactTerm::share_out(Ranks& ranks) {
+    ranks_ = &ranks;
+    for (model::ContactEvaluation& evaluation : evaluations_) evaluation.share_out(ranks);
+}
+
 void ContactTerm::set_statuses(Statuses statuses, StatusRule rule, bool force_first) {
     statuses_ = std::move(statuses);
     rule_ = rule;
@@ -61,7 +66,10 @@ bool ContactTerm::can_hold_geometry() const {
 }
 
 void ContactTerm::hold_geometry() {
-    for (model::ContactEvaluation& evaluation : evaluations_) evaluation.hold_geometry();
+    for (model::ContactEvaluation& evaluation : evaluations_) {
+        evaluation.evaluate_all_here(threads_);
+        evaluation.hold_geometry();
+    }
 }
 
 void ContactTerm::let_go() {

@@ -7,10 +7,18 @@
 
 namespace osculate::equilibrium {
 
-void ContactTerm::prepare_variations(std::size_t p) {
-    std::vector<char> reached;
-    for (Index j = 0; j < evaluations_[p].pair().size(); ++j) reached.push_back(reaches(p, j));
-    evaluations_[p].prepare_variations(reached, threads_);
+void ContactTerm::prepare_variations(std::size_t p, bool all) {
+    model::ContactEvaluation& evaluation = evaluations_[p];
+    std::vector<char> wanted;
+    for (Index j = 0; j < evaluation.pair().size(); ++j) wanted.push_back(reaches(p, j) && (all || evaluation.owns(j)));
+    evaluation.prepare_variations(wanted, threads_);
+}
+
+void ContactTerm::linearise_law(std::size_t p, Index j, ContactTangent& tangent) const {
+    const Mat3 mirrored = symmetry_directions(evaluations_[p].pair().slaves().node[j]);
+    tangent.D = (Mat3::Identity() - mirrored) * law(p, j).by_lambda + mirrored;
+    tangent.reaches = reaches(p, j);
+    tangent.carriers = tangent.reaches ? evaluations_[p].carriers(j) : 0;
 }
 
 void ContactTerm::linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const {
@@ -21,6 +29,7 @@ void ContactTerm::linearise(std::size_t p, Index j, contact::VariationForm form,
     const Mat3 mirrored = symmetry_directions(evaluation.pair().slaves().node[j]), kept = Mat3::Identity() - mirrored;
     tangent.D = kept * law.by_lambda + mirrored;
     tangent.reaches = reaches(p, j);
+    tangent.carriers = tangent.reaches ? evaluation.carriers(j) : 0;
     tangent.evaluation = &evaluation;
     tangent.slave = j;
     tangent.force = lambda;
@@ -44,6 +53,7 @@ std::vector<LinearisedContact> ContactTerm::linearise_near(double reach) {
     std::vector<LinearisedContact> list;
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         model::ContactEvaluation& evaluation = evaluations_[p];
+        evaluation.evaluate_all_here(threads_);
         const Index size = evaluation.pair().size();
         std::vector<char> wanted(static_cast<std::size_t>(size), 0);
         for (Index j = 0; j < size; ++j) {
@@ -153,18 +163,26 @@ void ContactTerm::linearise(const Iterate&) {
     tangents_.resize(static_cast<std::size_t>(first_.back()));
     open_laws_.assign(tangents_.size(), Mat3::Zero());
     bearing_.clear();
+    bearing_owner_.clear();
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         const model::ContactEvaluation& evaluation = evaluations_[p];
         const Index size = evaluation.pair().size();
-        prepare_variations(p);
+        prepare_variations(p, false);
         ContactTangent* own = tangents_.data() + first_[p];
         parallel_for(threads_, size, [&](Index begin, Index end) {
-            for (Index j = begin; j < end; ++j) linearise(p, j, contact::VariationForm::products, own[j]);
+            for (Index j = begin; j < end; ++j)
+                if (evaluation.owns(j)) {
+                    linearise(p, j, contact::VariationForm::products, own[j]);
+                } else {
+                    if (own[j].evaluation != nullptr) own[j] = {}; // of a step in which it was this process'
+                    linearise_law(p, j, own[j]);
+                }
         });
         for (Index j = 0; j < size; ++j)
-            if (own[j].reaches)
+            if (own[j].reaches) {
                 bearing_.push_back({&own[j], evaluation.point_nodes(j), soften(p, j)});
-            else
+                if (evaluation.share() != nullptr) bearing_owner_.push_back(evaluation.share()->owner(j));
+            } else
                 open_laws_[static_cast<std::size_t>(first_[p] + j)] = own[j].D;
     }
 }
@@ -176,8 +194,10 @@ void ContactTerm::add_product(const Direction& d, Field& f, VectorRef y) {
     product_law_.resize(bearing_.size());
     parallel_for(threads_, static_cast<Index>(bearing_.size()), [&](Index begin, Index end) {
         for (Index j = begin; j < end; ++j)
-            product_law_[j] = bearing_[j].multiply(moved, force(d.z, bearing_[j].law.coupling), product_on_[j]);
+            if (ranks_ == nullptr || bearing_owner_[j] == ranks_->rank())
+                product_law_[j] = bearing_[j].multiply(moved, force(d.z, bearing_[j].law.coupling), product_on_[j]);
     });
+    if (ranks_ != nullptr) exchange_products();
     std::size_t next = 0;
     for (Index coupling = 0; coupling < first_.back(); ++coupling) {
         const Index slave = unknowns_.slave(coupling);
@@ -192,6 +212,35 @@ void ContactTerm::add_product(const Direction& d, Field& f, VectorRef y) {
         }
         law = constraints_.to_local(slave, law);
         for (int k = 0; k < 3; ++k) y[unknowns_.contact_row(coupling, k)] = law(k);
+    }
+}
+
+void ContactTerm::exchange_products() {
+    constexpr int of_law = 3;
+    const auto size = [](const linear::BearingContact& contact) {
+        const auto& tangent = static_cast<const ContactTangent&>(*contact.derivatives);
+        return 3 * tangent.carriers;
+    };
+    std::vector<int> sizes(static_cast<std::size_t>(ranks_->count()), 0);
+    std::vector<double> own;
+    for (std::size_t b = 0; b < bearing_.size(); ++b) {
+        sizes[static_cast<std::size_t>(bearing_owner_[b])] += of_law + size(bearing_[b]);
+        if (bearing_owner_[b] != ranks_->rank()) continue;
+        own.insert(own.end(), product_law_[b].begin(), product_law_[b].end());
+        own.insert(own.end(), product_on_[b].begin(), product_on_[b].end());
+    }
+    std::vector<const double*> at;
+    std::size_t all = 0;
+    for (const int one : sizes) all += static_cast<std::size_t>(one);
+    exchanged_.resize(all);
+    ranks_->gather(own, sizes, exchanged_.data());
+    for (std::size_t r = 0, from = 0; r < sizes.size(); from += static_cast<std::size_t>(sizes[r++]))
+        at.push_back(exchanged_.data() + from);
+    for (std::size_t b = 0; b < bearing_.size(); ++b) {
+        const double*& from = at[static_cast<std::size_t>(bearing_owner_[b])];
+        product_law_[b] = Eigen::Map<const Vec3>(from);
+        product_on_[b] = Eigen::Map<const Vector>(from + of_law, size(bearing_[b]));
+        from += of_law + size(bearing_[b]);
     }
 }
 
@@ -229,11 +278,12 @@ void ContactTerm::add_derivatives(linear::SystemMatrix& matrix) {
     constexpr Index batch = 64; // tangents held at a time: each takes some 100 kB on a smooth master
     if (tangents_.size() < batch) tangents_.resize(batch);
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
-        const model::ContactEvaluation& evaluation = evaluations_[p];
+        model::ContactEvaluation& evaluation = evaluations_[p];
         const Index size = evaluation.pair().size();
         {
             const ScopedTimer timer(timings_, Part::contact);
-            prepare_variations(p);
+            evaluation.evaluate_all_here(threads_);
+            prepare_variations(p, true);
         }
         for (Index first = 0; first < size; first += batch) {
             const Index count = std::min(batch, size - first);

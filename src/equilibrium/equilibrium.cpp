@@ -29,6 +29,7 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
                                         rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
       factorisable_(choice.factorisable) {
     if (dynamics != nullptr) contact_.set_dynamics(*dynamics);
+    if (const Share* share = model.K.share()) contact_.share_out(share->ranks());
     at_.u.reset(model.X.size());
     at_.x = at_.tail = unbalanced_ = at_.u;
 }

@@ -24,16 +24,17 @@ ContactEvaluation::ContactEvaluation(const ContactPair& pair)
 }
 
 ContactEvaluation::ContactEvaluation(const ContactEvaluation& other)
-    : pair_(other.pair_), discretisation_(other.discretisation_->clone()), search_(other.search_),
-      master_(other.master_), inertia_(other.inertia_), held_(other.held_), lambda_start_(other.lambda_start_),
-      start_(other.start_), now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_),
-      vertices_(other.vertices_), vertex_tails_(other.vertex_tails_), facets_(other.facets_), bulge_(other.bulge_),
-      faces_(other.faces_), tracking_(other.tracking_), in_force_(other.in_force_),
-      in_force_start_(other.in_force_start_), points_(other.points_), points_at_(other.points_at_),
-      depth_(other.depth_), kept_part_(other.kept_part_), overclosure_start_(other.overclosure_start_),
-      step_(other.step_), slides_(other.slides_), vertices_start_(other.vertices_start_),
-      passes_over_(other.passes_over_), clearance_(other.clearance_), left_(other.left_), states_(other.states_),
-      point_nodes_(other.point_nodes_), facet_changes_(other.facet_changes_) {
+    : pair_(other.pair_), share_(other.share_), rounded_(other.rounded_),
+      discretisation_(other.discretisation_->clone()), search_(other.search_), master_(other.master_),
+      inertia_(other.inertia_), held_(other.held_), lambda_start_(other.lambda_start_), start_(other.start_),
+      now_(other.now_), tails_start_(other.tails_start_), tails_(other.tails_), vertices_(other.vertices_),
+      vertex_tails_(other.vertex_tails_), facets_(other.facets_), bulge_(other.bulge_), faces_(other.faces_),
+      tracking_(other.tracking_), in_force_(other.in_force_), in_force_start_(other.in_force_start_),
+      points_(other.points_), points_at_(other.points_at_), depth_(other.depth_), kept_part_(other.kept_part_),
+      overclosure_start_(other.overclosure_start_), step_(other.step_), slides_(other.slides_),
+      vertices_start_(other.vertices_start_), passes_over_(other.passes_over_), clearance_(other.clearance_),
+      left_(other.left_), states_(other.states_), point_nodes_(other.point_nodes_),
+      facet_changes_(other.facet_changes_) {
     for (contact::ContactPoint& point : points_) point.trace.reset(); // refers to the other's placement
 }
 
@@ -76,6 +77,7 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
         master_ = history.master;
     }
     let_go();
+    if (share_) share_out_by_work(history);
     place(x, tails);
     const Places before = std::exchange(start_, now_);
     tails_start_ = tails_;
@@ -139,6 +141,7 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     std::vector<Index>& facet = tracking_.facet;
     std::vector<contact::FacetHit>& hits = tracking_.hits;
     facet_changes_ = 0;
+    tracking_.share = shared_points();
     if (holds_geometry()) {
         place(x, tails);
         for (Index j = 0; j < pair_->size(); ++j) {
@@ -159,6 +162,7 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
         const int latch = tracking_.changes_before_latch;
         parallel_for(threads, pair_->size(), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
+                if (tracking_.share != nullptr && !owns(j)) continue;
                 if (is_far(j)) {
                     hits[j] = {};
                     hits[j].distance = clearance_[j];
@@ -172,6 +176,7 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
                 if (!pair_->slaves().around.empty()) end_at_bounds(j);
             }
         });
+        if (tracking_.share != nullptr) exchange_hits();
         for (Index j = 0; j < pair_->size(); ++j)
             if (!is_far(j) && hits[j].facet != facet[j]) {
                 tracking_.changes[j] +=
@@ -183,6 +188,7 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
     }
     const ScopedTimer timer(timings, Part::contact);
     facet_changes_ += discretisation_->evaluate(positions(), tracking_, points_, threads);
+    if (tracking_.share != nullptr) exchange_points();
     if (!pair_->slaves().along.empty()) drop_what_is_not_pointed_at(x);
     if (!pair_->slaves().around.empty()) drop_what_is_beside();
     for (Index j = 0; j < pair_->size(); ++j) {
@@ -287,7 +293,8 @@ contact::ContactState ContactEvaluation::measure(Index j, const contact::PairPos
     contact::ContactState state{Vec3::Zero(), point.gap, point.normal, rubs ? drift(j) : Vec3(Vec3::Zero())};
     state.gap -= kept_depth(j);
     if (!point.found || tails_.slaves.empty()) return state;
-    state.gap += discretisation_->gap_rounded_off(j, at, point);
+    const bool told = tracking_.share != nullptr && !holds_geometry();
+    state.gap += told ? rounded_[j] : discretisation_->gap_rounded_off(j, at, point);
     if (rubs && !tails_start_.slaves.empty()) state.drift += drift(j, tails_start_, tails_);
     return state;
 }

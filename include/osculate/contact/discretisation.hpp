@@ -4,6 +4,7 @@
 #include "osculate/contact/contact_point.hpp"
 #include "osculate/contact/master_surface.hpp"
 #include "osculate/contact/search.hpp"
+#include "osculate/contact/slave_share.hpp"
 
 #include <memory>
 #include <span>
@@ -32,6 +33,8 @@ struct FacetTracking {
     /// (slaves) Whether a node is too far from the master to touch it: it has no hit, and no point. Averages over facets all
     /// of whose nodes are may be left out. Empty: none is.
     std::vector<char> far;
+    const SlaveShare* share = nullptr; ///< null: this process evaluates all slave nodes
+    [[nodiscard]] bool owns(Index j) const { return share == nullptr || share->owns(j); }
 };
 
 /// Contact points of all slave nodes at one set of positions, and their variations. The object made by compile holds
@@ -43,7 +46,8 @@ public:
 
     /// Opens an attempt at the positions of its start.
     virtual void begin(const PairPositions& at, const FacetTracking& tracking, int threads) = 0;
-    /// Computes the points of all slave nodes on the facets in `tracking`; may latch more of them there.
+    /// Computes the points of all slave nodes on the facets in `tracking`; may latch more of them there. Of shared ones, at
+    /// least those that this process owns; what vary() and gap_rounded_off() need, too, is then there only of these.
     /// @returns number of its own points that changed their facet
     virtual int evaluate(const PairPositions& at, FacetTracking& tracking, std::vector<ContactPoint>& points,
                          int threads) = 0;
@@ -77,6 +81,14 @@ public:
     [[nodiscard]] virtual double loaded_area(Index j, double tributary) const {
         (void)j;
         return tributary;
+    }
+    /// Appends what the process that evaluated slave j knows of it beside its point, and takes this in the others, where they
+    /// ask carriers() and loaded_area().
+    /// @returns  where the numbers end
+    virtual void pack(Index j, std::vector<double>& numbers) const { (void)j, (void)numbers; }
+    virtual const double* unpack(Index j, const double* numbers) {
+        (void)j;
+        return numbers;
     }
     /// Whether a slave node without a point may still be inside the master, because no average detects it.
     [[nodiscard]] virtual bool overlooks() const { return false; }

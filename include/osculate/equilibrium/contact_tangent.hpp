@@ -10,6 +10,7 @@ namespace osculate::equilibrium {
 /// force.
 struct ContactTangent final : linear::ContactDerivatives {
     bool reaches = false;  ///< false: only D is valid
+    Index carriers = 0;    ///< m; 0 if it does not reach
     Mat3 D = Mat3::Zero(); ///< of the law, by the contact force
     contact::MatrixX3 E;   ///< (3m x 3) of the forces on the left of the equilibrium, by the contact force
     Matrix A, G;           ///< (3 x 3+3n) of the law and (3m x 3+3n) of the forces, by y; G only if needed as matrix

@@ -45,6 +45,8 @@ public:
     ContactTerm(const model::ContactPairs& pairs, const linear::Constraints& constraints,
                 const linear::Unknowns& unknowns, Timings& timings, int threads);
 
+    /// Shares evaluation and products out among processes; all calls but const ones are collective then.
+    void share_out(Ranks& ranks);
     /// Says that nodes depend on others. It must outlive this object.
     void use(const linear::Dependence& dependence) { dependence_ = &dependence; }
     /// Sets the statuses for the next solve. With `natural` they are used only at the next iterate, and only if
@@ -108,8 +110,12 @@ private:
     [[nodiscard]] contact::ContactResidual law(std::size_t p, Index j) const;
     /// Whether slave j of pair p has a contact partner and is closed or carries a contact force.
     [[nodiscard]] bool reaches(std::size_t p, Index j) const;
-    void prepare_variations(std::size_t p);
+    void prepare_variations(std::size_t p, bool all);
     void linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const;
+    /// Of a slave node that does not reach its master, or whose derivatives another process has.
+    void linearise_law(std::size_t p, Index j, ContactTangent& tangent) const;
+    /// Takes the products of other processes' contacts from them.
+    void exchange_products();
     [[nodiscard]] linear::SoftContact soften(std::size_t p, Index j) const;
     /// Projector on the directions in which symmetry planes hold a node: no contact force acts along these directions.
     [[nodiscard]] Mat3 symmetry_directions(Index node) const;
@@ -130,9 +136,12 @@ private:
     int status_changes_ = 0;
     std::vector<ContactTangent> tangents_; ///< by coupling for products; one batch for a matrix
     std::vector<linear::BearingContact> bearing_;
+    Ranks* ranks_ = nullptr;         ///< processes that share the run; null: one
+    std::vector<int> bearing_owner_; ///< (bearing_) rank; empty: one process
     std::vector<Mat3> open_laws_;
     std::vector<Vec3> product_law_; ///< scratch of add_product()
     std::vector<Vector> product_on_;
+    std::vector<double> exchanged_; ///< scratch of exchange_products()
 };
 
 } // namespace osculate::equilibrium

@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,14 @@ public:
     ~ContactEvaluation() = default;
 
     [[nodiscard]] const ContactPair& pair() const { return *pair_; }
+    /// Shares the slave nodes out among processes: each evaluates some in evaluate() and tells the others what it found.
+    /// begin_step() and evaluate() are collective then. General contact and contact of edges is evaluated by all.
+    void share_out(Ranks& ranks) { share_.emplace(ranks, pair_->size()); }
+    /// Whether this process evaluates slave j: vary() needs that.
+    [[nodiscard]] bool owns(Index j) const { return !share_ || share_->owns(j); }
+    [[nodiscard]] const contact::SlaveShare* share() const { return share_ ? &*share_ : nullptr; }
+    /// Evaluates every slave node here, at the positions of the last evaluate(), for vary() of all of them.
+    void evaluate_all_here(int threads);
     /// The master surface of the attempt.
     [[nodiscard]] const std::shared_ptr<const contact::MasterSurface>& master() const { return master_; }
 
@@ -169,6 +178,13 @@ private:
     };
     /// Positions of the slave and of the n nodes of its point, m, (3+3n).
     [[nodiscard]] Vector point_positions(Index j) const;
+    /// The share of a pair whose points are shared, too; null: all are evaluated here.
+    [[nodiscard]] const contact::SlaveShare* shared_points() const;
+    /// Shares the slave nodes out by their work in the step that begins.
+    void share_out_by_work(const ContactHistory& history);
+    void exchange_hits();
+    /// Points, what the discretisation knows beside them, and rounded_.
+    void exchange_points();
     /// Extracts these values from a field; nothing from an empty field.
     void gather(const std::vector<Vec3>& field, Places& into) const;
     [[nodiscard]] const Vec3& at(const Places& places, Index vertex) const;
@@ -236,6 +252,8 @@ private:
     template <class Moved> [[nodiscard]] Vec3 drift(Index j, const Vec3& slave, const Moved& moved) const;
 
     const ContactPair* pair_;
+    std::optional<contact::SlaveShare> share_; ///< none: all slave nodes are this process'
+    std::vector<double> rounded_;              ///< (slaves) rounding errors of gaps, m, where points are shared
     std::unique_ptr<contact::Discretisation> discretisation_;
     contact::FacetSearch search_;
     std::shared_ptr<const contact::MasterSurface> master_;

@@ -1,12 +1,11 @@
 /// Probes that reduce the values of many nodes to one.
 
-#include "osculate/fe/facet_quadrature.hpp"
 #include "output/probe_values.hpp"
+#include "output/set_areas.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -75,22 +74,6 @@ private:
     ProbeFields fields_;
     std::vector<std::string> reductions_;
 };
-
-/// Areas that belong to the nodes of a set on its facets, undeformed, m^2.
-std::vector<double> areas_of(const model::Model& model, const model::Set& set) {
-    const model::Body& body = model.bodies[static_cast<std::size_t>(set.body)];
-    std::map<Index, double> share;
-    for (const mesh::SurfaceFace& face : mesh::surface_faces(body.mesh, set.facets, body.first_node)) {
-        const auto own = fe::tributary_areas(face, model.X);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i) share[face.nodes[i]] += own[i];
-    }
-    std::vector<double> areas;
-    for (const Index node : set.nodes) {
-        const auto at = share.find(node);
-        areas.push_back(at == share.end() ? 0 : at->second);
-    }
-    return areas;
-}
 
 } // namespace
 

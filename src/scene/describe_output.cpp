@@ -4,6 +4,7 @@
 #include "scene/describe_parts.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace osculate::scene {
 
@@ -62,6 +63,27 @@ void describe(Visitor& v, ContactLineProbe& p) {
     samples(v, p.samples);
     fields(v, slave_fields, p.fields, "[normal_stress]");
 }
+void describe(Visitor& v, ContactArcProbe& p) {
+    pair(v, p.pair);
+    place(v, "centre", "A point of the axis.", p.centre);
+    v.vector({.name = "axis", .meaning = "Axis of the arc.", .range = range::direction, .direction = true}, p.axis);
+    place(v, "from",
+          "Start; its distance from the axis is the radius. Each sample is taken at the closest point of the "
+          "undeformed slave surface.",
+          p.from);
+    v.number({.name = "angle",
+              .meaning = "About the axis, to the end.",
+              .unit = dimension::angle,
+              .range = {.low = -2 * std::numbers::pi, .high = 2 * std::numbers::pi}},
+             p.angle);
+    samples(v, p.samples);
+    fields(v, slave_fields, p.fields, "[normal_stress]");
+}
+void describe(Visitor& v, ContactForceProbe& p) {
+    v.text({.name = "set", .meaning = "Set of nodes.", .required = true, .names = Names::set}, p.set);
+    v.vector({.name = "point", .meaning = "Moments are about it.", .unit = dimension::length, .range = range::position},
+             p.point);
+}
 void describe(Visitor& v, NodesProbe& p) {
     v.text({.name = "set", .meaning = "Set of nodes.", .required = true, .names = Names::set}, p.set);
     fields(v, body_fields, p.fields, "[displacement]");
@@ -84,11 +106,13 @@ void describe(Visitor& v, SectionForceProbe& p) {
 }
 
 void describe(Visitor& v, Probe& probe) {
-    static const Words tags{"point", "line", "contact_line", "nodes", "slave_nodes", "section_force"};
+    static const Words tags{"point", "line",        "contact_line",  "contact_arc",
+                            "nodes", "slave_nodes", "contact_force", "section_force"};
     one_of(v, tags,
            {"Fields at a point of a body.", "Fields along a line through a body.",
-            "Fields of the slave surface below a line.", "Fields of a set's nodes, reduced.",
-            "Fields of a pair's slave nodes, reduced.",
+            "Fields of the slave surface below a line.", "Fields of the slave surface along an arc.",
+            "Fields of a set's nodes, reduced.", "Fields of a pair's slave nodes, reduced.",
+            "Resultant of all contact on a set's nodes, with its centre and pressures.",
             "Force and moment through a plane cut of a body, from the forces of the elements beside it."},
            true, probe.kind, [&](auto& kind) { describe(v, kind); });
     v.integer({.name = "every",

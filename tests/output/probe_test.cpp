@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <gmock/gmock.h>
+#include <numbers>
 
 namespace osculate::output {
 namespace {
@@ -105,6 +106,59 @@ TEST(ContactLineProbe, LooksAtTheSlaveSurfaceBelowIt) {
     EXPECT_EQ(rows[3][5], 2) << "slips: the nearest node, no mean of statuses";
     EXPECT_NEAR(rows[2][6], -0.01, round_off);
     EXPECT_TRUE(std::isnan(rows[8][6])) << "no partner, no gap";
+}
+
+TEST(ContactArcProbe, TurnsAboutItsAxisAlongTheSlaveSurface) {
+    const TwoBlocks blocks;
+    const double right_angle = std::numbers::pi / 2;
+    const auto probe = make_contact_arc_probe(blocks.model, 0, {1, 0.5, 7}, {0, 0, -2}, {0.8, 0.5, 1.1}, right_angle, 3,
+                                              {"normal_stress"});
+    EXPECT_EQ(names(*probe)[1], "angle [rad]");
+    const auto rows = probe->rows(blocks.snapshot());
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_NEAR(rows[1][0], 0.2 * right_angle / 2, round_off) << "along the arc";
+    EXPECT_EQ(rows[2][1], right_angle);
+    EXPECT_NEAR(rows[2][2], 1, round_off);
+    EXPECT_NEAR(rows[2][3], 0.7, round_off) << "clockwise seen from above, as the axis points down";
+    EXPECT_NEAR(rows[2][4], 1, round_off) << "on the surface, not on the arc";
+    EXPECT_NEAR(rows[2][5], 400, 1e-9);
+    EXPECT_THROW((void)make_contact_arc_probe(blocks.model, 0, {1, 0.5, 1}, {0, 0, 1}, {1, 0.5, 1.2}, 1, 3, {"gap"}),
+                 std::invalid_argument)
+        << "it begins on its axis";
+    EXPECT_THROW((void)make_contact_arc_probe(blocks.model, 0, {1, 0.5, 3}, {0, 0, 1}, {0.8, 0.5, 3}, 1, 3, {"gap"}),
+                 std::invalid_argument)
+        << "it is farther from the surface than from its axis";
+}
+
+TEST(ContactForceProbe, IsWhatContactDoesToTheNodesOfASet) {
+    const TwoBlocks blocks;
+    const model::Body& cap = blocks.model.bodies[1];
+    model::Set under{"under", 1, {}, cap.mesh.surfaces.at("z_min")};
+    for (Index n = 0; n < cap.nodes(); ++n)
+        if (cap.mesh.nodes[n].z() == 1) under.nodes.push_back(cap.first_node + n);
+    const Vec3 about(1, 0.5, 0);
+    const auto row = make_contact_force_probe(blocks.model, under, about)->rows(blocks.snapshot())[0];
+    const Vec3 sum = 4 * TwoBlocks::force, centre = Vec3(1, 0.5, 1) + TwoBlocks::shift,
+               moment = (centre - about).cross(sum); // forces are the same on all
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(row[k], sum(k), 1e-9);
+        EXPECT_NEAR(row[3 + k], moment(k), 1e-9);
+        EXPECT_NEAR(row[6 + k], centre(k), round_off);
+    }
+    EXPECT_NEAR(row[9], 400, 1e-9) << "pressing";
+    EXPECT_NEAR(row[10], 0.75, round_off) << "of the nodes at the end, 0.125 each, and in the middle";
+    EXPECT_NEAR(row[11], 400 / 0.75, 1e-9);
+    EXPECT_NEAR(row[12], 800, 1e-9) << "at the end";
+    under.facets = cap.mesh.surfaces.at("z_max"); // where nothing touches
+    under.nodes.clear();
+    for (Index n = 0; n < cap.nodes(); ++n)
+        if (cap.mesh.nodes[n].z() > 1) under.nodes.push_back(cap.first_node + n);
+    const auto none = make_contact_force_probe(blocks.model, under, about)->rows(blocks.snapshot())[0];
+    EXPECT_EQ(none[2], 0);
+    EXPECT_TRUE(std::isnan(none[6])) << "no centre";
+    EXPECT_TRUE(std::isnan(none[11])) << "no mean of nothing";
+    under.facets.clear();
+    EXPECT_THROW((void)make_contact_force_probe(blocks.model, under, about), std::invalid_argument);
 }
 
 TEST(NodesProbe, ReducesWhatHasAValue) {

@@ -63,6 +63,12 @@ TEST_F(Probes, OfAPressedColumnAreTheExactSolution) {
     EXPECT_NEAR(loaded.number(3, "sum_displacement_z [m]"), -9 * 2 * p / E, 1e-9 * p / E);
     EXPECT_NEAR(loaded.number(3, "max_energy_density [J/m^3]"), p * p / (2 * E), 1e-9 * p * p / E);
     EXPECT_NEAR(Csv(files / "touching.csv").number(3, "sum_contact_force_z [N]"), p, 1e-9 * p);
+    const Csv foot(files / "foot.csv"); // of the master
+    EXPECT_NEAR(foot.number(3, "force_z [N]"), -p, 1e-9 * p);
+    EXPECT_NEAR(foot.number(3, "moment_y [N m]"), 0.5 * p, 1e-9 * p);
+    EXPECT_NEAR(foot.number(3, "centre_x [m]"), 0.5, 1e-9);
+    EXPECT_NEAR(foot.number(3, "mean_pressure [Pa]"), p, 1e-9 * p);
+    EXPECT_NEAR(foot.number(3, "max_pressure [Pa]"), p, 1e-9 * p);
 }
 
 TEST_F(Probes, OfABodyThatFliesFreeKnowItsMotionAndNoStrain) {

@@ -57,6 +57,19 @@ using FieldNames = std::vector<std::string>;
 [[nodiscard]] std::unique_ptr<Probe> make_contact_line_probe(const model::Model& model, Index pair, const Vec3& from,
                                                              const Vec3& to, int samples, const FieldNames& fields);
 
+/// The same along the arc that begins at `from` and turns by `angle`, rad, about the axis through `centre`; with a column `angle`.
+/// @throws std::invalid_argument if a sample is farther from the surface than from the axis
+[[nodiscard]] std::unique_ptr<Probe> make_contact_arc_probe(const model::Model& model, Index pair, const Vec3& centre,
+                                                            const Vec3& axis, const Vec3& from, double angle,
+                                                            int samples, const FieldNames& fields);
+
+/// What all contact does to the nodes of a set: sum of forces, and of moments about `point`, m, at current positions; integral
+/// `pressing` of the pressure over the set's undeformed facets, its centre in current positions, the area of the nodes that
+/// carry force, and mean and largest pressure there. NaN where nothing presses.
+/// @throws std::invalid_argument if the set has no facets
+[[nodiscard]] std::unique_ptr<Probe> make_contact_force_probe(const model::Model& model, const model::Set& set,
+                                                              const Vec3& point);
+
 /// Fields of nodes reduced to one number per component: mean, max, min or sum over the nodes that have a value; or
 /// area_mean: the mean over the set's undeformed facets, with the field between nodes from the elements' shape
 /// functions.

@@ -4,6 +4,7 @@
 #include "osculate/core/types.hpp"
 #include "osculate/scene/named.hpp"
 
+#include <numbers>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,6 +39,17 @@ struct ContactLineProbe {
     bool operator==(const ContactLineProbe&) const = default;
 };
 
+/// Fields of a pair's slave surface along an arc.
+struct ContactArcProbe {
+    std::string pair;
+    Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ(); ///< m, a direction
+    Vec3 from = Vec3::UnitX();                        ///< m; start, which fixes the radius
+    double angle = 2 * std::numbers::pi;              ///< rad, about the axis
+    int samples = 73;
+    std::vector<std::string> fields{"normal_stress"};
+    bool operator==(const ContactArcProbe&) const = default;
+};
+
 /// Fields of a set's nodes, reduced to numbers.
 struct NodesProbe {
     std::string set;
@@ -61,8 +73,17 @@ struct SectionForceProbe {
     bool operator==(const SectionForceProbe&) const = default;
 };
 
+/// What contact does to a set: resultant, centre and pressures.
+struct ContactForceProbe {
+    std::string set;
+    Vec3 point = Vec3::Zero(); ///< m; moments are about it
+    bool operator==(const ContactForceProbe&) const = default;
+};
+
 struct Probe {
-    std::variant<PointProbe, LineProbe, ContactLineProbe, NodesProbe, SlaveNodesProbe, SectionForceProbe> kind;
+    std::variant<PointProbe, LineProbe, ContactLineProbe, ContactArcProbe, NodesProbe, SlaveNodesProbe,
+                 ContactForceProbe, SectionForceProbe>
+        kind;
     int every = 1; ///< accepted steps between rows
     bool operator==(const Probe&) const = default;
 };

@@ -34,6 +34,14 @@ std::unique_ptr<output::Probe> make(const scene::Probe& spec, const model::Model
                        return output::make_contact_line_probe(model, pair_index(model, p.pair), p.from, p.to, p.samples,
                                                               p.fields);
                    },
+                   [&](const scene::ContactArcProbe& p) {
+                       return output::make_contact_arc_probe(model, pair_index(model, p.pair), p.centre, p.axis, p.from,
+                                                             p.angle, p.samples, p.fields);
+                   },
+                   [&](const scene::ContactForceProbe& p) {
+                       return output::make_contact_force_probe(
+                           model, *std::ranges::find(model.sets, p.set, &model::Set::name), p.point);
+                   },
                    [&](const scene::NodesProbe& p) {
                        return output::make_nodes_probe(model, *std::ranges::find(model.sets, p.set, &model::Set::name),
                                                        p.fields, p.reduce);
@@ -59,6 +67,12 @@ std::pair<std::string, std::string> place_of(const scene::Probe& spec) {
             },
             [](const scene::ContactLineProbe& p) {
                 return std::pair{std::string("contact_line"), "a line along the slave surface of '" + p.pair + "'"};
+            },
+            [](const scene::ContactArcProbe& p) {
+                return std::pair{std::string("contact_arc"), "an arc along the slave surface of '" + p.pair + "'"};
+            },
+            [](const scene::ContactForceProbe&) {
+                return std::pair{std::string("contact_force.set"), std::string("a set with facets")};
             },
             [](const scene::SectionForceProbe& p) {
                 return std::pair{std::string("section_force.point"), "a plane that cuts body '" + p.body + "'"};

@@ -67,7 +67,7 @@ std::string difference(const Plan& a, const Plan& b) {
 
 /// Whether a column of a probe says where a sample is in the undeformed model.
 bool is_place(const std::string& column) {
-    static const std::set<std::string> places{"s", "X", "Y", "Z"};
+    static const std::set<std::string> places{"s", "angle", "X", "Y", "Z"};
     return places.contains(column);
 }
 

@@ -3,7 +3,6 @@
 #include "osculate/model/contact_evaluation.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <type_traits>
 
 namespace osculate::model {
@@ -90,17 +89,25 @@ void ContactEvaluation::share_out_by_work(const ContactHistory& history) {
 }
 
 void ContactEvaluation::exchange_hits() {
-    using Hit = contact::FacetHit;
-    static_assert(std::is_trivially_copyable_v<Hit> && sizeof(Hit) % sizeof(double) == 0);
-    constexpr std::size_t count = sizeof(Hit) / sizeof(double);
     share_->exchange(
         [&](Index j, std::vector<double>& numbers) {
-            numbers.resize(numbers.size() + count);
-            std::memcpy(numbers.data() + numbers.size() - count, &tracking_.hits[j], sizeof(Hit));
+            const contact::FacetHit& hit = tracking_.hits[j];
+            numbers.insert(numbers.end(),
+                           {static_cast<double>(hit.facet), hit.u.x(), hit.u.y(), hit.distance, hit.overhang,
+                            hit.beyond, hit.boundary ? 1.0 : 0.0, hit.latched ? 1.0 : 0.0, hit.limited ? 1.0 : 0.0});
         },
         [&](Index j, const double* numbers) {
-            std::memcpy(&tracking_.hits[j], numbers, sizeof(Hit));
-            return numbers + count;
+            Reader from(numbers);
+            contact::FacetHit& hit = tracking_.hits[j];
+            hit.facet = from.index();
+            from.fill(hit.u);
+            hit.distance = from.number();
+            hit.overhang = from.number();
+            hit.beyond = from.number();
+            hit.boundary = from.number() != 0;
+            hit.latched = from.number() != 0;
+            hit.limited = from.number() != 0;
+            return from.at();
         });
 }
 

@@ -2,6 +2,7 @@
 
 #include "osculate/linear/gathered.hpp"
 #include "osculate/solve/by_components.hpp"
+#include "osculate/solve/direct_on_first.hpp"
 #include "osculate/solve/friction_problem.hpp"
 
 #include <Eigen/LU>
@@ -13,11 +14,10 @@ namespace osculate::equilibrium {
 using linear::Constraints;
 
 namespace {
-constexpr double reach = 0.1;         ///< of a facet: nodes that far from the master may close
-constexpr Index most_points = 1000;   ///< their dense matrix takes 72 MB
-constexpr Index most_shared = 100000; ///< nodes whose factors every process has room for
-constexpr Index batch = 64;           ///< right sides solved at a time
-constexpr double tolerance = 1e-10;   ///< of solve::friction_error()
+constexpr double reach = 0.1;       ///< of a facet: nodes that far from the master may close
+constexpr Index most_points = 1000; ///< their dense matrix takes 72 MB
+constexpr Index batch = 64;         ///< right sides solved at a time
+constexpr double tolerance = 1e-10; ///< of solve::friction_error()
 } // namespace
 
 FrictionStep::FrictionStep(const linear::Constraints& constraints, const linear::Unknowns& unknowns, BodyTerm& bodies,
@@ -34,7 +34,7 @@ bool FrictionStep::factorise(const Iterate& at) {
     const linear::BlockMatrix& tangent = folded_ ? folded_->matrix() : bodies_.bodies().tangent();
     std::optional<linear::BlockMatrix> whole; // each process solves by itself, and all get the same bits
     if (tangent.share() != nullptr) {
-        if (tangent.rows() > most_shared) return false;
+        if (tangent.rows() > solve::most_nodes_on_first) return false;
         whole = linear::gathered(tangent);
     }
     stiffness_.use(whole ? *whole : tangent);

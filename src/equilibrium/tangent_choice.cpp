@@ -1,6 +1,7 @@
 #include "osculate/equilibrium/tangent_choice.hpp"
 
 #include "osculate/model/general_contact.hpp"
+#include "osculate/solve/direct_on_first.hpp"
 
 #include <algorithm>
 
@@ -97,16 +98,24 @@ const char* bars_multigrid(const model::Model& model, LinearSolver asked) {
     return nullptr;
 }
 
+const char* needs_factors(const model::Model& model) {
+    constexpr std::size_t few = 8; // nodes that lead one
+    if (!model.skin.empty()) return "contact of faces with midside nodes";
+    const bool means = std::ranges::any_of(model.led, [](const model::LedNode& one) { return one.by.size() > few; });
+    return means ? "equations between means of many nodes" : nullptr;
+}
+
 TangentChoice choose_tangent(const model::Model& model, const model::ContactPairs& pairs, LinearSolver asked,
                              bool dynamic, bool follows, const model::ContactScope* scope) {
-    constexpr Index most = 100000; // nodes: LU takes some 7 GB
     const bool pays = !model.nonlinear && !model.has_dependent_nodes() && condensation_cost(model, pairs, scope).pays();
     const bool couplings = std::ranges::any_of(model.rigid, &model::RigidBody::coupling);
     const bool symmetric = !follows && !couplings && (!dynamic || !model.nonlinear);
     const bool contact = !pairs.empty();
     TangentChoice choice;
+    if (model.share && needs_factors(model) != nullptr) return choice;
     choice.multigrid = goes_by_multigrid(model, asked, pays);
-    choice.factorisable = !choice.multigrid || nodes_with_equations(model) <= most; // of processes, the first does it
+    choice.factorisable = !choice.multigrid ||
+                          nodes_with_equations(model) <= solve::most_nodes_on_first; // of processes, the first does it
     choice.products = choice.multigrid || goes_by_products(pairs, asked);
     choice.preconditioned =
         choice.multigrid ||

@@ -77,6 +77,7 @@ void ContactEvaluation::begin_step(const std::vector<Vec3>& x, const ContactHist
         master_ = history.master;
     }
     let_go();
+    given_.clear();
     if (share_) share_out_by_work(history);
     place(x, tails);
     const Places before = std::exchange(start_, now_);
@@ -130,6 +131,12 @@ void ContactEvaluation::find_facets(const std::vector<Vec3>& x, const ContactHis
     });
 }
 
+void ContactEvaluation::take_facets_of(const ContactEvaluation& other) {
+    tracking_.facet = other.tracking_.facet;
+    given_.clear();
+    for (const contact::FacetHit& hit : other.tracking_.hits) given_.push_back(hit.latched ? 1 : 0);
+}
+
 void ContactEvaluation::forget_path() {
     tracking_.facet = facet_start_;
     if (!in_force_start_.empty()) in_force_ = in_force_start_;
@@ -169,10 +176,11 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
                     continue;
                 }
                 const Vec3& s = now_.slaves[j];
-                hits[j] = tracking_.changes[j] < latch || facet[j] < 0
-                              ? search_.track(s, facet[j], vertices_, tracking_.hysteresis, choice(j))
-                              : search_.closest_on(facet[j], s, vertices_, choice(j));
-                hits[j].latched = tracking_.changes[j] >= latch;
+                const bool given = !given_.empty(), latched = given ? given_[j] != 0 : tracking_.changes[j] >= latch;
+                hits[j] = facet[j] >= 0 && (given || latched)
+                              ? search_.closest_on(facet[j], s, vertices_, choice(j))
+                              : search_.track(s, facet[j], vertices_, tracking_.hysteresis, choice(j));
+                hits[j].latched = latched;
                 if (!pair_->slaves().around.empty()) end_at_bounds(j);
             }
         });

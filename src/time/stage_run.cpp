@@ -304,7 +304,7 @@ void StageRun::lead(const StepAttempt& attempt) {
     solve::KinsolSolver& solver = machinery_->solver;
     const bool regular = solver.linearise(equilibrium());
     const auto inverse = [&](const Vector& F, Vector& dz) { return regular && solver.solve_linear(F, dz); };
-    const BesideStep step{attempt.z,  equilibrium().statuses(), attempt.time,
+    const BesideStep step{attempt.z,  equilibrium().statuses(), equilibrium().contact(),        attempt.time,
                           attempt.dt, progress_.impact,         equilibrium().reference_force()};
     for (PerturbedPair* runs : context_.beside) runs->follow(step, inverse);
     equilibrium().rollback(); // what this needed leaves no trace in the run

@@ -110,7 +110,7 @@ history of energies          x x x x x . . . . x x . . .
 steps.csv                    x x x x x x x x x x x x x x
 iterations.csv               . . . . . . . . . . . x x x
 checks                       x x x x x x x x x x x x x x
-probes                       . . . . . x x x x . . . . .
+probes                       . . x . . x x x x . . . . .
 derivatives                  . . . . . . . . . . . . . .
 plots                        . . . . . x x x x . . . . .
 show_in_paraview.py          x . x . . x x x x x x x x x

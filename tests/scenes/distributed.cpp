@@ -41,7 +41,7 @@ protected:
             largest = std::max(largest, std::abs(first.number(row, column)));
         });
         each([&](std::size_t row, const std::string& column) {
-            const double allowed = column == "iterations" ? 1 : tolerance * largest; // tests at the last digit
+            const double allowed = column == "iterations" ? 2 : tolerance * largest; // tests at the last digit
             EXPECT_NEAR(first.number(row, column), second.number(row, column), allowed) << column;
         });
     }
@@ -262,10 +262,24 @@ TEST_F(DistributedRun, SpeaksWithOneVoice) {
     EXPECT_EQ(said.find("did you mean 'friction'", first + 1), std::string::npos) << said;
 }
 
-TEST_F(DistributedRun, NamesWhatProcessesCannotShare) {
-    EXPECT_EQ(with_ranks(2, scene_file("configs/tutorials/hinge.yaml"), ""), 2);
-    EXPECT_NE(content(folder / "said.txt").find("means of many nodes"), std::string::npos)
-        << content(folder / "said.txt");
+/// Equations between means of many nodes, and contact of faces with midside nodes: GMRES with multigrid is not tried.
+TEST_F(DistributedRun, LeavesWhatOnlyFactorsSolveToTheFirst) {
+    const std::string quadratic = "--set solver.tolerance=1e-10 "
+                                  "--set 'bodies.lower.mesh.block={origin: [0 m, 0 m, -1 m], size: [1 m, 1 m, 1 m], "
+                                  "divisions: [4, 4, 2], element: hex20}' "
+                                  "--set 'bodies.upper.mesh.block={origin: [0.1 m, 0.1 m, 0 m], size: [0.8 m, 0.8 m, "
+                                  "0.8 m], divisions: [3, 3, 2], element: tet10}' ";
+    const std::pair<std::string, std::string> runs[] = {
+        {scene_file("configs/tutorials/hinge.yaml"), "--set solver.tolerance=1e-10 "}, {scene, quadratic}};
+    for (const auto& [file, options] : runs) {
+        ASSERT_EQ(std::system(("cd " + folder.string() + " && " + OSCULATE_PROGRAM + " run " + file + " --quiet " +
+                               options + "-o alone --force > said.txt 2>&1")
+                                  .c_str()),
+                  0)
+            << content(folder / "said.txt");
+        ASSERT_EQ(with_ranks(2, file, options + "-o run_2 --force"), 0) << content(folder / "said.txt");
+        expect_the_same(folder / "alone", folder / "run_2", 1e-9);
+    }
 }
 
 TEST_F(DistributedRun, GivesUpWithAPostMortemAndAllFrames) {

@@ -63,6 +63,11 @@ TEST_F(Probes, OfAPressedColumnAreTheExactSolution) {
     EXPECT_NEAR(loaded.number(3, "sum_displacement_z [m]"), -9 * 2 * p / E, 1e-9 * p / E);
     EXPECT_NEAR(loaded.number(3, "max_energy_density [J/m^3]"), p * p / (2 * E), 1e-9 * p * p / E);
     EXPECT_NEAR(Csv(files / "touching.csv").number(3, "sum_contact_force_z [N]"), p, 1e-9 * p);
+    const Csv ring(files / "ring.csv"); // a full turn
+    ASSERT_EQ(ring.rows.size(), 4U * 5);
+    EXPECT_NEAR(ring.number(17, "angle [rad]"), std::numbers::pi, 1e-14);
+    EXPECT_NEAR(ring.number(17, "X [m]"), 0.1, 1e-14);
+    EXPECT_NEAR(ring.number(17, "normal_stress [Pa]"), p, 1e-9 * p);
     const Csv foot(files / "foot.csv"); // of the master
     EXPECT_NEAR(foot.number(3, "force_z [N]"), -p, 1e-9 * p);
     EXPECT_NEAR(foot.number(3, "moment_y [N m]"), 0.5 * p, 1e-9 * p);

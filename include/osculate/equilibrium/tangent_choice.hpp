@@ -46,6 +46,10 @@ struct TangentChoice {
 /// Why multigrid is not to be taken, however many nodes there are; null: nothing bars it.
 [[nodiscard]] const char* bars_multigrid(const model::Model& model, LinearSolver asked);
 
+/// On what GMRES with multigrid does not converge, in words; null: on nothing of the model. Processes that share it leave factors to
+/// the first.
+[[nodiscard]] const char* needs_factors(const model::Model& model);
+
 /// Made for a stage, from the model, the pairs in force and the user's request; with general contact again for other pairs.
 /// @param follows  whether a pressure follows its faces
 /// @param scope    see condensation_cost()

@@ -56,6 +56,9 @@ public:
     void pass_over_far_nodes(bool on) { passes_over_ = on; }
     /// Facets as at the start of the step again, none latched: what a solve that failed went through does not count.
     void forget_path();
+    /// Until begin_step(), facets are those of another evaluation of the same slaves and master, at positions that differ a little:
+    /// where a slave is as near to one as to another, both take the same.
+    void take_facets_of(const ContactEvaluation& other);
     /// Keeps partners, normals and weights of the last evaluate() from now on, until let_go() or begin_step(): gaps are then linear in
     /// the positions. For pairs with contact at nodes or of edges. @pre prepare_variations() with all that have a point
     void hold_geometry();
@@ -278,6 +281,8 @@ private:
     /// (slaves) General contact: whether the contact had a point at the last evaluation, or was closed when the attempt
     /// started; it loses it later then. And at the start.
     std::vector<char> in_force_, in_force_start_;
+    std::vector<char>
+        given_; ///< (slaves) of facets that are given: whether the other's point is latched; empty: none is given
     std::vector<contact::ContactPoint> points_;
     std::vector<char> points_at_; ///< (slaves) whether the node points at the master there, see SlaveNodes::along
     std::vector<double> depth_;   ///< (slaves) see kept_depth(), NaN for nodes that had no partner then; empty: none

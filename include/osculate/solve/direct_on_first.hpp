@@ -9,6 +9,9 @@ class Ranks;
 
 namespace osculate::solve {
 
+/// Nodes of a model whose factors one process has room for, some 7 GB of them with LU.
+inline constexpr Index most_nodes_on_first = 100000;
+
 /// The first process factorises and solves with `solver`, all get what it finds, bit for bit: a factorisation, which may take
 /// gigabytes, is held once. Calls are collective, with the same matrix on all processes.
 /// @param ranks  must outlive the result

@@ -19,15 +19,16 @@ struct RunContext;
 struct BesideStep {
     const Vector& z; ///< unknowns of the equilibrium
     const equilibrium::Statuses& statuses;
-    double time = 0, dt = 0;    ///< at its end, s
-    bool impact = false;        ///< it is one of an impact, see StepLimits::inelastic_impacts
-    double reference_force = 1; ///< N
+    const model::ContactEvaluations& contact; ///< evaluated at z
+    double time = 0, dt = 0;                  ///< at its end, s
+    bool impact = false;                      ///< it is one of an impact, see StepLimits::inelastic_impacts
+    double reference_force = 1;               ///< N
 };
 
 /// dz = J^-1 F with the tangent of the run that leads, at the end of its step. False if J is singular.
 using LinearSolve = std::function<bool(const Vector& F, Vector& dz)>;
 
-/// The run of a model that differs a little from another one. It takes the steps and the contact statuses of the other.
+/// The run of a model that differs a little from another one. It takes the steps, contact statuses and facets of the other.
 class PerturbedRun {
 public:
     /// The model, and all else, must outlive it.

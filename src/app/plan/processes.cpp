@@ -1,6 +1,8 @@
 #include "osculate/app/processes.hpp"
 
 #include "app/fault.hpp"
+#include "osculate/equilibrium/tangent_choice.hpp"
+#include "osculate/solve/direct_on_first.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,13 +28,14 @@ ProcessMemory process_memory(const Plan& plan) {
 }
 
 std::vector<Fault> cannot_be_shared(const model::Model& model) {
-    constexpr std::size_t few = 8; // nodes that lead one; with more, GMRES on multigrid does not converge
-    const bool means = std::ranges::any_of(model.led, [](const model::LedNode& one) { return one.by.size() > few; });
-    const char* what = !model.skin.empty() ? "contact of faces with midside nodes"
-                       : means             ? "equations between means of many nodes"
-                                           : nullptr;
-    if (what == nullptr) return {};
-    return {fault("scene", "a run without --distributed: processes cannot share this yet", what)};
+    const char* what = equilibrium::needs_factors(model);
+    if (what == nullptr || model.nodes() <= solve::most_nodes_on_first) return {};
+    return {
+        fault("scene",
+              fmt::format(
+                  "at most {} nodes, or a run without --distributed: the first process factorises such scenes for all",
+                  solve::most_nodes_on_first),
+              fmt::format("{}, and {} nodes", what, model.nodes()))};
 }
 
 std::string processes_in_words(const Plan& plan, int processes) {

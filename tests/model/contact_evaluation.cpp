@@ -158,6 +158,24 @@ TEST_P(FlatPair, FollowsASlidingSlaveFromFacetToFacet) {
     EXPECT_NEAR(evaluation->point(0).gap, 0.1, round_off);
 }
 
+/// Runs of slightly changed scenes beside a run: on an edge between two facets, they take the same.
+TEST_P(FlatPair, TakesTheFacetsOfAnotherUntilTheNextStep) {
+    std::vector<Vec3> beyond = x;
+    beyond[slave(0)].x() += 0.5;
+    ContactEvaluation other(*pair);
+    other.begin_step(beyond, pair->initial_history(), timings, 1);
+    other.evaluate(beyond, timings, 1);
+    ASSERT_NE(other.facets()[0], evaluation->facets()[0]);
+    evaluation->take_facets_of(other);
+    evaluation->evaluate(x, timings, 1);
+    EXPECT_EQ(evaluation->facets(), other.facets());
+    EXPECT_EQ(evaluation->hit(0).facet, other.facets()[0]);
+    EXPECT_EQ(evaluation->hit(0).latched, other.hit(0).latched) << "which side of a crease counts is its own";
+    evaluation->begin_step(x, pair->initial_history(), timings, 1);
+    evaluation->evaluate(x, timings, 1);
+    EXPECT_NE(evaluation->facets()[0], other.facets()[0]);
+}
+
 /// The projection itself does not depend on the facet on a flat master, so the latch costs nothing here.
 TEST_P(FlatPair, StaysOnItsFacetAfterFourChangesInOneAttempt) {
     for (int change = 0; change < 7; ++change) {

@@ -178,7 +178,7 @@ def main(arguments):
         draw(folder, picture, IMAGES / f"{picture.scene}.png")
         lines += [f"## {picture.scene.replace('_', ' ').capitalize()}",
                   f"{picture.says} [`configs/tutorials/{picture.scene}.yaml`](../configs/tutorials/{picture.scene}.yaml): "
-                  f"{summary['dofs']} unknowns, {summary['steps']['accepted']} steps, {summary['seconds']['total']:.1f} s.", "",
+                  f"{summary['dofs']} unknowns, {summary['steps']['accepted']} steps.", "",
                   f"![{picture.says}](images/gallery/{picture.scene}.png)", ""]
     PAGE.write_text("\n".join(lines[:-1]) + "\n")
 

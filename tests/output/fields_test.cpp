@@ -1,5 +1,6 @@
 #include "osculate/core/error.hpp"
 #include "osculate/output/fields.hpp"
+#include "osculate/output/nodal_contact.hpp"
 #include "output/two_blocks.hpp"
 
 #include <cmath>
@@ -17,6 +18,21 @@ std::vector<double> values(FieldPlace where, const std::string& name, const Snap
 
 Vec3 vector_at(const std::vector<double>& values, Index i) {
     return Eigen::Map<const Vec3>(values.data() + 3 * i);
+}
+
+/// Nodes at the end of the cap, on the edge between its underside and its end: friction pulls them off the end, or presses on it.
+TEST(ContactPressure, OfANodeOnAnEdgeIsOnTheFaceThatContactPressesOn) {
+    for (const double friction : {-30.0, 30.0, 1e-12}) {
+        TwoBlocks blocks;
+        for (Vec3& lambda : blocks.state.contact[0].lambda)
+            if (lambda.z() > 0) lambda.x() = friction;
+        const NodalContact contact = nodal_contact(blocks.model, blocks.state, blocks.contact);
+        const model::ContactPair& pair = *blocks.model.pairs[0];
+        for (Index j = 0; j < pair.size(); ++j) {
+            const double x = blocks.slave_X(j).x(), area = x < 1 ? 0.125 : 0.25; // of the underside
+            EXPECT_NEAR(contact.pressure[pair.slaves().node[j]], x > 2 ? 0 : 100 / area, 1e-9) << friction;
+        }
+    }
 }
 
 TEST(Fields, AreNamedOncePerPlace) {

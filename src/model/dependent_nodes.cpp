@@ -31,6 +31,10 @@ std::vector<std::pair<Index, Index>> followed_nodes(const Model& model) {
         for (const LikeNode& one : ring.nodes) pairs.emplace_back(one.node, one.like);
     for (const LedNode& one : model.led)
         for (const auto& [node, by] : one.by) pairs.emplace_back(one.node, node);
+    for (const SkinNode& one : model.skin) {
+        pairs.emplace_back(one.node, one.host);
+        for (const auto& [node, weight] : one.carriers) pairs.emplace_back(one.node, node);
+    }
     std::ranges::sort(pairs);
     return pairs;
 }

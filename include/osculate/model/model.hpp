@@ -128,7 +128,7 @@ struct Model {
 
 /// Displacements, or velocities, of led and tied nodes, ends of sectors and skins from those of the nodes that they follow.
 void move_tied(const Model& model, Field& u);
-/// Nodes that follow others, skins apart, and each of those that they follow, ascending; rotations of rigid bodies follow their
+/// Nodes that follow others, and each of those that they follow, ascending; rotations of rigid bodies follow their
 /// reference points here.
 [[nodiscard]] std::vector<std::pair<Index, Index>> followed_nodes(const Model& model);
 /// Directions along which equations lead nodes.

@@ -31,7 +31,7 @@ MOMENTS = (
     Moment("contactor_in_half_tube", "A rubber contactor under pressure, which is drawn along a half-tube and swings.", (0.5, -0.9, 0.9), 0.5),
     Moment("spur_gears", "Involute gears turn against a torque, with friction between the teeth (plane strain).", (0, 0, 1), 1, zoom=1.5, up=(0, 1, 0)),
     Moment("tool_into_rubber", "A rigid ball is pressed into rubber and turned. The ball is an exact surface.", (0.6, -1, 0.7)),
-    Moment("clip", "A plastic clip snaps over a round bar, and off again.", (0, -1, 0), 0.42, zoom=1.5),
+    Moment("clip", "A plastic clip snaps over a round bar, and off again.", (0, -1, 0), 0.27, zoom=1.5),
     Moment("press_fit", "A hub is shrunk on a shaft, and the shaft is pressed out: a quarter.", (1, 0.8, 0.7)),
     Moment("bolted_joint", "A preloaded bolt holds two plates until the load opens the joint.", (0.7, -1, 0.5), zoom=0.9),
     Moment("bracket", "A bracket from a CAD file, screwed down at its foot, is pulled by a pin in its hole.", (0.7, -1, 0.6), zoom=1.1),

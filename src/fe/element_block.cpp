@@ -1,7 +1,6 @@
 #include "osculate/fe/element_block.hpp"
 
 #include "fe/kernel_instances.hpp"
-#include "fe/small_strain.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/fe/with_element.hpp"
 

@@ -1,12 +1,13 @@
 #pragma once
 /// Total Lagrangian kernels at any strain and rotation, of hyperelastic materials and of those with a memory.
 
+#include "fe/finite_forces.hpp"
 #include "fe/kernel_instances.hpp"
 #include "fe/solid_kernel.hpp"
+#include "osculate/core/error.hpp"
 #include "osculate/material/voigt.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace osculate::fe {
@@ -20,11 +21,12 @@ template <ReferenceElement E, class Material, bool mean_dilatation>
 class FiniteStrainKernel final : public SolidKernel<E> {
     static constexpr int n = E::nodes;
     using Positions = Eigen::Matrix<double, 3, n>;
-    using Forces = Eigen::Matrix<double, 3, n>;
-    using Stiffness = Eigen::Matrix<double, 3 * n, 3 * n>;
-    using Row = Eigen::Matrix<double, 1, 3 * n>;
-    using Stresses = std::array<Mat3, E::points>;
-    using Moduli = std::array<Mat6, E::points>;
+    using Kinematics = FiniteKinematics<E, mean_dilatation>;
+    using All = FiniteForces<E, mean_dilatation>;
+    using Forces = typename All::Forces;
+    using Stiffness = typename All::Stiffness;
+    using Stresses = typename All::Stresses;
+    using Moduli = typename All::Moduli;
 
 public:
     FiniteStrainKernel(const Material& material, bool heated) : SolidKernel<E>(heated), material_(material) {}
@@ -162,103 +164,6 @@ private:
     }
 
     static constexpr Deformation overflow{-std::numeric_limits<double>::infinity()};
-    /// Below this, C = 1 + 2 E, whose least eigenvalue can be J^2, has too few digits left: it counts as no volume.
-    static constexpr double least_J = 1e-6;
-
-    /// Deformation at the quadrature points, written in H = F - 1 and j = J - 1, so that small strains keep their digits.
-    struct Kinematics {
-        ElementPoints<E> points;
-        std::array<Mat3, E::points> H;
-        std::array<double, E::points> j;
-        double mean_j = 0;       ///< Jbar - 1
-        double volume = 0;       ///< current, sum of J dV, m^3
-        Deformation deformation; ///< smallest J
-
-        Kinematics(const ShapeTable<E>& table, const Positions& X, const Positions& u) : points(table, X) {
-            double smallest = std::numeric_limits<double>::infinity(), reference = 0;
-            for (std::size_t q = 0; q < E::points; ++q) {
-                H[q].noalias() = u * points.gradients[q];
-                const Mat3& h = H[q];
-                const double trace = h.trace();
-                // det(1 + H) - 1 = tr H + II_H + det H
-                j[q] = trace + (trace * trace - h.cwiseProduct(h.transpose()).sum()) / 2 + h.determinant();
-                smallest =
-                    std::isfinite(j[q]) ? std::min(smallest, 1 + j[q]) : -std::numeric_limits<double>::infinity();
-                mean_j += j[q] * points.volumes[q];
-                volume += (1 + j[q]) * points.volumes[q];
-                reference += points.volumes[q];
-                if (!std::isfinite(j[q])) break;
-            }
-            mean_j /= reference;
-            deformation.smallest_J = smallest < least_J ? std::min(smallest, 0.0) : smallest;
-        }
-
-        [[nodiscard]] Mat3 F(std::size_t q) const { return H[q] + Mat3::Identity(); }
-        /// (Jbar / J)^(2/3) - 1
-        [[nodiscard]] double scale_squared_less_one(std::size_t q) const {
-            return mean_dilatation ? std::expm1(2.0 / 3 * (std::log1p(mean_j) - std::log1p(j[q]))) : 0;
-        }
-        [[nodiscard]] double scale_squared(std::size_t q) const { return 1 + scale_squared_less_one(q); }
-        /// Green-Lagrange strain E = (H + H^T + H^T H) / 2, or that of F-bar, s^2 E + (s^2 - 1) / 2 1.
-        [[nodiscard]] Mat3 strain(std::size_t q) const {
-            Mat3 strain = (H[q] + H[q].transpose() + H[q].transpose() * H[q]) / 2;
-            if constexpr (mean_dilatation) {
-                const double s = scale_squared_less_one(q);
-                strain *= 1 + s;
-                strain.diagonal().array() += s / 2;
-            }
-            return strain;
-        }
-        /// g_a = F^-T dN_a/dX, so that d ln J = sum_a g_a . du_a
-        [[nodiscard]] Gradients<n> spatial_gradients(std::size_t q) const {
-            return points.gradients[q] * F(q).inverse();
-        }
-        /// Share of a point in the current volume.
-        [[nodiscard]] double weight(std::size_t q) const { return (1 + j[q]) * points.volumes[q] / volume; }
-        /// d ln Jbar = sum_a gbar_a . du_a, gbar the mean of g over the current volume
-        [[nodiscard]] Gradients<n> mean_gradients() const {
-            Gradients<n> mean = Gradients<n>::Zero();
-            for (std::size_t q = 0; q < E::points; ++q) mean += weight(q) * spatial_gradients(q);
-            return mean;
-        }
-    };
-
-    /// dE = B du, engineering shear strains: dE = sym(F^T dF).
-    static Eigen::Matrix<double, 6, 3 * n> strain_variation(const Mat3& F, const Gradients<n>& g) {
-        Eigen::Matrix<double, 6, 3 * n> B;
-        for (int a = 0; a < n; ++a) {
-            const double x = g(a, 0), y = g(a, 1), z = g(a, 2);
-            auto block = B.template middleCols<3>(3 * a);
-            block.row(0) = F.col(0).transpose() * x;
-            block.row(1) = F.col(1).transpose() * y;
-            block.row(2) = F.col(2).transpose() * z;
-            block.row(3) = F.col(0).transpose() * y + F.col(1).transpose() * x;
-            block.row(4) = F.col(1).transpose() * z + F.col(2).transpose() * y;
-            block.row(5) = F.col(2).transpose() * x + F.col(0).transpose() * z;
-        }
-        return B;
-    }
-
-    static Row flat(const Gradients<n>& g) { return g.transpose().reshaped().transpose(); }
-
-    /// Variation of k.strain(q): dE, or dEbar = s^2 (dE + h C / 3), h = d ln Jbar - d ln J.
-    static Eigen::Matrix<double, 6, 3 * n> varied_strain(const Kinematics& k, std::size_t q, const Row& mean) {
-        const Mat3 F = k.F(q);
-        Eigen::Matrix<double, 6, 3 * n> B = strain_variation(F, k.points.gradients[q]);
-        if constexpr (mean_dilatation) {
-            const Row h = mean - flat(k.spatial_gradients(q));
-            B += material::strain_vector(F.transpose() * F) / 3 * h;
-            B *= k.scale_squared(q);
-        }
-        return B;
-    }
-
-    /// S : d(dE), the part of the tangent that the stress has: dN_a/dX S dN_b/dX on the diagonal of block (a, b).
-    static void add_initial_stress(const Gradients<n>& g, const Mat3& S, Stiffness& K) {
-        const Eigen::Matrix<double, n, n> initial = g * S * g.transpose();
-        for (int b = 0; b < n; ++b)
-            for (int a = 0; a < n; ++a) K.template block<3, 3>(3 * a, 3 * b).diagonal().array() += initial(a, b);
-    }
 
     [[nodiscard]] Stresses stresses(const Kinematics& k, std::span<const double> history) const {
         Stresses S;
@@ -269,65 +174,6 @@ private:
         Moduli D;
         for (std::size_t q = 0; q < E::points; ++q) D[q] = law(history, q).tangent(k.strain(q));
         return D;
-    }
-
-    /// f . du = sum S : dE dV, dE that of k. With mean dilatation (dev tau : grad du + p div-bar du) dV,
-    /// tau = Fbar S Fbar^T, p = tr tau / 3.
-    [[nodiscard]] static Forces forces(const Kinematics& k, const Stresses& S) {
-        Forces sum = Forces::Zero();
-        double pressure = 0; // sum of p dV
-        for (std::size_t q = 0; q < E::points; ++q) {
-            const double dV = k.points.volumes[q];
-            if constexpr (mean_dilatation) {
-                Mat3 tau = k.scale_squared(q) * k.F(q) * S[q] * k.F(q).transpose();
-                const double p = tau.trace() / 3;
-                tau.diagonal().array() -= p;
-                pressure += p * dV;
-                sum.noalias() += (tau * dV) * k.spatial_gradients(q).transpose();
-            } else {
-                sum.noalias() += (k.F(q) * S[q] * dV) * k.points.gradients[q].transpose();
-            }
-        }
-        if constexpr (mean_dilatation) sum.noalias() += pressure * k.mean_gradients().transpose();
-        return sum;
-    }
-
-    /// sum dE : D : dE dV, the first dE that of `varied`, the second that of `moved`, on the right.
-    [[nodiscard]] static Stiffness material_tangent(const Kinematics& varied, const Kinematics& moved,
-                                                    const Moduli& D) {
-        Stiffness K = Stiffness::Zero();
-        Row mean_varied, mean_moved;
-        if constexpr (mean_dilatation) {
-            mean_varied = flat(varied.mean_gradients());
-            mean_moved = flat(moved.mean_gradients());
-        }
-        const auto stress_variation = [&](std::size_t q) -> Eigen::Matrix<double, 6, 3 * n> {
-            return D[q] * varied_strain(moved, q, mean_moved) * moved.points.volumes[q];
-        };
-        if constexpr (n <= 8) {
-            for (std::size_t q = 0; q < E::points; ++q)
-                K.noalias() += varied_strain(varied, q, mean_varied).transpose() * stress_variation(q);
-        } else { // many points of many nodes: one product of all of them is several times as quick
-            Eigen::Matrix<double, 6 * E::points, 3 * n> B, DB;
-            for (std::size_t q = 0; q < E::points; ++q) {
-                const auto row = static_cast<Eigen::Index>(6 * q);
-                B.template middleRows<6>(row) = varied_strain(varied, q, mean_varied);
-                DB.template middleRows<6>(row) = stress_variation(q);
-            }
-            K.noalias() += B.transpose() * DB;
-        }
-        return K;
-    }
-
-    /// Derivative of forces(k, S) at constant S, symmetric.
-    [[nodiscard]] static Stiffness stress_tangent(const Kinematics& k, const Stresses& S) {
-        Stiffness K = Stiffness::Zero();
-        if constexpr (mean_dilatation)
-            add_mean_dilatation(k, S, K);
-        else
-            for (std::size_t q = 0; q < E::points; ++q)
-                add_initial_stress(k.points.gradients[q], S[q] * k.points.volumes[q], K);
-        return K;
     }
 
     /// Forces over a step from u0 to u1: strains at both ends, their mean stress, and the configuration it acts in,
@@ -392,44 +238,10 @@ private:
         }
     };
 
-    /// With phi = ln Jbar - ln J, h = dphi, s^2 = exp(2/3 phi), p = s^2 S : C / 3, r = s^2 S : dE:
-    ///   S : ddEbar = s^2 S : ddE + 2/3 (h r + r h) + 2/3 p h h + p ddphi,
-    ///   dd ln J = -g_b g_a on block (a, b),  dd ln Jbar = sum_q w_q (g g + dd ln J)_q - gbar gbar.
-    static void add_mean_dilatation(const Kinematics& k, const Stresses& S, Stiffness& K) {
-        const Row mean = flat(k.mean_gradients());
-        std::array<double, E::points> pdV;
-        double pressure = 0;
-        for (std::size_t q = 0; q < E::points; ++q) {
-            const double dV = k.points.volumes[q], s2 = k.scale_squared(q);
-            const Mat3 F = k.F(q);
-            const auto B = strain_variation(F, k.points.gradients[q]);
-            const Row h = mean - flat(k.spatial_gradients(q));
-            const Row r = s2 * material::stress_vector(S[q]).transpose() * B;
-            const double p = s2 * S[q].cwiseProduct(F.transpose() * F).sum() / 3;
-            add_initial_stress(k.points.gradients[q], S[q] * (s2 * dV), K);
-            const Row cross = 2.0 / 3 * dV * (r + p / 2 * h); // h r + r h + p h h
-            K.noalias() += h.transpose() * cross;
-            K.noalias() += cross.transpose() * h;
-            pdV[q] = p * dV;
-            pressure += pdV[q];
-        }
-        for (std::size_t q = 0; q < E::points; ++q) {
-            const Gradients<n> g = k.spatial_gradients(q);
-            const Row row = flat(g);
-            const double share = pressure * k.weight(q);
-            K.noalias() += (share * row.transpose()) * row;
-            for (int b = 0; b < n; ++b)
-                for (int a = 0; a < n; ++a)
-                    K.template block<3, 3>(3 * a, 3 * b).noalias() +=
-                        (pdV[q] - share) * g.row(b).transpose() * g.row(a);
-        }
-        K.noalias() -= (pressure * mean.transpose()) * mean;
-    }
-
     [[nodiscard]] Deformation force(const Kinematics& k, std::span<const double> history,
                                     Eigen::Ref<Eigen::Matrix3Xd> f) const {
         if (!k.deformation.admissible()) return k.deformation;
-        const Forces sum = forces(k, stresses(k, history));
+        const Forces sum = All::forces(k, stresses(k, history));
         if (!sum.allFinite()) return overflow;
         f = sum;
         return k.deformation;
@@ -438,7 +250,8 @@ private:
     [[nodiscard]] Deformation end_tangent(const Kinematics& k, std::span<const double> history,
                                           Eigen::Ref<Matrix> Ke) const {
         if (!k.deformation.admissible()) return k.deformation;
-        const Stiffness K = stress_tangent(k, stresses(k, history)) + material_tangent(k, k, moduli(k, history));
+        const Stiffness K =
+            All::stress_tangent(k, stresses(k, history)) + All::material_tangent(k, k, moduli(k, history));
         if (!K.allFinite()) return overflow;
         Ke = (K + K.transpose()) / 2;
         return k.deformation;
@@ -446,7 +259,7 @@ private:
 
     [[nodiscard]] Deformation mean_force(const Step& step, Eigen::Ref<Eigen::Matrix3Xd> f) const {
         if (!step.deformation().admissible()) return step.deformation();
-        const Forces sum = forces(step.mean, step.S);
+        const Forces sum = All::forces(step.mean, step.S);
         if (!sum.allFinite()) return overflow;
         f = sum;
         return step.deformation();
@@ -454,8 +267,8 @@ private:
 
     [[nodiscard]] Deformation mean_tangent(const Step& step, Eigen::Ref<Matrix> Ke) const {
         if (!step.deformation().admissible()) return step.deformation();
-        const Stiffness K = step.weights.end_weight * stress_tangent(step.mean, step.S) +
-                            material_tangent(step.mean, step.end, step.moduli(*this));
+        const Stiffness K = step.weights.end_weight * All::stress_tangent(step.mean, step.S) +
+                            All::material_tangent(step.mean, step.end, step.moduli(*this));
         if (!K.allFinite()) return overflow;
         Ke = K;
         return step.deformation();

@@ -2,12 +2,17 @@
 /// Kernels by element, formulation and material: each is compiled once, in src/fe/instances.
 
 #include "osculate/fe/element_block.hpp"
+#include "osculate/fe/reference_element.hpp"
 
 #include <memory>
 
 namespace osculate::fe {
 
-/// @tparam Formulation  of fe/small_strain.hpp
+template <ReferenceElement E> struct DisplacementStrain;
+struct BBarHex;
+struct IncompatibleModesHex;
+
+/// @tparam Formulation  one of these
 /// @param stiffness     d stress / d strain
 template <class Formulation>
 [[nodiscard]] std::unique_ptr<ElementKernel> make_small_strain_kernel(const Mat6& stiffness, bool heated);

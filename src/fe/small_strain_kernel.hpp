@@ -4,6 +4,7 @@
 #include "fe/kernel_instances.hpp"
 #include "fe/small_strain.hpp"
 #include "fe/solid_kernel.hpp"
+#include "osculate/core/error.hpp"
 
 #include <algorithm>
 

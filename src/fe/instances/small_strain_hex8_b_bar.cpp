@@ -1,3 +1,4 @@
+#include "fe/small_strain_hex.hpp"
 #include "fe/small_strain_kernel.hpp"
 
 namespace osculate::fe {

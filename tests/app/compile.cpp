@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 const std::string base = R"(
@@ -54,4 +54,4 @@ TEST(CompiledStages, TakeTheInterpenetrationTheySay) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -39,4 +39,4 @@ TEST(CurveRows, AreThoseAskedForInTheirOrder) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

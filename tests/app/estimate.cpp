@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 struct Measured {
@@ -78,4 +78,4 @@ TEST(Estimate, GrowsWithStepsAndElements) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -10,7 +10,7 @@
 #include <random>
 #include <sstream>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,4 +130,4 @@ TEST(GnuplotText, ComesBackFromGnuplotByteForByte) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 /// Static, linear, facets, no friction.
@@ -110,4 +110,4 @@ TEST(LeaveOut, NothingIsMadeWhileItRuns) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -129,4 +129,4 @@ TEST_F(MeshFilesOfScenes, GeometryIsMeshedAsTheSceneSays) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -255,4 +255,4 @@ TEST(FlatMaster, GivesTheSameForcesOnSlaveNodesWithFacetsButOthersOnItsOwn) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

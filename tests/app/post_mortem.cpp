@@ -13,7 +13,7 @@
 #include <tuple>
 #include <utility>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -141,4 +141,4 @@ TEST(PostMortem, CountsSlippingNodesAsSupportsAlongTheNormalAlone) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

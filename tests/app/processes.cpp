@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(CannotBeShared, WhatOnlyFactorsSolveWhereTheyDoNotFitIntoOneProcess) {
@@ -21,4 +21,4 @@ TEST(CannotBeShared, WhatOnlyFactorsSolveWhereTheyDoNotFitIntoOneProcess) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -163,4 +163,4 @@ stages:
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -272,4 +272,4 @@ TEST(RunChecks, JudgeHowARunEnded) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

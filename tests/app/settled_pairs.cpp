@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -185,4 +185,4 @@ TEST(SettledDynamics, PairsByHandResolveImpactsUnlessTold) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 /// Coordinates along a plane's normal are exact zeros in the patches: only the sums of the blend remain.
 constexpr double exact_plane = 1e-14;
@@ -321,4 +321,4 @@ TEST(BlendBetweenTwoSheets, ChoosesTheSameOneEveryTime) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

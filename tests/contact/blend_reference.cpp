@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
+using namespace fixtures;
 using nlohmann::json;
 
 const json& reference() {
@@ -180,4 +180,4 @@ TEST_F(BlendReference, HasTheSameSecondDerivative) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

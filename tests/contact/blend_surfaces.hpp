@@ -13,7 +13,7 @@
 #include <numbers>
 #include <string>
 
-namespace osculate::contact::testing {
+namespace osculate::contact::fixtures {
 
 constexpr double pi = std::numbers::pi;
 
@@ -198,4 +198,4 @@ struct Blend {
     std::unique_ptr<MasterSurface> master;
 };
 
-} // namespace osculate::contact::testing
+} // namespace osculate::contact::fixtures

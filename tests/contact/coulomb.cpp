@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::central_differences;
-using osculate::testing::Random;
-using osculate::testing::relative_difference;
+using osculate::support::central_differences;
+using osculate::support::Random;
+using osculate::support::relative_difference;
 
 constexpr double mu = 0.3, c = 2.5;
 constexpr double round_off = 1e-14; // of a dozen products of order one
@@ -280,4 +280,4 @@ TEST(Coulomb, LeavesNoFrictionWithoutADirectionToSlipIn) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 /// Weights of patches come with machine epsilon times their condition of about 1e5.
 constexpr double patch_round_off = 1e-10;
@@ -442,4 +442,4 @@ INSTANTIATE_TEST_SUITE_P(Of, GradedFacets, ::testing::ValuesIn(graded_meshes()),
                          [](const auto& tested) { return tested.param.name; });
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
+using osculate::support::Random;
 
 constexpr double round_off = 1e-12;
 
@@ -149,4 +149,4 @@ TEST(DistortedFacet, FindsEveryPlaceWithinIt) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -8,12 +8,12 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::central_differences;
-using osculate::testing::Random;
-using osculate::testing::relative_difference;
+using osculate::support::central_differences;
+using osculate::support::Random;
+using osculate::support::relative_difference;
 
 /// A roof whose ridge runs along y from (0, -1, 0) to (0, 1, 0), its faces at 45 degrees; and one upside down above it, whose
 /// ridge runs along x, at a height.
@@ -199,4 +199,4 @@ TEST(EdgePassage, IsFoundWhereEdgesCrossOnTheirWay) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 std::mt19937 generator(3);
@@ -125,4 +125,4 @@ TEST(Profile, IsSmoothThroughItsPoints) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-14;
@@ -110,4 +110,4 @@ TEST(NaturalCoordinates, InvertTheMapOfADistortedQuadrilateral) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

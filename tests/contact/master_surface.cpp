@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 /// Weights of patches come with machine epsilon times their condition of about 1e5.
 constexpr double patch_round_off = 1e-10;
@@ -345,4 +345,4 @@ TEST(RpimSurface, TakesTheFacetWhereEvenOneRingWouldOverlap) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -9,14 +9,14 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
-using testing::Surface;
+using fixtures::Surface;
+using osculate::support::Random;
 
-using testing::Pairing;
-using testing::Slave;
+using fixtures::Pairing;
+using fixtures::Slave;
 
 auto mortar_on(const Surface& master) {
     return [&](const Slave& slave) {
@@ -31,7 +31,7 @@ struct Case {
 };
 class FlatMortar : public ::testing::TestWithParam<Case> {
 protected:
-    Surface master = testing::block_top(GetParam().master); // [0, 5] x [0, 4], 0.5 m
+    Surface master = fixtures::block_top(GetParam().master); // [0, 5] x [0, 4], 0.5 m
     static Slave slave(const Vec3& origin, const Vec3& size) { return {origin, size, {7, 3}, GetParam().slave}; }
 };
 
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Patterns, FlatMortar,
                                            Case{mesh::BlockPattern::quad, mesh::BlockPattern::hybrid}));
 
 TEST(Mortar, CountsAFacetThatTwoFifthsOfAreOverTheMasterAndNoSliver) {
-    const Surface master = testing::block_top(mesh::BlockPattern::quad); // up to x = 5
+    const Surface master = fixtures::block_top(mesh::BlockPattern::quad); // up to x = 5
     for (const double over : {0.8, 0.04}) {
         const Pairing pairing(master, make_facets_surface(master.topology),
                               Slave({5 - over, 1, 0.2}, {2, 2, 1}, {1, 1}, mesh::BlockPattern::quad),
@@ -123,15 +123,15 @@ TEST(Mortar, CountsAFacetThatTwoFifthsOfAreOverTheMasterAndNoSliver) {
 
 TEST(Mortar, VariesAsItsDifferencesSay) {
     // a shaken block of triangles above a shaken plane of triangles: the weights are integrated exactly there
-    Surface master = testing::block_top(mesh::BlockPattern::triangle);
+    Surface master = fixtures::block_top(mesh::BlockPattern::triangle);
     Random random(11);
     for (Vec3& x : master.x) x += 0.03 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     Pairing pairing(master, make_blend_surface(master.topology, master.x, {}),
                     Slave({1.1, 0.9, 0.02}, {2, 2, 1}, {3, 4}, mesh::BlockPattern::triangle), mortar_on(master));
     std::vector<Vec3> s = pairing.slave.X;
     for (Vec3& at : s) at += 0.02 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    testing::expect_variations(pairing, s, master.x, 7);
+    fixtures::expect_variations(pairing, s, master.x, 7);
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double p0 = 2e6, c0 = 1e-4, k = 3e10; // Pa, m, Pa/m
@@ -63,4 +63,4 @@ TEST(ExponentialOverclosure, HasItsPressureAtTouchAndAHundredthAtTheClearance) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace osculate::contact::testing {
+namespace osculate::contact::fixtures {
 
 /// Underside of a block above z = 0, as slave facets with their own numbering.
 struct Slave {
@@ -112,4 +112,4 @@ inline void expect_variations(Pairing& pairing, const std::vector<Vec3>& s, cons
         }
 }
 
-} // namespace osculate::contact::testing
+} // namespace osculate::contact::fixtures

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-12; ///< of positions below 10, reflected a dozen times
@@ -101,4 +101,4 @@ TEST(ParallelMirrors, FillTheTurnAroundAnEdgeBetweenTwoPlanes) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

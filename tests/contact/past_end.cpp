@@ -2,12 +2,12 @@
 
 #include "contact/pairing.hpp"
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using testing::Pairing;
-using testing::Slave;
-using testing::Surface;
+using fixtures::Pairing;
+using fixtures::Slave;
+using fixtures::Surface;
 
 constexpr double radius = 3, height = 0.01;
 
@@ -18,7 +18,7 @@ Vec3 rolled(const Vec3& at, double r = radius) {
 }
 
 Surface cylinder(mesh::BlockPattern pattern) {
-    Surface surface = testing::block_top(pattern);
+    Surface surface = fixtures::block_top(pattern);
     for (Vec3& x : surface.x) x = rolled(x);
     return surface;
 }
@@ -48,7 +48,7 @@ TEST_P(PastEnd, ACylinderGoesOnAsACylinder) {
 
 TEST_P(PastEnd, VariesAsItsDifferencesSay) {
     Surface master = cylinder(GetParam());
-    osculate::testing::Random random(3);
+    osculate::support::Random random(3);
     const auto shaken = [&](double by) -> Vec3 {
         return by * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     };
@@ -65,7 +65,7 @@ TEST_P(PastEnd, VariesAsItsDifferencesSay) {
     for (std::size_t j = 0; j < s.size(); ++j) {
         if (tracking.hits[j].beyond < 0.05 || !(pairing.discretisation->loaded_area(static_cast<Index>(j), 0) > 0))
             continue;
-        testing::expect_variations(pairing, s, master.x, static_cast<Index>(j));
+        fixtures::expect_variations(pairing, s, master.x, static_cast<Index>(j));
         ++tried;
     }
     EXPECT_GE(tried, 6);
@@ -76,4 +76,4 @@ INSTANTIATE_TEST_SUITE_P(Meshes, PastEnd,
                                            mesh::BlockPattern::hybrid));
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <string>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 struct RpimCase {
     std::string name;
@@ -83,11 +83,11 @@ TEST_P(Rpim, HasConsistentDerivatives) {
 TEST_P(Rpim, HasConsistentSecondDerivativesOfTheWeights) {
     for (const Vec2& u : c.samples) {
         const MatrixX3 second = patch->second_derivatives(u);
-        const Matrix differences = osculate::testing::central_differences(
+        const Matrix differences = osculate::support::central_differences(
             [&](const Vector& at) -> Vector { return weights_at(*patch, at).phi_a.reshaped(); }, u, c.difference_step);
         Matrix written(2 * patch->size(), 2); // (Phi,1; Phi,2) by u1 and u2
         written << second.col(0), second.col(1), second.col(1), second.col(2);
-        EXPECT_LT(osculate::testing::relative_difference(written, differences), c.difference_tolerance);
+        EXPECT_LT(osculate::support::relative_difference(written, differences), c.difference_tolerance);
     }
 }
 
@@ -234,4 +234,4 @@ INSTANTIATE_TEST_SUITE_P(Corners, Facet, ::testing::Values(3, 4),
                          [](const auto& tested) { return tested.param == 3 ? "Triangle" : "Quadrilateral"; });
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

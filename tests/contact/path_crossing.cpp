@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 using Corners = MovingFacets::Corners;
@@ -103,7 +103,7 @@ TEST(PathCrossing, FindsTheExactTimeWithAFacetThatTurns) {
 /// A facet that turns by more than half a turn meets a point at rest up to three times; bisection of the signed volume over
 /// many small pieces of the step says when.
 TEST(PathCrossing, AgreesWithManySmallPiecesOfTheStep) {
-    osculate::testing::Random random(7);
+    osculate::support::Random random(7);
     int crossings = 0, disagree = 0;
     for (int trial = 0; trial < 2000; ++trial) {
         std::vector<Vec3> x0, x1;
@@ -148,7 +148,7 @@ TEST(PathCrossing, LetsNothingSlipThroughEdgesAndCorners) {
     const int n = 8;
     std::vector<Vec3> x0, x1;
     std::vector<Corners> facets;
-    osculate::testing::Random random(3);
+    osculate::support::Random random(3);
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) {
             const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
@@ -217,4 +217,4 @@ TEST(Thickness, IsTheLeastOverAFacet) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -6,13 +6,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
-using testing::Pairing;
-using testing::Slave;
-using testing::Surface;
+using fixtures::Pairing;
+using fixtures::Slave;
+using fixtures::Surface;
+using osculate::support::Random;
 
 auto on(const Surface& master) {
     return
@@ -31,7 +31,7 @@ class PetrovGalerkin : public ::testing::TestWithParam<Case> {};
 
 TEST_P(PetrovGalerkin, VariesAsItsDifferencesSay) {
     // the slave's facets are finer than the master's, so that the filter acts; in some cases it ends beyond the master
-    Surface master = testing::block_top(GetParam().master);
+    Surface master = fixtures::block_top(GetParam().master);
     Random random(11);
     for (Vec3& x : master.x) x += shaken(0.02, random);
     Pairing pairing(master, make_blend_surface(master.topology, master.x, {}),
@@ -43,14 +43,14 @@ TEST_P(PetrovGalerkin, VariesAsItsDifferencesSay) {
     const std::vector<ContactPoint> points = pairing.points;
     for (const Index j : {7, 12, 20})
         if (points[static_cast<std::size_t>(j)].found) {
-            testing::expect_variations(pairing, s, master.x, j);
+            fixtures::expect_variations(pairing, s, master.x, j);
             ++tried;
         }
     EXPECT_GT(tried, 0);
 }
 
 TEST_P(PetrovGalerkin, LosesNothingOfAPressureOnThePartAboveTheMaster) {
-    const Surface master = testing::block_top(GetParam().master);
+    const Surface master = fixtures::block_top(GetParam().master);
     const double begin = GetParam().x, end = std::min(5.0, begin + 1.2);
     const Pairing pairing(master, make_blend_surface(master.topology, master.x, {}),
                           Slave({begin, 0.9, 0}, {1.2, 1.2, 1}, {4, 5}, GetParam().slave), on(master));
@@ -85,7 +85,7 @@ TEST_P(PetrovGalerkin, LosesNothingOfAPressureOnThePartAboveTheMaster) {
 
 TEST_P(PetrovGalerkin, AVertexThatNoneOfItsFacetsCarriesPressesOnTheSmoothSurface) {
     // the slave's facets stand on an edge and face away from the master
-    Surface master = testing::block_top(GetParam().master);
+    Surface master = fixtures::block_top(GetParam().master);
     Random random(5);
     for (Vec3& x : master.x) x += shaken(0.02, random);
     Slave slave({1.1, 0.9, 0.02}, {1.2, 1.2, 1}, {4, 5}, GetParam().slave);
@@ -124,7 +124,7 @@ TEST_P(PetrovGalerkin, AVertexThatNoneOfItsFacetsCarriesPressesOnTheSmoothSurfac
         pairing.tracking.facet[static_cast<std::size_t>(j)] = hit.facet;
         pairing.tracking.hits[static_cast<std::size_t>(j)] = hit;
     }
-    for (const Index j : {edge[1], edge[3]}) testing::expect_variations(pairing, s, master.x, j);
+    for (const Index j : {edge[1], edge[3]}) fixtures::expect_variations(pairing, s, master.x, j);
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, PetrovGalerkin,
@@ -149,13 +149,13 @@ std::vector<Vec3> filtered(const MasterFilter& filter, const std::vector<Vec3>& 
 }
 
 TEST(MasterFilter, IsIdleUnderASlaveMeshAsCoarseAsTheMaster) {
-    const Surface surface = testing::block_top(mesh::BlockPattern::quad);
+    const Surface surface = fixtures::block_top(mesh::BlockPattern::quad);
     EXPECT_FALSE(MasterFilter(surface.topology, surface.x, Mat3::Identity() / (0.51 * 0.51)).active());
     EXPECT_TRUE(MasterFilter(surface.topology, surface.x, Mat3::Identity() / (0.49 * 0.49)).active());
 }
 
 TEST(MasterFilter, LetsMotionsOfARigidBodyPass) {
-    for (const Surface& surface : testing::all_surfaces()) {
+    for (const Surface& surface : fixtures::all_surfaces()) {
         const MasterFilter filter = strongest(surface);
         ASSERT_TRUE(filter.active());
         const Mat3 turn = Eigen::AngleAxisd(1.3, Vec3(1, 2, -1).normalized()).toRotationMatrix();
@@ -168,7 +168,7 @@ TEST(MasterFilter, LetsMotionsOfARigidBodyPass) {
 
 TEST(MasterFilter, LetsStretchesOfAPlanePass) {
     for (const auto pattern : {mesh::BlockPattern::quad, mesh::BlockPattern::triangle, mesh::BlockPattern::hybrid}) {
-        const Surface surface = testing::block_top(pattern);
+        const Surface surface = fixtures::block_top(pattern);
         const MasterFilter filter = strongest(surface);
         std::vector<Vec3> x;
         for (const Vec3& X : surface.x)
@@ -179,7 +179,7 @@ TEST(MasterFilter, LetsStretchesOfAPlanePass) {
 }
 
 TEST(MasterFilter, RemovesWavesOfTwoFacetsAndKeepsLongOnes) {
-    const Surface surface = testing::block_top(mesh::BlockPattern::quad); // facets of 0.5 m
+    const Surface surface = fixtures::block_top(mesh::BlockPattern::quad); // facets of 0.5 m
     const MasterFilter filter = strongest(surface);
     const auto left = [&](double wavelength) { // of a wave of unit height along x, in the middle
         std::vector<Vec3> x = surface.x;
@@ -195,7 +195,7 @@ TEST(MasterFilter, RemovesWavesOfTwoFacetsAndKeepsLongOnes) {
 }
 
 TEST(MasterFilter, ActsFromVerticesInsideTheBoundaryAlone) {
-    const Surface surface = testing::block_top(mesh::BlockPattern::quad);
+    const Surface surface = fixtures::block_top(mesh::BlockPattern::quad);
     MasterFilter filter = strongest(surface);
     filter.differentiate(surface.x);
     const auto at = [&](const Vec3& where) {
@@ -212,7 +212,7 @@ TEST(MasterFilter, ActsFromVerticesInsideTheBoundaryAlone) {
 }
 
 TEST(MasterFilter, MovesPositionsAsItsDerivativesSay) {
-    for (const Surface& surface : testing::all_surfaces()) {
+    for (const Surface& surface : fixtures::all_surfaces()) {
         MasterFilter filter = strongest(surface);
         Random random(3);
         std::vector<Vec3> x = surface.x, dx, ahead, behind;
@@ -236,4 +236,4 @@ TEST(MasterFilter, MovesPositionsAsItsDerivativesSay) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -8,12 +8,12 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::central_differences;
-using osculate::testing::Random;
-using osculate::testing::relative_difference;
+using osculate::support::central_differences;
+using osculate::support::Random;
+using osculate::support::relative_difference;
 
 /// Feet come with round-off of about 1e-13 (weights of condition 1e5): over the step 1e-4 that is 1e-9, and the step
 /// squared times third derivatives is a few 1e-8.
@@ -173,4 +173,4 @@ TEST(Projection, ReportsPositionsThatAreNotNumbers) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

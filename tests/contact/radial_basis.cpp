@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using testing::Surface;
+using fixtures::Surface;
 
 /// Gaps of a row of points inside a half-tube, over its smooth surface.
 std::vector<double> gaps(const Surface& tube, bool blend, std::optional<Multiquadric> basis, int terms = 6) {
@@ -34,8 +34,8 @@ std::vector<double> gaps(const Surface& tube, bool blend, std::optional<Multiqua
 
 TEST(RadialBasis, IsR5WhereTheFacetsResolveTheSurfaceAndR3WhereTheyDoNot) {
     for (const bool blend : {false, true}) {
-        const Surface fine = testing::half_tube(mesh::CellType::hex8, 12), // 15 degrees a facet
-            coarse = testing::half_tube(mesh::CellType::hex8, 8);          // 22.5
+        const Surface fine = fixtures::half_tube(mesh::CellType::hex8, 12), // 15 degrees a facet
+            coarse = fixtures::half_tube(mesh::CellType::hex8, 8);          // 22.5
         ASSERT_FALSE(gaps(fine, blend, r5).empty());
         EXPECT_EQ(gaps(fine, blend, std::nullopt), gaps(fine, blend, r5));
         EXPECT_EQ(gaps(coarse, blend, std::nullopt), gaps(coarse, blend, r3));
@@ -47,7 +47,7 @@ TEST(RadialBasis, IsR3WherePatchesReachOverABend) {
     // flat up to x = 3, then steep by 25 degrees; patches of vertices at 2.5 reach 3.5, those at 1.5 end at 2.5
     mesh::Mesh block = mesh::make_block({0, 0, -1}, {5, 4, 1}, {10, 8, 1});
     for (Vec3& x : block.nodes) x.z() -= std::max(0.0, x.x() - 3) * std::tan(25 * std::numbers::pi / 180);
-    const Surface surface = testing::surface_of("Bent", block, "z_max");
+    const Surface surface = fixtures::surface_of("Bent", block, "z_max");
     const auto gap = [&](double x, std::optional<Multiquadric> basis) {
         BlendOptions options;
         options.basis = basis;
@@ -65,9 +65,9 @@ TEST(RadialBasis, IsR3WherePatchesReachOverABend) {
 }
 
 TEST(RadialBasis, IsR3WithoutQuadraticPolynomials) {
-    const Surface fine = testing::half_tube(mesh::CellType::hex8, 12);
+    const Surface fine = fixtures::half_tube(mesh::CellType::hex8, 12);
     for (const bool blend : {false, true}) EXPECT_EQ(gaps(fine, blend, std::nullopt, 3), gaps(fine, blend, r3, 3));
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

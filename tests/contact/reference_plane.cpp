@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-14; // a dozen products of numbers of order one
@@ -18,7 +18,7 @@ std::vector<Vec3> normals() {
         all.push_back(Vec3(tilt, -tilt, 1).normalized());
         all.push_back(Vec3(tilt, -tilt, -1).normalized());
     }
-    osculate::testing::Random random(1);
+    osculate::support::Random random(1);
     for (int i = 0; i < 200; ++i) all.push_back(random.direction());
     return all;
 }
@@ -62,4 +62,4 @@ TEST(ReferencePlane, KeepsDirectionAndTrueLengthInEqualLengthCoordinates) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
+using namespace fixtures;
 
 constexpr int columns = 12, rows = 6;
 
@@ -211,4 +211,4 @@ TEST_F(Refitting, GivesTheSurfaceThatWouldHaveBeenMadeThere) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

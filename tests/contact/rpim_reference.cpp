@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 using nlohmann::json;
@@ -84,7 +84,7 @@ TEST_P(Reference, HasTheSameFrameFromItsFacet) {
 TEST_P(Reference, HasTheSameWeightsAndDerivatives) {
     for (const json& e : c.at("evaluation")) {
         const Vec2 at = matrix(e.at("u"));
-        const testing::Weights w = testing::weights_at(*patch, at);
+        const fixtures::Weights w = fixtures::weights_at(*patch, at);
         const MatrixX3 second = patch->second_derivatives(at);
         EXPECT_LT(difference(w.phi, e.at("Phi")), tolerance);
         EXPECT_LT(difference(w.phi_a.col(0), e.at("Phi_1")), tolerance);
@@ -154,4 +154,4 @@ TEST(FrozenPatch, FollowsItsNodesWithUnchangedWeights) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

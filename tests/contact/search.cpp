@@ -7,11 +7,11 @@
 #include <limits>
 #include <numbers>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 constexpr double round_off = 1e-12; // of coordinates of order ten
 
@@ -382,4 +382,4 @@ INSTANTIATE_TEST_SUITE_P(On, Flags,
                          [](const auto& tested) { return block_top(tested.param).name; });
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(SlaveShare, SharesTheWorkOutEvenlyAndEachNodeOnce) {
@@ -13,7 +13,7 @@ TEST(SlaveShare, SharesTheWorkOutEvenlyAndEachNodeOnce) {
     std::fill(work.begin() + 200, work.begin() + 320, 4); // in contact
     const int all = std::accumulate(work.begin(), work.end(), 0);
     for (const int ranks : {1, 2, 3, 7})
-        testing::on_ranks(ranks, [&](const std::shared_ptr<Ranks>& together) {
+        osculate::support::on_ranks(ranks, [&](const std::shared_ptr<Ranks>& together) {
             SlaveShare share(*together, 1000);
             share.share_out(work);
             int own = 0;
@@ -29,7 +29,7 @@ TEST(SlaveShare, SharesTheWorkOutEvenlyAndEachNodeOnce) {
 }
 
 TEST(SlaveShare, LeavesSomeWithoutNodesWhereThereAreFew) {
-    testing::on_ranks(5, [](const std::shared_ptr<Ranks>& ranks) {
+    osculate::support::on_ranks(5, [](const std::shared_ptr<Ranks>& ranks) {
         SlaveShare share(*ranks, 2);
         share.share_out(std::vector<int>{1, 1});
         std::vector<int> seen;
@@ -44,7 +44,7 @@ TEST(SlaveShare, LeavesSomeWithoutNodesWhereThereAreFew) {
 
 TEST(SlaveShare, TellsTheOthersNumbersOfAnyLength) {
     constexpr Index slaves = 23;
-    testing::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+    osculate::support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
         SlaveShare share(*ranks, slaves);
         share.share_out(std::vector<int>(slaves, 1));
         std::vector<std::vector<double>> known(slaves);
@@ -66,4 +66,4 @@ TEST(SlaveShare, TellsTheOthersNumbersOfAnyLength) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-12;
@@ -288,4 +288,4 @@ TEST(SurfaceAudit, FindsTheSameWhereBodiesAreMovedTurnedSwappedOrScaled) {
 }
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

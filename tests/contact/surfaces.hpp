@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace osculate::contact::testing {
+namespace osculate::contact::fixtures {
 
 /// A surface and the positions of its vertices, local numbering.
 struct Surface {
@@ -48,7 +48,7 @@ inline std::vector<Surface> all_surfaces() {
 }
 
 /// A random point of the surface's bounding box, made wider by `margin` on all sides.
-inline Vec3 random_point(const Surface& surface, double margin, osculate::testing::Random& random) {
+inline Vec3 random_point(const Surface& surface, double margin, osculate::support::Random& random) {
     Vec3 low = surface.x[0], high = low;
     for (const Vec3& x : surface.x) {
         low = low.cwiseMin(x);
@@ -59,4 +59,4 @@ inline Vec3 random_point(const Surface& surface, double margin, osculate::testin
     return p;
 }
 
-} // namespace osculate::contact::testing
+} // namespace osculate::contact::fixtures

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <string>
 
-namespace osculate::contact {
+namespace osculate::contact::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 /// Of the radius, which is 1. Mirrored patches hold the same nodes in another order, so their factorisations differ by
 /// machine epsilon times their condition of about 1e5; everything else is exact, as the whole mesh is mirror-symmetric to
@@ -269,4 +269,4 @@ INSTANTIATE_TEST_SUITE_P(Of, MirroredPart, ::testing::ValuesIn(cases),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 } // namespace
-} // namespace osculate::contact
+} // namespace osculate::contact::OSCULATE_THIS_FILE

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(Fault, NamesEverythingItKnows) {
@@ -44,4 +44,4 @@ TEST(Require, ThrowsWhenAnInvariantIsBroken) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

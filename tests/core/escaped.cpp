@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(Escaped, TextCannotLeaveItsElementOrAttribute) {
@@ -11,4 +11,4 @@ TEST(Escaped, TextCannotLeaveItsElementOrAttribute) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <thread>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 class FileContent : public testing::Test {
@@ -59,4 +59,4 @@ TEST_F(FileContent, SaysWhyAFileCannotBeRead) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

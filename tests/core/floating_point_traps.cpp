@@ -8,7 +8,7 @@
 #include <limits>
 #include <thread>
 
-namespace osculate::support {
+namespace osculate::support::OSCULATE_THIS_FILE {
 namespace {
 
 volatile double zero = 0, one = 1, largest = std::numeric_limits<double>::max(); // read at run time
@@ -52,4 +52,4 @@ TEST(FloatingPointTraps, AreSuspendedAndBackAfterwards) {
 }
 
 } // namespace
-} // namespace osculate::support
+} // namespace osculate::support::OSCULATE_THIS_FILE

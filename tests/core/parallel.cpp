@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(ParallelFor, VisitsEveryItemOnce) {
@@ -95,4 +95,4 @@ TEST(ParallelFor, KeepsTheFloatingPointEnvironmentOfItsCaller) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

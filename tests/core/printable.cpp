@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using namespace std::string_view_literals;
@@ -23,4 +23,4 @@ TEST(Printable, FindsTheFirstThatIsNotAllowed) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

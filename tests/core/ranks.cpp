@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 const std::vector<int> owner{2, 0, 1, 1, 0, 2, 2};
@@ -16,7 +16,7 @@ Field some_field() {
 }
 
 TEST(Share, GivesEveryProcessTheValuesOfOwners) {
-    testing::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+    support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
         const Share share(ranks, owner);
         Field field = some_field();
         for (std::size_t i = 0; i < field.size(); ++i)
@@ -27,7 +27,7 @@ TEST(Share, GivesEveryProcessTheValuesOfOwners) {
 }
 
 TEST(Share, SeesASingleBit) {
-    testing::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+    support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
         const Share share(ranks, owner);
         Field field = some_field();
         EXPECT_TRUE(share.agree(field));
@@ -38,7 +38,7 @@ TEST(Share, SeesASingleBit) {
 
 TEST(Ranks, AddUpInTheirOrder) {
     constexpr double large = 1e16; // beside which 1 is lost, or not, by the order of sums
-    testing::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+    support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
         const double own[] = {1, large, -large};
         std::vector<double> sums{own[ranks->rank()], own[2 - ranks->rank()]};
         ranks->sum(sums);
@@ -47,11 +47,11 @@ TEST(Ranks, AddUpInTheirOrder) {
 }
 
 TEST(Ranks, FindTheLargestOfAll) {
-    testing::on_ranks(4, [](const std::shared_ptr<Ranks>& ranks) {
+    support::on_ranks(4, [](const std::shared_ptr<Ranks>& ranks) {
         EXPECT_EQ(ranks->largest(ranks->rank() == 2 ? 5 : -ranks->rank()), 5);
         EXPECT_EQ(ranks->largest(-1 - ranks->rank()), -1);
     });
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

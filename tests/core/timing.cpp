@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <thread>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(Timings, StartAtZeroAndAddUpPartByPart) {
@@ -31,4 +31,4 @@ TEST(ScopedTimer, AddsItsLifetimeToItsPart) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::deck {
+namespace osculate::deck::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -431,4 +431,4 @@ TEST_F(Importing, SmoothStepsRiseAsTheirPolynomial) {
 }
 
 } // namespace
-} // namespace osculate::deck
+} // namespace osculate::deck::OSCULATE_THIS_FILE

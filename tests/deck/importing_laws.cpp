@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::deck {
+namespace osculate::deck::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::Contains;
@@ -73,4 +73,4 @@ TEST_F(ImportingLaws, DampingOfContactActsInDynamics) {
 }
 
 } // namespace
-} // namespace osculate::deck
+} // namespace osculate::deck::OSCULATE_THIS_FILE

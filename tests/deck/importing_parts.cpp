@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::deck {
+namespace osculate::deck::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -204,4 +204,4 @@ TEST_F(ImportingParts, SectionsAndAxesTurnWithTheirInstance) {
 }
 
 } // namespace
-} // namespace osculate::deck
+} // namespace osculate::deck::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <numbers>
 
-namespace osculate::deck {
+namespace osculate::deck::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -137,4 +137,4 @@ TEST_F(ImportingPlanes, EquationsThatAStepRemovesAreLost) {
 }
 
 } // namespace
-} // namespace osculate::deck
+} // namespace osculate::deck::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <regex>
 
-namespace osculate::deck {
+namespace osculate::deck::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -290,4 +290,4 @@ TEST_F(ImportingRigidBodies, FacetsHaveOneOutside) {
 }
 
 } // namespace
-} // namespace osculate::deck
+} // namespace osculate::deck::OSCULATE_THIS_FILE

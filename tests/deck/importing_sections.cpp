@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::deck {
+namespace osculate::deck::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -69,4 +69,4 @@ TEST_F(ImportingSections, NodesAtOnePlaceAreToldApartByTheirNumbers) {
 }
 
 } // namespace
-} // namespace osculate::deck
+} // namespace osculate::deck::OSCULATE_THIS_FILE

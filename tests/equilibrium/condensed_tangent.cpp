@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-namespace osculate::equilibrium {
+namespace osculate::equilibrium::OSCULATE_THIS_FILE {
 namespace {
 
 using contact::Status;
-using testing::Press;
+using fixtures::Press;
 
 /// Bodies that lean on springs while their inverses are made do not lean on them in what is solved: nothing has to be
 /// solved by other means.
@@ -100,4 +100,4 @@ TEST(CondensedTangent, MakesInversesAndLawsAnewForAStepOfAnotherLength) {
 }
 
 } // namespace
-} // namespace osculate::equilibrium
+} // namespace osculate::equilibrium::OSCULATE_THIS_FILE

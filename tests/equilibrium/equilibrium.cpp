@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::equilibrium {
+namespace osculate::equilibrium::OSCULATE_THIS_FILE {
 namespace {
 
 using contact::Status;
-using testing::Press;
+using fixtures::Press;
 
 class Rollback : public ::testing::TestWithParam<LinearSolver> {};
 
@@ -96,4 +96,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Rollback,
                          });
 
 } // namespace
-} // namespace osculate::equilibrium
+} // namespace osculate::equilibrium::OSCULATE_THIS_FILE

@@ -11,7 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace osculate::equilibrium {
+namespace osculate::equilibrium::OSCULATE_THIS_FILE {
 namespace {
 
 struct Motion {
@@ -302,4 +302,4 @@ TEST(Integrator, NamesMeetWhereTheMethodsDo) {
 }
 
 } // namespace
-} // namespace osculate::equilibrium
+} // namespace osculate::equilibrium::OSCULATE_THIS_FILE

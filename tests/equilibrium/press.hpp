@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-namespace osculate::equilibrium::testing {
+namespace osculate::equilibrium::fixtures {
 
 /// A block pressed on another, and what is done with it over two steps.
 class Press {
@@ -64,4 +64,4 @@ public:
     bool converged = false; ///< the last solve: a rejected attempt may fail as well
 };
 
-} // namespace osculate::equilibrium::testing
+} // namespace osculate::equilibrium::fixtures

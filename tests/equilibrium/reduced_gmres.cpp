@@ -7,11 +7,11 @@
 #include <limits>
 #include <optional>
 
-namespace osculate::equilibrium {
+namespace osculate::equilibrium::OSCULATE_THIS_FILE {
 namespace {
 
 using contact::Status;
-using testing::Press;
+using fixtures::Press;
 
 /// What x leaves of b, |b - J x|, for the tangent at the last residual; none: GMRES on all unknowns would be asked.
 std::optional<double> left_over(Press& press, const Vector& b, double allowed) {
@@ -68,4 +68,4 @@ TEST(ReducedGmres, LeavesAVectorThatIsNoNumberToOthers) {
 }
 
 } // namespace
-} // namespace osculate::equilibrium
+} // namespace osculate::equilibrium::OSCULATE_THIS_FILE

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::equilibrium {
+namespace osculate::equilibrium::OSCULATE_THIS_FILE {
 namespace {
 
 /// All numbers that other parts of the program take from contact, over a few iterates of two attempts.
@@ -29,7 +29,7 @@ std::vector<double> numbers_of_contact(const std::vector<scene::Override>& setti
     const auto add_field = [&](const Field& field) {
         for (const Vec3& value : field) add(value);
     };
-    testing::Random random(26);
+    support::Random random(26);
     model::State state;
     state.u.assign(model.X.size(), Vec3::Zero());
     state.contact.push_back(model::opened(model.pairs[0]));
@@ -97,7 +97,7 @@ TEST_P(SharedContact, HasTheBitsOfContactInOneProcess) {
     ASSERT_GT(alone.size(), 1000U);
     EXPECT_TRUE(std::ranges::any_of(alone, [](double value) { return value < 0; }));
     for (const int count : {1, 2, 5})
-        testing::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
+        support::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
             EXPECT_EQ(numbers_of_contact(GetParam(), ranks.get()), alone) << ranks->rank() << " of " << count;
         });
 }
@@ -111,4 +111,4 @@ INSTANTIATE_TEST_SUITE_P(Of, SharedContact,
                                            Settings{{"contact.joint.friction", "0"}}));
 
 } // namespace
-} // namespace osculate::equilibrium
+} // namespace osculate::equilibrium::OSCULATE_THIS_FILE

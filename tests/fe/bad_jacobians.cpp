@@ -3,7 +3,7 @@
 #include "element_cases.hpp"
 #include "osculate/mesh/quality.hpp"
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 std::vector<Vec3> as_list(const Eigen::Matrix3Xd& X) {
@@ -88,4 +88,4 @@ TEST(BadJacobiansOfTet10, AreFoundAtAMidsideNodeWhereNoKernelTakesThem) {
 }
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

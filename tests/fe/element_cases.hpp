@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures {
 
 struct ElementCase {
     const char* name;
@@ -186,4 +186,4 @@ private:
     }
 };
 
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures

@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 const material::LinearElastic material{1.0, 0.3}; // stiffnesses and stresses of order one
@@ -244,4 +244,4 @@ TEST_P(Kernel, PatchOfDistortedElementsReproducesConstantStrain) {
 INSTANTIATE_TEST_SUITE_P(Every, Kernel, ::testing::ValuesIn(all_cases), case_name);
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

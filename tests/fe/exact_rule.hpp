@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures {
 
 /// A tensor product of five Gauss points, which have fifteen digits; collapsed onto a triangle times a line, or onto a
 /// tetrahedron, where the reference element is one.
@@ -29,4 +29,4 @@ template <ReferenceElement E> std::vector<QuadraturePoint> exact_rule() {
     return rule;
 }
 
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace osculate::fe {
+namespace osculate::fe::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-12; // sums of some ten products of order one
@@ -70,4 +70,4 @@ TEST(FaceSkin, IsNotNeededWithoutMidsideNodes) {
 }
 
 } // namespace
-} // namespace osculate::fe
+} // namespace osculate::fe::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-13; // sums of a few products of order one
@@ -111,7 +111,7 @@ TEST(PressureTangent, IsTheDerivativeOfTheForces) {
         };
         std::vector<Vec3> positions;
         for (int i = 0; i < count; ++i) positions.emplace_back(at.segment<3>(3 * i));
-        const Matrix slope = osculate::testing::central_differences(forces, at, 1e-5);
+        const Matrix slope = osculate::support::central_differences(forces, at, 1e-5);
         // quadratic in the positions: central differences are exact but for round-off over the step
         EXPECT_LT((slope - pressure_tangent(facet, positions, pressure)).norm(), 1e-9 * pressure);
     }
@@ -332,4 +332,4 @@ TEST_P(ClosedSurface, UnderPressureHasNoNetForceNorMomentAndEnclosesTheVolume) {
 INSTANTIATE_TEST_SUITE_P(Every, ClosedSurface, ::testing::ValuesIn(all_cases), case_name);
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

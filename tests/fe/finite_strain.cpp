@@ -8,7 +8,7 @@
 #include <limits>
 #include <tuple>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 const material::LinearElastic hooke{1.0, 0.3}; // forces of order one
@@ -70,7 +70,7 @@ protected:
 };
 
 TEST_P(FiniteStrain, ForceIsTheDerivativeOfTheEnergy) {
-    const Matrix slope = osculate::testing::central_differences(
+    const Matrix slope = osculate::support::central_differences(
         [&](const Vector& u) { return Vector::Constant(1, energy(u.reshaped(3, n))).eval(); },
         displacements().reshaped(), step);
     EXPECT_LT((slope.transpose() - force(displacements()).reshaped()).norm(), difference);
@@ -78,7 +78,7 @@ TEST_P(FiniteStrain, ForceIsTheDerivativeOfTheEnergy) {
 }
 
 TEST_P(FiniteStrain, TangentIsTheDerivativeOfTheForceAndSymmetric) {
-    const Matrix slope = osculate::testing::central_differences(
+    const Matrix slope = osculate::support::central_differences(
         [&](const Vector& u) { return Vector(force(u.reshaped(3, n)).reshaped()); }, displacements().reshaped(), step);
     const Matrix K = tangent(displacements());
     EXPECT_LT((slope - K).norm(), difference * K.norm());
@@ -176,7 +176,7 @@ TEST_P(FiniteStrain, StepTangentIsTheDerivativeOfTheStepForce) {
     };
     Matrix K(3 * n, 3 * n);
     ASSERT_TRUE(kernel->tangent({X, u0, u1, {}, mean}, K).admissible());
-    EXPECT_LT((osculate::testing::central_differences(at, u1.reshaped(), step) - K).norm(), difference * K.norm());
+    EXPECT_LT((osculate::support::central_differences(at, u1.reshaped(), step) - K).norm(), difference * K.norm());
 }
 
 TEST_P(FiniteStrain, IsTheLinearKernelAtSmallStrain) {
@@ -354,4 +354,4 @@ TEST(FiniteStrainLocking, NearIncompressibilityStiffensBendingOfFullIntegrationA
 }
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 const ElementCase full{"full", mesh::CellType::hex8, HexFormulation::full};
@@ -122,4 +122,4 @@ TEST(Locking, StressOfPureBendingIsExactInOneElementWithIncompatibleModes) {
 }
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

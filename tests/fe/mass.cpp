@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 const material::LinearElastic material{1.0, 0.3}; // mass does not depend on it
@@ -91,4 +91,4 @@ TEST_P(Mass, OfABlockHasTheKineticEnergyAndInertiaOfTheRigidBody) {
 INSTANTIATE_TEST_SUITE_P(Every, Mass, ::testing::ValuesIn(all_cases), case_name);
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

@@ -1,7 +1,7 @@
 #include "element_cases.hpp"
 #include "exact_rule.hpp"
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-14;    // polynomials of degree three at most, arguments of order one
@@ -140,4 +140,4 @@ TEST(Wedge15, MassQuadratureIsExactToFourthDegreeInTheTriangleAndFifthAlongTheLi
 }
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

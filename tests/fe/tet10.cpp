@@ -5,7 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 const ElementCase tet10{"tet10", mesh::CellType::tet10, HexFormulation::full};
@@ -154,4 +154,4 @@ TEST(Tet10, PressureOnAFacePushesOnItsMiddleNodesThroughItsCentre) {
 }
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

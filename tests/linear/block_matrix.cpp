@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::linear {
+namespace osculate::linear::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 TEST(BlockMatrix, AddsElementsAtTheirNodes) {
     Random random(61);
@@ -109,7 +109,7 @@ TEST(BlockMatrix, MultipliesAsOneWhereProcessesShareItsRows) {
     for (Vec3& value : x) value = Vec3(random.uniform(), random.uniform(), random.uniform());
     whole.multiply_add(x, expected, 1);
     whole.multiply_add_relative(x, expected_relative, 1);
-    osculate::testing::on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {
+    osculate::support::on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {
         const auto share = std::make_shared<const Share>(ranks, std::vector<int>{0, 1, 2, 2, 0, 1, 1, 0, 2});
         BlockMatrix own(neighbours(9, elements), share);
         for (std::size_t e = 0; e < elements.size(); ++e) own.add(elements[e], matrices[e]);
@@ -140,4 +140,4 @@ TEST(BlockMatrix, KnowsItsDiagonal) {
 }
 
 } // namespace
-} // namespace osculate::linear
+} // namespace osculate::linear::OSCULATE_THIS_FILE

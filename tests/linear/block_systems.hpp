@@ -7,9 +7,9 @@
 
 #include <stdexcept>
 
-namespace osculate::linear::testing {
+namespace osculate::linear::fixtures {
 
-inline Matrix random_matrix(Index n, osculate::testing::Random& random) {
+inline Matrix random_matrix(Index n, osculate::support::Random& random) {
     Matrix A(n, n);
     for (double& a : A.reshaped()) a = random.uniform();
     return A;
@@ -39,4 +39,4 @@ inline Matrix dense_of(const solve::SparseMatrix& S) {
     return A;
 }
 
-} // namespace osculate::linear::testing
+} // namespace osculate::linear::fixtures

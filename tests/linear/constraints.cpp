@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
-namespace osculate::linear {
+namespace osculate::linear::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
+using osculate::support::Random;
 
 constexpr double round_off = 1e-14;
 
@@ -164,4 +164,4 @@ TEST(Constraints, CarryReactionsAlongHeldDirectionsOnly) {
 }
 
 } // namespace
-} // namespace osculate::linear
+} // namespace osculate::linear::OSCULATE_THIS_FILE

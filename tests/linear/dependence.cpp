@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace osculate::linear {
+namespace osculate::linear::OSCULATE_THIS_FILE {
 namespace {
 
 std::mt19937 generator(5);
@@ -114,4 +114,4 @@ TEST(FoldedMatrix, IsTheMatrixBetweenSpreadMotionsAndFoldedForces) {
 }
 
 } // namespace
-} // namespace osculate::linear
+} // namespace osculate::linear::OSCULATE_THIS_FILE

@@ -5,11 +5,11 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-namespace osculate::linear {
+namespace osculate::linear::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 /// Masses and couplings of elements, a node held along a slanted direction, node 8 without mass.
 struct MassIteration : ::testing::Test {
@@ -67,4 +67,4 @@ TEST_F(MassIteration, LeavesAtRestWhatNothingActsOn) {
 }
 
 } // namespace
-} // namespace osculate::linear
+} // namespace osculate::linear::OSCULATE_THIS_FILE

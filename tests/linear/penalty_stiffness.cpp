@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace osculate::linear {
+namespace osculate::linear::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
+using osculate::support::Random;
 
 /// Two "elements" of four nodes each that share none; node 1 in a turned frame and held along one axis, node 6 fixed.
 struct TwoBodies : ::testing::Test {
@@ -47,7 +47,7 @@ struct TwoBodies : ::testing::Test {
         return sum;
     }
     void check(const PenaltyStiffness& stiffness, const std::vector<Spring>& springs) {
-        const Matrix A = testing::dense_of(stiffness.matrix());
+        const Matrix A = fixtures::dense_of(stiffness.matrix());
         ASSERT_EQ(A.rows(), constraints.equations());
         const double round_off = 1e-13 * A.cwiseAbs().maxCoeff();
         EXPECT_LT((A - A.transpose()).cwiseAbs().maxCoeff(), round_off);
@@ -110,4 +110,4 @@ TEST_F(TwoBodies, ForgetEarlierSpringsAndGrowTheirPatternOnlyWhereNeeded) {
 }
 
 } // namespace
-} // namespace osculate::linear
+} // namespace osculate::linear::OSCULATE_THIS_FILE

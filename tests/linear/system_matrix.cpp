@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-namespace osculate::linear {
+namespace osculate::linear::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 constexpr double round_off = 1e-14; // sums of a few products of order one
 constexpr Index nodes = 14;
@@ -214,4 +214,4 @@ TEST_F(WithContact, TellsSolversWhatHasChanged) {
 }
 
 } // namespace
-} // namespace osculate::linear
+} // namespace osculate::linear::OSCULATE_THIS_FILE

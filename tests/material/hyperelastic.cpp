@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate::material {
+namespace osculate::material::OSCULATE_THIS_FILE {
 namespace {
 
 const LinearElastic hooke{2.0, 0.3}; // stresses of order one
@@ -39,7 +39,7 @@ TYPED_TEST_SUITE(Hyperelastic, Materials);
 
 TYPED_TEST(Hyperelastic, StressIsTheDerivativeOfTheEnergy) {
     const Mat3 E = strain_of(deformation_gradient());
-    const Matrix slope = osculate::testing::central_differences(
+    const Matrix slope = osculate::support::central_differences(
         [&](const Vector& v) { return Vector::Constant(1, this->material.energy(strain_of(Vec6(v)))).eval(); },
         strain_vector(E), step);
     EXPECT_LT((slope.transpose() - stress_vector(this->material.pk2(E))).norm(), difference);
@@ -47,7 +47,7 @@ TYPED_TEST(Hyperelastic, StressIsTheDerivativeOfTheEnergy) {
 
 TYPED_TEST(Hyperelastic, TangentIsTheDerivativeOfTheStress) {
     const Mat3 E = strain_of(deformation_gradient());
-    const Matrix slope = osculate::testing::central_differences(
+    const Matrix slope = osculate::support::central_differences(
         [&](const Vector& v) { return Vector(stress_vector(this->material.pk2(strain_of(Vec6(v))))); },
         strain_vector(E), step);
     const Mat6 D = this->material.tangent(E);
@@ -109,4 +109,4 @@ TEST(NeoHookean, ResistsFlatteningWithoutBound) {
 }
 
 } // namespace
-} // namespace osculate::material
+} // namespace osculate::material::OSCULATE_THIS_FILE

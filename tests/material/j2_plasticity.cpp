@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate::material {
+namespace osculate::material::OSCULATE_THIS_FILE {
 namespace {
 
 const LinearElastic hooke{200.0, 0.3};
@@ -45,7 +45,7 @@ TEST(J2Plasticity, StressIsTheDerivativeOfThePotentialOfAStep) {
     const auto memory = flowed();
     for (const auto& start : {law.at({}), law.at(memory)})
         for (const Mat3& E : strains()) {
-            const Matrix slope = osculate::testing::central_differences(
+            const Matrix slope = osculate::support::central_differences(
                 [&](const Vector& v) { return Vector::Constant(1, start.potential(strain_of(Vec6(v)))).eval(); },
                 strain_vector(E), 1e-5);
             const Vec6 S = stress_vector(start.pk2(E));
@@ -57,7 +57,7 @@ TEST(J2Plasticity, TangentIsTheDerivativeOfTheStress) {
     const auto memory = flowed();
     for (const auto& start : {law.at({}), law.at(memory)})
         for (const Mat3& E : strains()) {
-            const Matrix slope = osculate::testing::central_differences(
+            const Matrix slope = osculate::support::central_differences(
                 [&](const Vector& v) { return Vector(stress_vector(start.pk2(strain_of(Vec6(v))))); }, strain_vector(E),
                 1e-6);
             const Mat6 D = start.tangent(E);
@@ -103,4 +103,4 @@ TEST(J2Plasticity, IsIsotropic) {
 }
 
 } // namespace
-} // namespace osculate::material
+} // namespace osculate::material::OSCULATE_THIS_FILE

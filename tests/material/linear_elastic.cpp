@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace osculate::material {
+namespace osculate::material::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-13; // a handful of operations on numbers of order one
@@ -65,4 +65,4 @@ TEST(LinearElastic, IsIsotropic) {
 }
 
 } // namespace
-} // namespace osculate::material
+} // namespace osculate::material::OSCULATE_THIS_FILE

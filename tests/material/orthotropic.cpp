@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace osculate::material {
+namespace osculate::material::OSCULATE_THIS_FILE {
 namespace {
 
 const Orthotropic wood{{12, 1, 0.5}, {0.4, 0.35, 0.3}, {0.9, 0.8, 0.1}, Mat3::Identity()};
@@ -49,4 +49,4 @@ TEST(Orthotropic, KnowsWhatIsNoMaterial) {
 }
 
 } // namespace
-} // namespace osculate::material
+} // namespace osculate::material::OSCULATE_THIS_FILE

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -46,7 +46,7 @@ Vec3 node(const DeckMesh& mesh, const std::string& instance, long long number) {
     return Vec3::Zero();
 }
 
-class Assemblies : public testing::FileTest {
+class Assemblies : public fixtures::FileTest {
 protected:
     std::string error(const std::string& text) { return error_of(write("deck.inp", text)); }
 };
@@ -219,4 +219,4 @@ TEST_F(Assemblies, TeachWhatIsWrong) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(CellTypes, HaveNamesInASentence) {
@@ -40,4 +40,4 @@ TEST(CellTypes, OfFifteenNodesHaveTheirMidsideNodesBetweenTheSameCornersInOtherP
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

@@ -2,7 +2,7 @@
 #include "osculate/mesh/deck_mesh.hpp"
 #include "osculate/mesh/quality.hpp"
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -22,7 +22,7 @@ const std::string cubes = nodes_of_cubes + "*ELEMENT, TYPE=C3D8, ELSET=low\n1, 1
                                            "*element, type=c3d8i,\nelset=up\n2, 5,6,7,8,\n9,10,11,12\n"
                                            "*ELEMENT, TYPE=C3D8R, ELSET=apart\n3, 101,102,103,104,105,106,107,108\n";
 
-class Decks : public testing::FileTest {};
+class Decks : public fixtures::FileTest {};
 
 TEST_F(Decks, ReadsElementsOverSeveralLinesAndNamesInAnyCase) {
     const DeckMesh deck = read_deck_mesh(parse_deck(cubes, "cubes"));
@@ -132,4 +132,4 @@ TEST_F(Decks, SayWhatIsWrongAtWhichLineAllAtOnce) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <string>
 
-namespace osculate::mesh::testing {
+namespace osculate::mesh::fixtures {
 
 class FileTest : public ::testing::Test {
 protected:
@@ -55,4 +55,4 @@ protected:
     }
 };
 
-} // namespace osculate::mesh::testing
+} // namespace osculate::mesh::fixtures

@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::IsEmpty;
@@ -71,13 +71,13 @@ TEST(FocusedLines, RefuseImpossibleArguments) {
 
 TEST(FocusedBlock, IsSoundInEveryElementAndKeepsTheDivisionsOfOtherAxes) {
     const Focus focus{.point = {0, 0, 0.5}, .size = 0.1, .extent = 0.2, .growth = 1.5, .axes = {true, false, true}};
-    for (const auto& [name, type] : testing::element_types()) {
+    for (const auto& [name, type] : fixtures::element_types()) {
         const Mesh block = make_block({-1, 0, 0}, {2, 1, 1}, {7, 3, 7}, type, BlockPattern::quad, focus);
         EXPECT_THAT(faults(block), IsEmpty()) << name;
-        EXPECT_NEAR(testing::integrate(exterior_facets(block), block.nodes).volume, 2, 2e-12) << name;
+        EXPECT_NEAR(fixtures::integrate(exterior_facets(block), block.nodes).volume, 2, 2e-12) << name;
         std::set<double> y;
         for (const Vec3& x : block.nodes) y.insert(x.y());
-        EXPECT_EQ(y.size(), 3U * testing::facets_per_edge(type) + 1) << name;
+        EXPECT_EQ(y.size(), 3U * fixtures::facets_per_edge(type) + 1) << name;
     }
 }
 
@@ -117,8 +117,8 @@ TEST(CutTube, IsAPartOfTheWholeTubeWithItsCutsInThePlanes) {
         EXPECT_THAT(faults(part), IsEmpty());
         EXPECT_EQ(part.surfaces.size(), portion == Portion::half ? 5U : 6U);
         const double share = portion == Portion::half ? 0.5 : 0.25;
-        const double volume = testing::integrate(exterior_facets(whole), whole.nodes).volume;
-        EXPECT_NEAR(testing::integrate(exterior_facets(part), part.nodes).volume, share * volume, 1e-12 * volume);
+        const double volume = fixtures::integrate(exterior_facets(whole), whole.nodes).volume;
+        EXPECT_NEAR(fixtures::integrate(exterior_facets(part), part.nodes).volume, share * volume, 1e-12 * volume);
         for (const Vec3& x : part.nodes) {
             double nearest = 1;
             for (const Vec3& y : whole.nodes) nearest = std::min(nearest, (x - y).norm());
@@ -135,4 +135,4 @@ TEST(CutTube, IsAPartOfTheWholeTubeWithItsCutsInThePlanes) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

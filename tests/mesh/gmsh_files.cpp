@@ -12,7 +12,7 @@
 #include <map>
 #include <numbers>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -65,7 +65,7 @@ std::string changed(std::string text, const std::string& from, const std::string
     return text.replace(text.find(from), from.size(), to);
 }
 
-class GmshFiles : public testing::FileTest {
+class GmshFiles : public fixtures::FileTest {
 protected:
     void SetUp() override {
         FileTest::SetUp();
@@ -330,4 +330,4 @@ TEST_F(GmshFiles, AFocusWhoseElementsWouldBeTooManyIsRefused) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

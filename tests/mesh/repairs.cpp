@@ -2,7 +2,7 @@
 #include "osculate/mesh/deck_mesh.hpp"
 #include "osculate/mesh/quality.hpp"
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-class MeshRepairs : public testing::FileTest {
+class MeshRepairs : public fixtures::FileTest {
 protected:
     static RawMesh raw(const std::string& text) { return read_deck_mesh(parse_deck(text, "deck")).raw; }
 
@@ -181,4 +181,4 @@ TEST_F(MeshRepairs, ManyFaultsAreCounted) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::IsEmpty;
@@ -45,7 +45,7 @@ TEST(RoundBodies, AreSoundAndClosed) {
         SCOPED_TRACE(body.name + ", share " + std::to_string(body.share));
         EXPECT_THAT(faults(body.mesh), IsEmpty());
         const auto facets = exterior_facets(body.mesh);
-        const auto sum = testing::integrate(facets, body.mesh.nodes);
+        const auto sum = fixtures::integrate(facets, body.mesh.nodes);
         EXPECT_LT(sum.area_vector.norm(), 1e-12 * sum.area);
         std::set<Index> vertices;
         std::map<std::pair<Index, Index>, int> edges;
@@ -98,7 +98,7 @@ TEST(Ball, HasTheVolumeOfTheSphereUpToItsFacets) {
     const double exact = 4 * pi / 3 * 8;
     const auto lack = [&](int n) {
         const Mesh mesh = make_ball(2, {n, n / 2, n});
-        return exact - testing::integrate(exterior_facets(mesh), mesh.nodes).volume;
+        return exact - fixtures::integrate(exterior_facets(mesh), mesh.nodes).volume;
     };
     const double coarse = lack(8), fine = lack(16);
     EXPECT_LT(coarse, 0.02 * exact);
@@ -111,7 +111,7 @@ TEST(Cylinder, HasTheVolumeOfItsPolygon) {
         const Mesh mesh = make_cylinder(2, 5, {6, 3, 4}, Portion::full, grading);
         // a quarter is cut at equal angles: 24 isosceles triangles
         const double exact = 5 * 24 * 0.5 * 4 * std::sin(2 * pi / 24);
-        EXPECT_NEAR(testing::integrate(exterior_facets(mesh), mesh.nodes).volume, exact, 1e-12 * exact);
+        EXPECT_NEAR(fixtures::integrate(exterior_facets(mesh), mesh.nodes).volume, exact, 1e-12 * exact);
     }
 }
 
@@ -182,7 +182,7 @@ TEST(Tube, ClosesUponItself) {
         std::size_t named = 0;
         for (const auto& [name, surface] : tube.surfaces) named += surface.size();
         EXPECT_EQ(named, facets.size());
-        const auto sum = testing::integrate(facets, tube.nodes);
+        const auto sum = fixtures::integrate(facets, tube.nodes);
         EXPECT_LT(sum.area_vector.norm(), 1e-12 * sum.area);
         const double section = around / 2. * std::sin(2 * pi / around); // of the polygon of radius 1
         const double outer = inner + thickness;
@@ -196,4 +196,4 @@ TEST(Tube, ClosesUponItself) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace osculate::mesh::testing {
+namespace osculate::mesh::fixtures {
 
 struct Shape {
     std::string name;
@@ -122,4 +122,4 @@ inline std::vector<Shape> all_shapes() {
     return shapes;
 }
 
-} // namespace osculate::mesh::testing
+} // namespace osculate::mesh::fixtures

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <set>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(SurfaceFaces, PutTheQuartersOfATet10sFacesTogetherInAnyOrder) {
@@ -76,4 +76,4 @@ TEST(SurfaceFaces, KeepTheNumbersOfTheirFacets) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

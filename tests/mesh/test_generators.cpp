@@ -9,12 +9,12 @@
 #include <stdexcept>
 #include <tuple>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
-using testing::all_shapes;
+using fixtures::all_shapes;
+using fixtures::Shape;
 using ::testing::IsEmpty;
-using testing::Shape;
 
 constexpr double round_off = 1e-12; ///< relative; sums of a few hundred terms of order one
 
@@ -38,7 +38,7 @@ TEST(EveryShape, HasTheExactVolumeInsideAnOutwardSurface) {
     for (const Shape& shape : all_shapes()) {
         SCOPED_TRACE(shape.name);
         const auto& [name, mesh, volume, area] = shape;
-        const auto exterior = testing::integrate(exterior_facets(mesh), mesh.nodes);
+        const auto exterior = fixtures::integrate(exterior_facets(mesh), mesh.nodes);
         EXPECT_NEAR(exterior.volume, volume, round_off * volume);
         EXPECT_LT(exterior.area_vector.norm(), round_off * exterior.area);
         EXPECT_NEAR(sum_of_cells(mesh), volume, round_off * volume);
@@ -74,7 +74,7 @@ TEST(EveryShape, ConformsWithinAndIsSound) {
         const Mesh& mesh = shape.mesh;
         EXPECT_THAT(faults(mesh), IsEmpty());
         const double area = shape.area;
-        EXPECT_NEAR(testing::integrate(exterior_facets(mesh), mesh.nodes).area, area, round_off * area);
+        EXPECT_NEAR(fixtures::integrate(exterior_facets(mesh), mesh.nodes).area, area, round_off * area);
     }
 }
 
@@ -116,7 +116,7 @@ TEST(EveryShape, HasFacetsThatBelongToTheirElement) {
 
 /// Mean outward normal of a named surface.
 Vec3 mean_normal(const Mesh& mesh, const std::string& surface) {
-    return testing::integrate(mesh.surfaces.at(surface), mesh.nodes).area_vector.normalized();
+    return fixtures::integrate(mesh.surfaces.at(surface), mesh.nodes).area_vector.normalized();
 }
 
 TEST(Block, NamesItsSidesByDirection) {
@@ -311,4 +311,4 @@ TEST(Facet, HasTheCentroidAreaAndNormalOfItsPositions) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

@@ -7,10 +7,10 @@
 #include <set>
 #include <stdexcept>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
-using testing::all_shapes;
+using fixtures::all_shapes;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -177,8 +177,8 @@ int feature_edge_count(const HalfEdgeSurface& surface) {
 }
 
 TEST(HalfEdgeSurface, FindsTheTwelveEdgesOfACube) {
-    for (const auto& [name, type] : testing::element_types()) {
-        const int sides = 12 * testing::facets_per_edge(type); // of the cube, in facets
+    for (const auto& [name, type] : fixtures::element_types()) {
+        const int sides = 12 * fixtures::facets_per_edge(type); // of the cube, in facets
         const Mesh one = make_block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}, type);
         EXPECT_EQ(feature_edge_count({exterior_facets(one), one.nodes}), sides) << name;
         const Mesh many = make_block({0, 0, 0}, {1, 1, 1}, {3, 3, 3}, type);
@@ -284,4 +284,4 @@ TEST(HalfEdgeSurface, RefusesWhatIsNoOrientedSurfaceAndNamesTheNodes) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <limits>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -34,7 +34,7 @@ TEST_P(EveryElement, IsCaughtWhenFlat) {
     EXPECT_THAT(faults(mesh, 1000), SizeIs(mesh.element_count()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Quality, EveryElement, ::testing::ValuesIn(testing::element_types()),
+INSTANTIATE_TEST_SUITE_P(Quality, EveryElement, ::testing::ValuesIn(fixtures::element_types()),
                          [](const auto& element) { return element.param.first; });
 
 TEST(Quality, CatchesACornerFoldedInward) {
@@ -88,4 +88,4 @@ TEST(Quality, MeasuresTheVolumeOfATwistedHexahedron) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

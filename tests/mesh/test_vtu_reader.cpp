@@ -18,15 +18,15 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
-using testing::all_shapes;
+using fixtures::all_shapes;
+using fixtures::Shape;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::Shape;
 
 void add_cell(vtkUnstructuredGrid* grid, int type, const std::vector<vtkIdType>& points) {
     grid->InsertNextCell(type, static_cast<vtkIdType>(points.size()), points.data());
@@ -264,4 +264,4 @@ TEST_F(VtuReader, RefusesPointNumbersAndOffsetsThatDoNotExist) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

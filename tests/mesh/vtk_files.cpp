@@ -3,7 +3,7 @@
 
 #include <vtk_exodusII.h>
 
-namespace osculate::mesh {
+namespace osculate::mesh::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -18,7 +18,7 @@ const std::string legacy = "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET UNS
                            "CELL_DATA 3\nSCALARS mat_id int 1\nLOOKUP_TABLE default\n5\n7\n5\n"
                            "POINT_DATA 9\nSCALARS ground int 1\nLOOKUP_TABLE default\n1 1 1 1 0 0 0 0 0\n";
 
-class VtkFiles : public testing::FileTest {};
+class VtkFiles : public fixtures::FileTest {};
 
 TEST_F(VtkFiles, LegacyFilesHaveSetsAndParts) {
     const std::string path = write("cube.vtk", legacy);
@@ -94,4 +94,4 @@ TEST_F(VtkFiles, ExodusHasBlocksNodeSetsAndSideSets) {
 }
 
 } // namespace
-} // namespace osculate::mesh
+} // namespace osculate::mesh::OSCULATE_THIS_FILE

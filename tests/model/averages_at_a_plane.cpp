@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
+using osculate::support::Random;
 
 constexpr double plane = 5; ///< at x = 5
 
@@ -169,4 +169,4 @@ INSTANTIATE_TEST_SUITE_P(By, AtAPlane, ::testing::Values(Discretisation::mortar,
                          });
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

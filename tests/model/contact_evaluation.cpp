@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
+using osculate::support::Random;
 
 constexpr double round_off = 1e-10; // of patch weights, condition 1e5
 
@@ -103,7 +103,7 @@ TEST_P(FlatPair, HasTheExactVariationOfTheDrift) {
         touched.insert(touched.end(), evaluation->point_nodes(j).begin(), evaluation->point_nodes(j).end());
         Vector y(3 * static_cast<Index>(touched.size()));
         for (std::size_t i = 0; i < touched.size(); ++i) y.segment<3>(3 * static_cast<Index>(i)) = x[touched[i]];
-        const Matrix differences = osculate::testing::central_differences(
+        const Matrix differences = osculate::support::central_differences(
             [&](const Vector& at) -> Vector {
                 std::vector<Vec3> moved = x;
                 for (std::size_t i = 0; i < touched.size(); ++i)
@@ -112,7 +112,7 @@ TEST_P(FlatPair, HasTheExactVariationOfTheDrift) {
                 return evaluation->state(j, Vec3::Zero()).drift;
             },
             y, step);
-        EXPECT_LT(osculate::testing::relative_difference(dd, differences), tolerance);
+        EXPECT_LT(osculate::support::relative_difference(dd, differences), tolerance);
         evaluation->evaluate(x, timings, 1);
     }
 }
@@ -397,4 +397,4 @@ TEST_F(CreasePair, ForgetsTheSideOfTheAttemptBefore) {
 }
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
 /// A roof with its ridge along y from (0, -1, 0) to (0, 1, 0), and one upside down with its ridge along x from (0.1, 0.1, height):
@@ -84,4 +84,4 @@ TEST(CrossingEdges, ThatWereApartKeepNoDepth) {
 }
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double kept_to = 1e-12; ///< of mass, first and second moments over the body's extents: ten sums of round-off
@@ -48,7 +48,7 @@ Eigen::Matrix<double, 10, 1> moments_about(const Matrix& m, const std::vector<Ve
     return all;
 }
 
-mesh::Mesh random_mesh(testing::Random& random, int k) {
+mesh::Mesh random_mesh(support::Random& random, int k) {
     const auto many = [&](int low, int high) { return static_cast<int>(random.uniform(low, high + 0.999)); };
     const auto size = [&] { return random.uniform(0.5, 3); };
     mesh::Mesh m;
@@ -70,7 +70,7 @@ mesh::Mesh random_mesh(testing::Random& random, int k) {
 }
 
 /// A cap of the outer surface, all of it now and then.
-std::vector<char> random_slaves(testing::Random& random, const mesh::Mesh& m, int k) {
+std::vector<char> random_slaves(support::Random& random, const mesh::Mesh& m, int k) {
     std::vector<char> outer(m.nodes.size(), 0);
     for (const mesh::Facet& facet : mesh::exterior_facets(m))
         for (int c = 0; c < facet.count; ++c) outer[static_cast<std::size_t>(facet.nodes[c])] = 1;
@@ -88,7 +88,7 @@ std::vector<char> random_slaves(testing::Random& random, const mesh::Mesh& m, in
 }
 
 TEST(MassRedistribution, KeepsMassCentreAndInertiaOfFiftyRandomBodies) {
-    testing::Random random(7);
+    support::Random random(7);
     int moved = 0, kept = 0;
     for (int k = 0; k < 50; ++k) {
         const std::vector<Body> bodies = one(random_mesh(random, k));
@@ -157,4 +157,4 @@ TEST(MassRedistribution, LeavesBodiesWithoutSlavesAlone) {
 }
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

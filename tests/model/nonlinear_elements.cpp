@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
+using osculate::support::Random;
 
 const material::LinearElastic hooke{1.0, 0.3}; // forces of order one
 
@@ -146,4 +146,4 @@ TEST(NodalStress, IsTheMeanOverTheElementsByTheirVolume) {
 }
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

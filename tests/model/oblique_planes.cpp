@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
-using osculate::testing::Random;
+using osculate::support::Random;
 
 constexpr double sector = std::numbers::pi / 3;
 
@@ -214,4 +214,4 @@ INSTANTIATE_TEST_SUITE_P(Of, ObliquePlanes,
                          name_of);
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

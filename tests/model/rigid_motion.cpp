@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -67,4 +67,4 @@ TEST(RigidHold, TheSizeOfABodyDoesNotMatter) {
 }
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-namespace osculate::model {
+namespace osculate::model::OSCULATE_THIS_FILE {
 namespace {
 
 /// From tiny angles, where series take over, to almost half a turn.
@@ -86,4 +86,4 @@ TEST(WeightsAbout, HaveTheirCentreWhereItIsAskedFor) {
 }
 
 } // namespace
-} // namespace osculate::model
+} // namespace osculate::model::OSCULATE_THIS_FILE

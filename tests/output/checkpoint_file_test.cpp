@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <utility>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(Fingerprint, IsThatOfNodesAndElements) {
@@ -27,4 +27,4 @@ TEST(Fingerprint, IsThatOfNodesAndElements) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

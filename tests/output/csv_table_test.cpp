@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -122,4 +122,4 @@ TEST_F(CsvFile, ErrorNamesPathAndReason) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

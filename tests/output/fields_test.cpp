@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <set>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-12;
@@ -133,4 +133,4 @@ TEST(Fields, MasterForcesAnswerTheSlaves) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

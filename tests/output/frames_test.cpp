@@ -11,7 +11,7 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -87,4 +87,4 @@ TEST_F(FramesFolder, ForgetsTheFramesOfBeforeAndRemovesNone) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(ContactResultants, SumClosedNodesOnly) {
@@ -113,4 +113,4 @@ TEST_F(HistoryFile, LeavesOutWhatIsNotAskedFor) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -292,4 +292,4 @@ TEST_F(Folder, NumbersFolders) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

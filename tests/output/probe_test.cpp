@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <numbers>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -251,4 +251,4 @@ TEST_F(ProbeFiles, HoldTimeUnitsAndEmptyCells) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

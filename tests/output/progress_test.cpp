@@ -8,7 +8,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -127,4 +127,4 @@ TEST_F(ProgressLine, NeverWrapsOnANarrowTerminal) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

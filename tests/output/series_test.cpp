@@ -6,7 +6,7 @@
 #include <vtkXMLDataElement.h>
 #include <vtkXMLUtilities.h>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -104,4 +104,4 @@ TEST_F(SeriesFile, ErrorNamesPathAndReason) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

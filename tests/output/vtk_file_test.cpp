@@ -15,7 +15,7 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-namespace osculate::output {
+namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -188,4 +188,4 @@ TEST_F(VtkFile, ReaderOfTheFileOfBeforeKeepsIt) {
 }
 
 } // namespace
-} // namespace osculate::output
+} // namespace osculate::output::OSCULATE_THIS_FILE

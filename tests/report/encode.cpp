@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-namespace osculate::report {
+namespace osculate::report::OSCULATE_THIS_FILE {
 namespace {
 
 Bytes bytes(const std::string& text) {
@@ -33,4 +33,4 @@ TEST(Encode, BytesThatAreNotDeflatedAreRefused) {
 }
 
 } // namespace
-} // namespace osculate::report
+} // namespace osculate::report::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::report {
+namespace osculate::report::OSCULATE_THIS_FILE {
 namespace {
 
 using output::content;
@@ -101,4 +101,4 @@ TEST_F(MovingSurfaces, ASeriesComesBackAsItWasWritten) {
 }
 
 } // namespace
-} // namespace osculate::report
+} // namespace osculate::report::OSCULATE_THIS_FILE

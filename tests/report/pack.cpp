@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate::report {
+namespace osculate::report::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
@@ -74,4 +74,4 @@ TEST(Pack, BytesOfAnotherSizeAreRefused) {
 }
 
 } // namespace
-} // namespace osculate::report
+} // namespace osculate::report::OSCULATE_THIS_FILE

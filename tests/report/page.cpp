@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-namespace osculate::report {
+namespace osculate::report::OSCULATE_THIS_FILE {
 namespace {
 
 using support::found;
@@ -238,4 +238,4 @@ TEST_F(Page, ALongHistoryIsThinnedOutAndSaidSo) {
 }
 
 } // namespace
-} // namespace osculate::report
+} // namespace osculate::report::OSCULATE_THIS_FILE

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-namespace osculate::report {
+namespace osculate::report::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr int width = 80, height = 60;
@@ -95,4 +95,4 @@ TEST_F(Picture, ItsLegendTellsTheEndsAndTheUnit) {
 }
 
 } // namespace
-} // namespace osculate::report
+} // namespace osculate::report::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <numbers>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -161,4 +161,4 @@ TEST(BadCourse, ValuesThatAreNone) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

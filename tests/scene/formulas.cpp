@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gmock/gmock.h>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -77,4 +77,4 @@ TEST(Aggregate, TellsWhatItCannotDo) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr const char* resolved = R"(bodies:
@@ -51,4 +51,4 @@ TEST(NumberAt, SaysWhatStandsThereInstead) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

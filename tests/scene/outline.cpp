@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 TEST(Engineering, LeavesOneToAThousandBeforeTheUnit) {
@@ -49,4 +49,4 @@ TEST(Outline, GivesVectorsOnePrefix) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <numbers>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -267,4 +267,4 @@ TEST(ShippedScenes, AreValid) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

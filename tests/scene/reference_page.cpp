@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 std::ifstream page(const std::string& name) {
@@ -59,4 +59,4 @@ TEST(Readme, HoldsASceneThatIsValid) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

@@ -16,7 +16,7 @@
 #include <set>
 #include <sstream>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 using Json = nlohmann::json;
@@ -174,4 +174,4 @@ TEST(Schema, OfATemplateIsThatOfTheOutputWithoutItsTemplate) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -147,4 +147,4 @@ TEST(StudyFile, OneOfSurfacesIsAnother) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

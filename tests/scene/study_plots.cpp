@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gmock/gmock.h>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -150,4 +150,4 @@ TEST(StudyAxes, AbsurdNumbersOfRunsAreRefusedBeforeTheyAreListed) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

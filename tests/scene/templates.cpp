@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST_F(Templates, UnknownFieldsAndPlacesAreNamedWithTheirNearest) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace osculate::scene {
+namespace osculate::scene::OSCULATE_THIS_FILE {
 namespace {
 
 // Every expected value below is the double that the decimal names: units are exact quotients, so equality is exact.
@@ -130,4 +130,4 @@ TEST(Units, HaveNames) {
 }
 
 } // namespace
-} // namespace osculate::scene
+} // namespace osculate::scene::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -185,4 +185,4 @@ TEST_F(Check, AsJsonHoldsTheSameFigures) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

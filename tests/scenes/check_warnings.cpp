@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -137,4 +137,4 @@ TEST_F(CheckWarnings, ASupportThatHoldsNothingIsNamed) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 /// The paper's half-tube on a mesh that takes a second, with either master surface.
@@ -35,4 +35,4 @@ INSTANTIATE_TEST_SUITE_P(Both, CoarseHalfTube, testing::Values("facets", "rpim")
                          [](const auto& test) { return std::string(test.param); });
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <regex>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -128,4 +128,4 @@ TEST_F(Command, HelpIsNoError) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

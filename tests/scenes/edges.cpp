@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 class RidgeOnRidge : public Program {};
@@ -40,4 +40,4 @@ TEST_F(RidgeOnRidge, ReportsTheForceThatItsHoldersFeel) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -81,4 +81,4 @@ TEST_F(Expectations, OfGivingUpHoldItsCause) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -69,4 +69,4 @@ TEST_F(Film, RefusesWhatItCannotShow) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -9,7 +9,7 @@
 #include <set>
 #include <sys/mount.h>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -219,4 +219,4 @@ TEST_F(Probes, ADiskThatIsFullIsNamedAndTheSeriesStaysReadable) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

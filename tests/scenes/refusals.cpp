@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 struct Refusal {
@@ -204,4 +204,4 @@ TEST_F(Refused, OutputThatWouldReplaceTheSceneItself) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::AllOf;
@@ -103,4 +103,4 @@ TEST(Completion, OffersCommandsOptionsTutorialsAndKeys) {
 }
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

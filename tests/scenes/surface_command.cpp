@@ -9,7 +9,7 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
-namespace osculate::scenes {
+namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -251,4 +251,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, MirroredSurface, testing::Values("facets", "rpim
                          [](const auto& test) { return std::string(test.param); });
 
 } // namespace
-} // namespace osculate::scenes
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 /// Three blocks whose rows alternate: equation e is row e/3 of block e%3.
 Matrix alternating(const std::array<Matrix, 3>& blocks) {
@@ -80,4 +80,4 @@ TEST(ByComponents, NamesTheEquationThatFails) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

@@ -12,11 +12,11 @@
 #include <limits>
 #include <numeric>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -202,7 +202,7 @@ TEST(Gmres, SharesItsDirectionsAmongProcesses) {
     ASSERT_TRUE(expected.converged);
     for (const int count : {1, 3, 60}) { // more processes than numbers, too
         std::vector<Vector> found(static_cast<std::size_t>(count), Vector::Zero(50));
-        osculate::testing::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
+        osculate::support::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
             Vector& x = found[static_cast<std::size_t>(ranks->rank())];
             const auto result = Gmres(50, ranks.get()).solve(by(A), by(M), b.data(), x.data(), 1e-9);
             EXPECT_TRUE(result.converged);
@@ -216,4 +216,4 @@ TEST(Gmres, SharesItsDirectionsAmongProcesses) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

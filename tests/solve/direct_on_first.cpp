@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 TEST(DirectOnFirst, GivesAllProcessesTheBitsOfOne) {
     Random random(7);
@@ -23,7 +23,7 @@ TEST(DirectOnFirst, GivesAllProcessesTheBitsOfOne) {
     constexpr int count = 3;
     std::vector<Vector> found(count, Vector::Zero(40));
     std::vector<FactorStatus> status(count, FactorStatus::singular);
-    osculate::testing::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
+    osculate::support::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
         const auto rank = static_cast<std::size_t>(ranks->rank());
         // only the first has the right matrix: the others must not use theirs
         SparseMatrix own = S;
@@ -45,7 +45,7 @@ TEST(DirectOnFirst, TellsAllProcessesWhichEquationFails) {
     const auto alone = make_lu();
     const FactorStatus expected = alone->factorise(S);
     ASSERT_NE(expected, FactorStatus::ok);
-    osculate::testing::on_ranks(2, [&](const std::shared_ptr<Ranks>& ranks) {
+    osculate::support::on_ranks(2, [&](const std::shared_ptr<Ranks>& ranks) {
         const auto solver = make_direct_on_first(make_lu(), *ranks);
         EXPECT_EQ(solver->factorise(S), expected);
         EXPECT_EQ(solver->failing_equation(), alone->failing_equation());
@@ -53,4 +53,4 @@ TEST(DirectOnFirst, TellsAllProcessesWhichEquationFails) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 constexpr double backward_error = 1e-14; // of a stable factorisation of a hundred rows: a few machine epsilons
 
@@ -172,4 +172,4 @@ TEST(Lu, FollowsNewValuesAndNewPatterns) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double tolerance = 1e-10;
@@ -172,4 +172,4 @@ TEST(FrictionProblem, AProblemWithoutSolutionIsNotSaidToBeSolved) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

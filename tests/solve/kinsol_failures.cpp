@@ -11,10 +11,10 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
+using namespace fixtures;
 
 TEST(KinsolSolver, SaysWhenIterationsAreExhausted) {
     const int n = 5;
@@ -162,4 +162,4 @@ TEST(KinsolOutcome, HasAnExplanationForEachValue) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 
 #include <functional>
 
-namespace osculate::solve::testing {
+namespace osculate::solve::fixtures {
 
 using Verdict = NonlinearProblem::Verdict;
 
@@ -91,4 +91,4 @@ inline Problem scalar(std::function<double(double)> f, std::function<double(doub
     return p;
 }
 
-} // namespace osculate::solve::testing
+} // namespace osculate::solve::fixtures

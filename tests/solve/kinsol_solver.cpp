@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
+using namespace fixtures;
 
 TEST(KinsolSolver, ConvergesQuadratically) {
     const int n = 20; // 8000 unknowns
@@ -302,7 +302,7 @@ TEST_F(PreconditionedNewton, FactorisesTheTangentWhereThePreconditionerFails) {
 
 TEST_F(PreconditionedNewton, FactorisesTheTangentWhereGmresDoesNotConverge) {
     Preconditioned p(cubic(n, load), laplacian(n));
-    osculate::testing::Random random(7);
+    osculate::support::Random random(7);
     std::fill(p.P.value.begin(), p.P.value.end(), 0.0);
     for (Index i = 0; i < p.size(); ++i) diagonal(p.P, i) = std::pow(10.0, random.uniform(-3, 3)); // nowhere near
     Vector u = Vector::Zero(p.size());
@@ -413,4 +413,4 @@ TEST_F(PreconditionedNewton, SaysWhereTheTangentItselfIsSingular) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

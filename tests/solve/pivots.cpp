@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
-using namespace testing;
-using osculate::testing::Random;
+using namespace fixtures;
+using osculate::support::Random;
 
 constexpr int side = 4;
 constexpr Index nodes = Index{side} * side * side; ///< of a body: one unknown each
@@ -122,4 +122,4 @@ TEST(Cholesky, OfAMatrixWithoutEquationsHasNothingToDo) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

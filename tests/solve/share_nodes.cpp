@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-namespace osculate::solve {
+namespace osculate::solve::OSCULATE_THIS_FILE {
 namespace {
 
 /// A square of n x n nodes, each beside those at its sides.
@@ -50,4 +50,4 @@ TEST(ShareNodes, KeepsNodesTogetherThatFollowEachOther) {
 }
 
 } // namespace
-} // namespace osculate::solve
+} // namespace osculate::solve::OSCULATE_THIS_FILE

@@ -4,7 +4,7 @@
 #include "osculate/solve/sparse_matrix.hpp"
 #include "support/random.hpp"
 
-namespace osculate::solve::testing {
+namespace osculate::solve::fixtures {
 
 /// Sparse matrix of a dense one, zeros left out, diagonal kept. `pattern` names its pattern.
 inline SparseMatrix sparse(const Matrix& A, bool symmetric_positive_definite, std::uint64_t pattern = 1) {
@@ -24,7 +24,7 @@ inline SparseMatrix sparse(const Matrix& A, bool symmetric_positive_definite, st
 }
 
 /// About a tenth of the entries random in [-1, 1), diagonal `diagonal` on top.
-inline Matrix random_matrix(Index n, double diagonal, osculate::testing::Random& random) {
+inline Matrix random_matrix(Index n, double diagonal, osculate::support::Random& random) {
     Matrix A = diagonal * Matrix::Identity(n, n);
     for (Index i = 0; i < n; ++i)
         for (Index j = 0; j < n; ++j)
@@ -32,7 +32,7 @@ inline Matrix random_matrix(Index n, double diagonal, osculate::testing::Random&
     return A;
 }
 
-inline Vector random_vector(Index n, osculate::testing::Random& random) {
+inline Vector random_vector(Index n, osculate::support::Random& random) {
     Vector v(n);
     for (Index i = 0; i < n; ++i) v(i) = random.uniform();
     return v;
@@ -65,4 +65,4 @@ inline double& diagonal(SparseMatrix& A, SparseIndex row) {
     return A.value[k];
 }
 
-} // namespace osculate::solve::testing
+} // namespace osculate::solve::fixtures

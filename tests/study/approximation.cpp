@@ -6,7 +6,7 @@
 #include <array>
 #include <gtest/gtest.h>
 
-namespace osculate::study {
+namespace osculate::study::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double irregularity = 0.1;
@@ -93,4 +93,4 @@ TEST(RefinedMesh, IsClosedHybridAndOutward) {
 }
 
 } // namespace
-} // namespace osculate::study
+} // namespace osculate::study::OSCULATE_THIS_FILE

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::study {
+namespace osculate::study::OSCULATE_THIS_FILE {
 namespace {
 
 const Sphere sphere{{0.3, -0.2, 0.1}, 1.7};
@@ -12,7 +12,7 @@ const Torus torus{{0.1, 0.2, -0.3}, 2, 0.7};
 const Saddle saddle{{0.4, -0.1, 0.2}, 0.6, 0.3};
 
 /// A point near the surface: the foot of a random point, moved off along the normal.
-Vec3 near(const ExactSurface& surface, testing::Random& random) {
+Vec3 near(const ExactSurface& surface, support::Random& random) {
     const Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5));
     const auto foot = std::visit([&](const auto& s) { return s.closest(p + Vec3(1.2, 0, 0.3)); }, surface);
     return foot.point + random.uniform(-0.1, 0.1) * foot.normal;
@@ -27,7 +27,7 @@ protected:
 
 TEST_P(Exact, ClosestPointLiesAlongTheNormalAndOnTheSurface) {
     constexpr double round_off = 1e-13;
-    testing::Random random(1);
+    support::Random random(1);
     for (int i = 0; i < 100; ++i) {
         const Vec3 x = near(GetParam(), random);
         const ExactPoint p = closest(x);
@@ -39,7 +39,7 @@ TEST_P(Exact, ClosestPointLiesAlongTheNormalAndOnTheSurface) {
 
 TEST_P(Exact, MeanCurvatureIsHalfTheDivergenceOfTheNormal) {
     constexpr double step = 1e-5, difference_error = 1e-8;
-    testing::Random random(2);
+    support::Random random(2);
     for (int i = 0; i < 20; ++i) {
         const ExactPoint p = closest(near(GetParam(), random));
         double divergence = 0;
@@ -63,4 +63,4 @@ TEST(ExactSaddle, IsAtItsHeight) {
 }
 
 } // namespace
-} // namespace osculate::study
+} // namespace osculate::study::OSCULATE_THIS_FILE

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace osculate::study {
+namespace osculate::study::OSCULATE_THIS_FILE {
 namespace {
 
 double call(const std::string& name, const std::vector<double>& arguments) {
@@ -160,4 +160,4 @@ TEST(Formulas, OscillatorObeysItsEquation) {
 }
 
 } // namespace
-} // namespace osculate::study
+} // namespace osculate::study::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
-namespace osculate::study {
+namespace osculate::study::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double round_off = 1e-14;
@@ -107,4 +107,4 @@ TEST(Quantity, ErrorsAreRelativeWhereTheyCanBe) {
 }
 
 } // namespace
-} // namespace osculate::study
+} // namespace osculate::study::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate::study {
+namespace osculate::study::OSCULATE_THIS_FILE {
 namespace {
 
 /// All corners and the middle of a box: inputs that have nothing to do with one another.
@@ -70,4 +70,4 @@ TEST(Sensitivity, IsNoneWhereNothingVariesOrSamplesAreTooFew) {
 }
 
 } // namespace
-} // namespace osculate::study
+} // namespace osculate::study::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <unistd.h>
 
-namespace osculate::app {
+namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ TEST_F(StudyFiles, RefuseAMeshBesideTheSurface) {
 }
 
 } // namespace
-} // namespace osculate::app
+} // namespace osculate::app::OSCULATE_THIS_FILE

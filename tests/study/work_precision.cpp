@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <limits>
 
-namespace osculate::study {
+namespace osculate::study::OSCULATE_THIS_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -73,4 +73,4 @@ TEST(Median, IsTheMiddle) {
 }
 
 } // namespace
-} // namespace osculate::study
+} // namespace osculate::study::OSCULATE_THIS_FILE

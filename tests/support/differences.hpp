@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace osculate::testing {
+namespace osculate::support {
 
 /// dF/dy (F's size x y's size) of a vector function F(y) by central differences.
 template <class F> Matrix central_differences(const F& f, Vector y, double step) {
@@ -30,4 +30,4 @@ template <class A, class B> double relative_difference(const A& a, const B& b) {
     return (a - b).cwiseAbs().maxCoeff() / std::max(1.0, b.cwiseAbs().maxCoeff());
 }
 
-} // namespace osculate::testing
+} // namespace osculate::support

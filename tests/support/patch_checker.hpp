@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::contact::testing {
+namespace osculate::contact::fixtures {
 
 /// The natural coordinates of a patch's nodes, and points to look at.
 struct PatchCase {
@@ -82,17 +82,17 @@ template <class Patch> void expect_consistent_derivatives(const Patch& patch, co
         EXPECT_LT((p.X - x.transpose() * w.phi).norm(), c.tolerance * scale);
         EXPECT_LT((p.X_a - x.transpose() * w.phi_a).norm(), c.tolerance * scale / patch.node_distance());
 
-        const Matrix d_phi = osculate::testing::central_differences(
+        const Matrix d_phi = osculate::support::central_differences(
             [&](const Vector& at) -> Vector { return weights_at(patch, at).phi; }, u, c.difference_step);
-        EXPECT_LT(osculate::testing::relative_difference(w.phi_a, d_phi), c.difference_tolerance);
+        EXPECT_LT(osculate::support::relative_difference(w.phi_a, d_phi), c.difference_tolerance);
 
         Matrix second(6, 2); // derivatives of (X,1; X,2) by u1 and u2
         second << p.X_11, p.X_12, p.X_12, p.X_22;
-        const Matrix d_tangents = osculate::testing::central_differences(
+        const Matrix d_tangents = osculate::support::central_differences(
             [&](const Vector& at) -> Vector { return patch.point(at, coefficients).X_a.reshaped(); }, u,
             c.difference_step);
-        EXPECT_LT(osculate::testing::relative_difference(second, d_tangents), c.difference_tolerance);
+        EXPECT_LT(osculate::support::relative_difference(second, d_tangents), c.difference_tolerance);
     }
 }
 
-} // namespace osculate::contact::testing
+} // namespace osculate::contact::fixtures

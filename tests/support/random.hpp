@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace osculate::testing {
+namespace osculate::support {
 
 class Random {
 public:
@@ -30,4 +30,4 @@ private:
     std::mt19937 engine_;
 };
 
-} // namespace osculate::testing
+} // namespace osculate::support

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace osculate::testing {
+namespace osculate::support {
 
 /// Calls body(ranks) on `count` threads that are processes to each other.
 inline void on_ranks(int count, const std::function<void(std::shared_ptr<Ranks>)>& body) {
@@ -43,4 +43,4 @@ inline void on_ranks(int count, const std::function<void(std::shared_ptr<Ranks>)
     for (std::thread& thread : threads) thread.join();
 }
 
-} // namespace osculate::testing
+} // namespace osculate::support

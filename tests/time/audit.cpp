@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double drawn = 0.02, round_off = 1e-12; // m
@@ -57,4 +57,4 @@ TEST_F(DrawnOverlaps, OfAContactPairCountInFull) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

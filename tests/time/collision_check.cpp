@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double facet = 0.5, edge = 0.1;  // m
@@ -139,4 +139,4 @@ TEST_F(Paths, AndGapsOfAnInitialOverlapCutNothing) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 /// The audit's formulas and those of contact share nothing, and agree.
@@ -37,4 +37,4 @@ TEST(ExactAudit, MeasuresTheDistancesThatContactMeasures) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

@@ -12,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <limits>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::HasSubstr;
@@ -180,4 +180,4 @@ TEST(NotFinite, IsExplainedByBodyNodeAndValue) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

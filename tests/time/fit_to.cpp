@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 /// Steps of fit_to() up to `end`.
@@ -30,7 +30,7 @@ TEST(FitTo, HitsEveryTargetExactly) {
 
 TEST(FitTo, LeavesNoSliverAndTakesNoLongerStep) {
     constexpr double stretch = 1e-9; // relative; round-off, not time
-    testing::Random random(4);
+    support::Random random(4);
     for (int i = 0; i < 1000; ++i) {
         const double dt = random.uniform(0.01, 0.5);
         for (const FittedStep& step : march(dt, {1}, 1)) {
@@ -79,4 +79,4 @@ TEST(Corners, AreThoseWithinTheStageThatNoStepHitsAnyway) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

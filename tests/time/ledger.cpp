@@ -8,7 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 /// A block of 50 kg, under a pressure that follows it and grows, slides on a plate that is fixed.
@@ -52,4 +52,4 @@ TEST(Ledger, AddsUpUnderFriction) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

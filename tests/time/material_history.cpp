@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 /// Linear elements that soften for good with the largest strain they have had: with s = sqrt(u K u) and
@@ -195,4 +195,4 @@ TEST_F(PulledBar, NeedsFewIterationsWithTheTangentOfItsForces) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

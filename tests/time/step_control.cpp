@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 using ::testing::HasSubstr;
@@ -32,7 +32,7 @@ StepLimits allowing(double g_p) {
 }
 
 TEST(ReductionFactor, EndsOnTheSurfaceForAPointAwayFromIt) {
-    testing::Random random(1);
+    support::Random random(1);
     for (int i = 0; i < 1000; ++i) {
         const double g_p = random.uniform(1e-6, 1), g0 = random.uniform(g_p, 10), g1 = -g_p - random.uniform(1e-6, 10);
         const double lambda = reduction_factor(g0, g1, g_p);
@@ -42,7 +42,7 @@ TEST(ReductionFactor, EndsOnTheSurfaceForAPointAwayFromIt) {
 }
 
 TEST(ReductionFactor, EndsAtTheAllowedInterpenetrationForAPointAtTheSurfaceOrBelow) {
-    testing::Random random(2);
+    support::Random random(2);
     for (int i = 0; i < 1000; ++i) {
         const double g_p = random.uniform(1e-6, 1), g0 = random.uniform(-g_p, g_p);
         const double g1 = -g_p - random.uniform(1e-6, 10), lambda = reduction_factor(g0, g1, g_p);
@@ -81,7 +81,7 @@ TEST(StepControl, AcceptsAndRemembersTheResidualWhenNothingObjects) {
 }
 
 TEST(StepControl, TakesTheSmallestFactorOfManyPoints) {
-    testing::Random random(3);
+    support::Random random(3);
     for (int round = 0; round < 50; ++round) {
         StepEvidence evidence;
         double smallest = 1;
@@ -532,4 +532,4 @@ TEST(Fall, ReserveSavesASlowingPointFromCreepingUpToItsBound) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

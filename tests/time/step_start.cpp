@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace osculate::time {
+namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
 /// A block is pressed on another, and the load stays as dynamics begin.
@@ -41,4 +41,4 @@ TEST(FirstAcceleration, IsNoneWhereContactAndLoadsBalance) {
 }
 
 } // namespace
-} // namespace osculate::time
+} // namespace osculate::time::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using support::SlaveNode;
@@ -52,4 +52,4 @@ INSTANTIATE_TEST_SUITE_P(Cylinder, CattaneoMindlin, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Slave" : "Master"; });
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

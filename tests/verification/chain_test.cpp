@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr int links = 5, slices = 16, per_slice = 17; ///< of the mesh: slices around, nodes in each
@@ -99,4 +99,4 @@ TEST(Chain, NoLinkLeavesAnother) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 const std::string sledge = R"(
@@ -136,4 +136,4 @@ TEST(ChangingPairs, LetBodiesThroughWhereTheyAreNotInForce) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double E = 2.4e9, nu = 0.35;                          ///< Pa
@@ -78,4 +78,4 @@ TEST_F(Clip, GivesBackTheWorkOfPushingIt) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

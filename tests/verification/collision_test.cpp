@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using Overrides = std::vector<scene::Override>;
@@ -225,4 +225,4 @@ TEST(PlateImpact, WritesWhatStoppedItIntoTheDiary) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

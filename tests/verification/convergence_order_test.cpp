@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-namespace osculate::fe::testing {
+namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {
 
 const material::LinearElastic material{1.0, 0.3};
@@ -267,7 +267,7 @@ std::vector<ElementCase> quadratic_cases() {
 
 INSTANTIATE_TEST_SUITE_P(Every, QuadraticElements, ::testing::ValuesIn(quadratic_cases()), case_name);
 
-TEST(Hex20, LosesAnOrderOnMeshesThatStayIrregular) {
+TEST(IrregularHex20, LosesAnOrderOnMeshesThatStayIrregular) {
     // a limit of all serendipity elements: only in parallelepipeds do they contain every quadratic field; measured 1.98
     // and 0.89                                   [Arnold, Boffi, Falk 2002, Math. Comp. 71, 909, for quadrilaterals]
     for (const HexFormulation formulation : {HexFormulation::full, HexFormulation::reduced}) {
@@ -280,4 +280,4 @@ TEST(Hex20, LosesAnOrderOnMeshesThatStayIrregular) {
 }
 
 } // namespace
-} // namespace osculate::fe::testing
+} // namespace osculate::fe::fixtures::OSCULATE_THIS_FILE

@@ -4,12 +4,13 @@
 #include "support/diary.hpp"
 #include "support/scene_file.hpp"
 #include "support/scene_runner.hpp"
+#include "support/source_tree.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 support::SceneRun run(const std::string& text) {
@@ -509,4 +510,4 @@ TEST(Coupling, GoesOnFromACheckpointToTheBit) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

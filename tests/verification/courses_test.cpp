@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// L = E = density = 1, nu = 0: wave speed 1. The end is at x = 0, the far face free or clamped.
@@ -207,4 +207,4 @@ TEST(Courses, WithoutAValueEndTheRunWithTheirNameAndTime) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

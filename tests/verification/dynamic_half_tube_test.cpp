@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// Full size where OSCULATE_FULL is set; else a coarse mesh, on which the static run is made anew to compare with.
@@ -66,4 +66,4 @@ TEST(DynamicHalfTube, KeepsItsBooksAtTenMetresASecond) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

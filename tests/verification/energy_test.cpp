@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr int steps = 10000;
@@ -85,4 +85,4 @@ TEST(FreeVibration, LosesEnergyWithADissipatingIntegrator) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 struct Case {
@@ -73,4 +73,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double facet = 0.1, height = 0.5, gravity = 10; // m, m, m/s^2
@@ -161,4 +161,4 @@ TEST(FallingBlock, TouchesAtTheExactTimeAfterFewCuts) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

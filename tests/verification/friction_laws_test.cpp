@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double m = 1, A = 0.01, g = 10; // kg, m^2, m/s^2
@@ -156,4 +156,4 @@ TEST(TangentialDamping, LeavesWhatSticksInPlace) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

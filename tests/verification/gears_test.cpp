@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
@@ -109,4 +109,4 @@ TEST_F(Gears, HaveTheContactRatioOfInvolutesAndOfTeethThatBend) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

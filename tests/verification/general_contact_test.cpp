@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using support::Diary;
@@ -183,4 +183,4 @@ TEST(GeneralContact, LetsBodiesOutSlowlyThatAreInsideOneAnother) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using support::SlaveNode;
@@ -153,4 +153,4 @@ TEST(Hertz, HalvesAndQuartersGiveTheAnswerOfTheWhole) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

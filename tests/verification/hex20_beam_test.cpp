@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using support::scene_file;
@@ -31,7 +31,7 @@ stages:
     return largest_component(found.steps.back().state.u) / (q * L * L * L * L / (8 * E * I) + q * L * L / (2 * k * G));
 }
 
-TEST(Hex20, BendsWithFewElements) {
+TEST(Hex20Beam, BendsWithFewElements) {
     EXPECT_NEAR(deflection({{"bodies.beam.mesh.block.element", "hex20"}, {"bodies.beam.hex_formulation", "reduced"}}),
                 1, 0.02);
     EXPECT_NEAR(deflection({{"bodies.beam.mesh.block.element", "hex20"}}), 1, 0.04);
@@ -39,4 +39,4 @@ TEST(Hex20, BendsWithFewElements) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

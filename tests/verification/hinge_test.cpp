@@ -5,7 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double E = 210e9, A = 12e-3 * 10e-3, L = 0.1;
@@ -57,4 +57,4 @@ TEST(Hinge, AFrameOnPinsSoftensAsATrussDoes) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -259,4 +259,4 @@ TEST(ThrownBall, TurnsByFrictionWithoutGainingEnergy) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 std::string number(double value) {
@@ -86,4 +86,4 @@ TEST_P(Incline, SticksJustAboveIt) {
 INSTANTIATE_TEST_SUITE_P(Metres, Incline, testing::Values(1e-6, 1, 1e6));
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

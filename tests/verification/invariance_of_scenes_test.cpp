@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <iostream>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// Of forces and displacements. The scenes' own tolerance is 1e-9 of a reference force, and Newton's last step goes far below.
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, InvarianceOfScenes, testing::ValuesIn(support::
                          });
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

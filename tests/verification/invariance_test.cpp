@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// The solver's tolerance is 1e-10 here; what is left is round-off times the conditioning of the problem.
@@ -158,4 +158,4 @@ INSTANTIATE_TEST_SUITE_P(Masters, Invariance,
                                          Pairing{"facets", "petrov_galerkin"}, Pairing{"blend", "petrov_galerkin"}));
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

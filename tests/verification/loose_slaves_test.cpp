@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// A table on three nodes of its underside, which no facet joins, above a rigid floor.
@@ -89,4 +89,4 @@ TEST(LooseSlaves, HaveNoAveragesAndAreOutside) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

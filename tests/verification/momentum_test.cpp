@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 std::string two_blocks(const std::string& surface, const std::string& friction, int steps, bool finite,
@@ -137,4 +137,4 @@ TEST(TwoBlocks, OfQuadraticElementsKeepTheirMomentaToo) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using linear::Constraints;
@@ -118,7 +118,7 @@ struct Multigrid : ::testing::Test {
 TEST_F(Multigrid, IsASymmetricPositiveLinearMap) {
     Blocks blocks(6, 1);
     ASSERT_EQ(blocks.couple(), solve::FactorStatus::ok);
-    testing::Random random(5);
+    support::Random random(5);
     Vector a(blocks.size()), b(blocks.size());
     for (Index i = 0; i < a.size(); ++i) {
         a(i) = random.uniform();
@@ -190,4 +190,4 @@ TEST_F(Multigrid, FollowsNewValuesOnTheSameGrids) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// A ball in the corner of an open box, and a thin plate above it that is curved: convex, concave and flat masters.
@@ -42,7 +42,7 @@ Nodes compare(const std::string& options, unsigned seed) {
     const std::string contact = "contact: {general: {friction: 0.3, " + options + "}}\n";
     const app::Plan plan = support::compiled(scene::read_scene(support::scene_file("far.yaml", scene + contact)), 1);
     const model::Model& model = plan.model;
-    testing::Random random(seed);
+    support::Random random(seed);
     Timings timings;
     const auto moved = [&](Field x, double by) {
         for (const model::Body& body : model.bodies) {
@@ -97,4 +97,4 @@ TEST(PassedOverNodes, AreNoneThatTouch) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

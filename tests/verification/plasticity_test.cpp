@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double E = 200e9, first = 200e6, slope = 1e9;
@@ -77,4 +77,4 @@ TEST(Plasticity, WorkOfABarIsStoredOrDissipated) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 const char* const pressed_block = R"(
@@ -163,4 +163,4 @@ TEST(ContactOfTet10, IsNoneWhereOtherFacesOfTheBodyTouchNothing) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

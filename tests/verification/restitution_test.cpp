@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 struct Bounce {
@@ -70,7 +70,7 @@ TEST(SteelBall, LosesLessWhereLessIsAllowed) {
 }
 
 /// Two equal bars of L = c = 1 that meet at 0.1 m/s touch for 2 L/c and trade their speeds, whatever the stage's step.
-TEST(TwoBars, TouchForTwiceTheWaveTimeInStepsThatTheDefaultsChoose) {
+TEST(StepsOfTwoBars, TouchForTwiceTheWaveTimeInStepsThatTheDefaultsChoose) {
     support::SceneRun run;
     support::run_scene(run, support::shipped("validation/two_bars.yaml"),
                        {{"bodies.left.mesh.block.divisions", "[40, 1, 1]"},
@@ -123,4 +123,4 @@ TEST(TenBounces, ComeAtTheirTimesInStepsThatTheDefaultsChoose) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 // ---- free tops -------------------------------------------------------------------------------------------------------
@@ -333,4 +333,4 @@ TEST(RigidBody, IsTheSameForAnyNumberOfThreadsAndAfterRejectedSteps) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

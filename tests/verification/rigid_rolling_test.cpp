@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double weight = 80, mass = 8, radius = 0.1; // N across the layer, kg, m
@@ -72,4 +72,4 @@ TEST(RigidBall, ThatSlidesEndsUpRollingAtFiveSevenths) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double area = 0.01, E0 = 0.5 * 0.25 * area; // strain energy of the compressed rod
@@ -161,4 +161,4 @@ TEST(BouncingRod, GainsEnergyWithNewmarkWhenTheyDo) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

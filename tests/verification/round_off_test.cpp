@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// A steel block of 50 mm, 9.6 N, at rest on a steel table.
@@ -247,4 +247,4 @@ TEST(RoundOff, OfSteelAmongRubberIsSeenAtOnce) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

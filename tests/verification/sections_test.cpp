@@ -8,7 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// Soft up to the middle, hard beyond it; without lateral strain, so that uniform stress is exact.
@@ -212,4 +212,4 @@ TEST(BodyOfSections, NeedsADensityInEveryPartThatMoves) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <map>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using support::Diary;
@@ -117,7 +117,7 @@ stages:
   pull: {steps: 3, displacement: {rear: {x: 0.3 m}}}
 )";
 
-TEST(GeneralContact, OfSlicesIsThatOfPairsWrittenByHand) {
+TEST(GeneralContactOfSlices, IsThatOfPairsWrittenByHand) {
     const Result found = run(slice + general),
                  written = run(slice + "contact: {sliding: {slave: under, master: {set: ground}, friction: 0.3}}\n");
     ASSERT_EQ(found.diary.states.size(), written.diary.states.size());
@@ -129,4 +129,4 @@ TEST(GeneralContact, OfSlicesIsThatOfPairsWrittenByHand) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double gravity = 9.81, side = 50e-3, density = 7850, gap = 1e-3; // SI
@@ -104,4 +104,4 @@ TEST(Settling, TakesFewIterationsAndCutsNoStep) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double E = 1e9, h = 0.02, K = 2e10, k = 5e9; // Pa, m, Pa/m
@@ -199,4 +199,4 @@ supports:
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double m = 1, v0 = 1, A = 0.01, k = 1e8; // kg, m/s, m^2, Pa/m
@@ -147,4 +147,4 @@ TEST(SoftImpact, CountsAChangeOfTheLawAsWorkFromOutside) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// A block above a rigid slab, without support and without friction, under its weight of 2000 N. (On one that gives way
@@ -221,4 +221,4 @@ TEST(Stabilised, RejectedAttemptsAndThreadsLeaveNoTrace) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

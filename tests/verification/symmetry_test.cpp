@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// A plate pressed on a soft block; whole, halved at x = 0, or quartered
@@ -102,4 +102,4 @@ INSTANTIATE_TEST_SUITE_P(Masters, Symmetry,
 // rpim takes sides where a node lies on a mesh line. So do facets, which nodes notice if drifts are averages
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

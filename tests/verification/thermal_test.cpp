@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double alpha = 1e-3, nu = 0.3, E = 10e6; // an expansion large enough to tell large from small strain
@@ -150,4 +150,4 @@ TEST(Thermal, APlugThatWarmsUpPressesOnItsRingAsLameSays) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

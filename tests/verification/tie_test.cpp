@@ -8,7 +8,7 @@
 #include <cmath>
 #include <gmock/gmock.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using support::scene_file;
@@ -247,4 +247,4 @@ TEST(Tie, RefusesWhatItWouldGetWrong) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <optional>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 using support::Diary, support::expect_same_bits, support::impact, support::slide, support::thrown;
@@ -216,4 +216,4 @@ TEST(StepControl, KeepsOpenPointsAboveTheAllowedInterpenetration) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 /// Velocity of a body's centre of mass along x.
@@ -270,4 +270,4 @@ TEST(Tutorials, BoltedJointFollowsItsDiagramUntilItOpens) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-namespace osculate {
+namespace osculate::OSCULATE_THIS_FILE {
 namespace {
 
 constexpr double area = 0.01, stress = 0.05, p0 = 0.1 * area, E0 = 0.5 * 0.1 * 0.1 * area;
@@ -106,4 +106,4 @@ TEST(TwoBars, DoNotFlyThroughEachOtherInOneStep) {
 }
 
 } // namespace
-} // namespace osculate
+} // namespace osculate::OSCULATE_THIS_FILE

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
+#include <string>
+#include <unistd.h>
 
 namespace osculate::app::OSCULATE_THIS_FILE {
 namespace {
@@ -23,7 +25,9 @@ const std::string cubes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6
 
 class MeshFilesOfScenes : public ::testing::Test {
 protected:
-    std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "osculate_mesh_files_of_scenes";
+    /// Of this process: tests run side by side.
+    std::filesystem::path folder =
+        std::filesystem::path(::testing::TempDir()) / ("osculate_mesh_files_of_scenes_" + std::to_string(::getpid()));
 
     void SetUp() override {
         std::filesystem::create_directories(folder);

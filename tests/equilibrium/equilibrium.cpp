@@ -3,6 +3,7 @@
 #include "osculate/equilibrium/equilibrium.hpp"
 
 #include "equilibrium/press.hpp"
+#include "support/source_tree.hpp"
 
 #include <gtest/gtest.h>
 

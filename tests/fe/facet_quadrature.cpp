@@ -7,6 +7,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <utility>
 
 namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace osculate::fe::fixtures::OSCULATE_THIS_FILE {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "support/source_tree.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace osculate::support {

@@ -3,29 +3,39 @@ import {Field, floats, integers} from "data";
 
 const vertexShader = `
   attribute float value;
-  varying float share;
+  varying float share, known;
   varying vec3 seen;
   void main() {
     vec4 at = modelViewMatrix * vec4(position, 1.0);
     share = value;
+    known = value < 1.5 ? 1.0 : 0.0;
     seen = at.xyz;
     gl_Position = projectionMatrix * at;
   }`;
+// The value comes to each pixel, not a colour: bands end where the value within the facet has their limit. Between them are lines as wide
+// as a pixel, but none where they would lie closer than two pixels, or where the value does not change.
 const fragmentShader = `
   uniform sampler2D map;
-  uniform vec3 plain;
+  uniform vec3 plain, ink;
   uniform float opacity, bands;
-  varying float share;
+  varying float share, known;
   varying vec3 seen;
+  float lineAt(float level) {
+    float slope = fwidth(level), limit = floor(level + 0.5);
+    if (slope < 1e-5 || limit < 0.5 || limit > bands - 0.5) return 0.0;
+    return (1.0 - smoothstep(0.3, 0.9, abs(level - limit) / slope)) * (1.0 - smoothstep(0.25, 0.5, slope));
+  }
   void main() {
     vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
     float light = 0.6 + 0.4 * abs(dot(normal, normalize(seen)));
     vec3 colour = plain;
-    if (share < 1.5) {
-      float at = clamp(share, 0.0, 1.0);
+    float at = clamp(share, 0.0, 1.0), line = bands > 0.0 ? lineAt(share * bands) : 0.0;
+    if (known > 0.999) { // every corner has a value
+      vec3 on = at < 0.35 ? vec3(1.0) : ink; // light on dark
       if (bands < 0.0) at = floor(2.0 * at + 0.5) / 2.0; // open, stick, slip
-      else if (bands > 0.0) at = (floor(min(at, 0.9999) * bands) + 0.5) / bands;
-      colour = texture2D(map, vec2(at, 0.5)).rgb;
+      else if (bands > 0.0) at = (floor(min(at * bands, bands - 0.5)) + 0.5) / bands;
+      colour = texture2D(map, vec2((255.0 * at + 0.5) / 256.0, 0.5)).rgb;
+      colour = mix(colour, on, 0.7 * line);
     }
     gl_FragColor = vec4(colour * light, opacity);
   }`;
@@ -84,7 +94,7 @@ export class Part {
     geometry.setAttribute("value", part.value);
     geometry.setIndex(new THREE.BufferAttribute(trianglesOf(facets), 1));
     const surface = part.kind !== "body";
-    part.uniforms = {map: shared.map, plain: shared.plain, bands: shared.bands, opacity: {value: 1}};
+    part.uniforms = {map: shared.map, plain: shared.plain, ink: shared.edge, bands: shared.bands, opacity: {value: 1}};
     part.mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
       uniforms: part.uniforms, vertexShader, fragmentShader, side: THREE.DoubleSide, extensions: {derivatives: true},
       polygonOffset: true, polygonOffsetFactor: surface ? -1 : 1, polygonOffsetUnits: surface ? -1 : 1,

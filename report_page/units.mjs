@@ -23,6 +23,17 @@ export function digits(value, count = 4) {
   return String(+value.toPrecision(count)).replace("-", "−");
 }
 
+/// Limits of so many equal parts of a range, rounded by less than a thirtieth of a part.
+export function limits(low, high, parts) {
+  const step = (high - low) / parts, largest = Math.max(Math.abs(low), Math.abs(high));
+  const decimals = Math.max(0, Math.ceil(Math.log10(16 / step)));
+  return Array.from({length: parts + 1}, (_, k) => low + k * step).map((value) => {
+    if (largest >= 1e6 || decimals > 6) return digits(Math.abs(value) < 1e-9 * largest ? 0 : value);
+    const text = value.toFixed(decimals);
+    return (+text === 0 ? text.replace("-", "") : text).replace("-", "−");
+  });
+}
+
 export function pretty(unit) {
   return unit.replace("^2", "²").replace("^3", "³");
 }

@@ -4,11 +4,12 @@ import {clock} from "clock";
 import {report} from "data";
 import {cssColour, make, onThemeChange, save} from "page";
 import {Part, rangeOf} from "surfaces";
-import {digits, measure, pretty, scaleFor, words} from "units";
+import {digits, limits, measure, pretty, scaleFor, words} from "units";
 
 const kinds = {body: "Bodies", slave: "Slave surfaces", master: "Master surfaces"};
 const tensor = ["xx", "yy", "zz", "xy", "yz", "zx"], vector = ["x", "y", "z"];
 const statuses = ["open", "stick", "slip"];
+const bandCounts = [6, 8, 10, 12, 16];
 const scales = [0, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
 
 /// What can be shown as colours: {kind, field, which, label, unit}.
@@ -28,13 +29,16 @@ function quantitiesOf(parts) {
   return found;
 }
 
+/// Red, green and blue of a share of the range.
+function colourOf(share) {
+  const colours = report.view.colours;
+  const at = share * (colours.length - 1), k = Math.min(Math.floor(at), colours.length - 2), t = at - k;
+  return [0, 1, 2].map((c) => Math.round((1 - t) * colours[k][c] + t * colours[k + 1][c]));
+}
+
 function colourMap() {
-  const pixels = new Uint8Array(256 * 4), colours = report.view.colours;
-  for (let i = 0; i < 256; ++i) {
-    const at = (i / 255) * (colours.length - 1), k = Math.min(Math.floor(at), colours.length - 2), t = at - k;
-    for (let c = 0; c < 3; ++c) pixels[4 * i + c] = Math.round((1 - t) * colours[k][c] + t * colours[k + 1][c]);
-    pixels[4 * i + 3] = 255;
-  }
+  const pixels = new Uint8Array(256 * 4);
+  for (let i = 0; i < 256; ++i) pixels.set([...colourOf(i / 255), 255], 4 * i);
   const map = new THREE.DataTexture(pixels, 256, 1, THREE.RGBAFormat);
   map.magFilter = map.minFilter = THREE.LinearFilter;
   map.needsUpdate = true;
@@ -123,8 +127,8 @@ class Viewer {
     this.field.addEventListener("change", () => this.choose());
     this.span = make("select", {name: "range"}, make("option", {value: "all"}, "over all times"), make("option", {value: "now"}, "at this time"));
     this.span.addEventListener("change", () => this.update());
-    this.bands = make("select", {name: "bands"}, make("option", {value: "0"}, "smooth"), make("option", {value: "8"}, "8 bands"),
-                      make("option", {value: "16"}, "16 bands"));
+    this.bands = make("select", {name: "bands"}, make("option", {value: "0"}, "smooth"),
+                      ...bandCounts.map((count) => make("option", {value: String(count)}, `contours, ${count} bands`)));
     this.bands.addEventListener("change", () => this.update());
     this.scale = make("input", {type: "range", name: "scale", min: "0", max: String(scales.length - 1), step: "1"});
     this.scale.value = 1;
@@ -208,7 +212,8 @@ class Viewer {
     const quantity = this.quantities.get(this.field.value);
     const range = this.rangeFor(quantity), frame = clock.frame;
     const scale = scales[+this.scale.value];
-    this.shared.bands.value = quantity?.field === "status" ? -1 : +this.bands.value;
+    const bands = range[1] > range[0] ? +this.bands.value : 0;
+    this.shared.bands.value = quantity?.field === "status" ? -1 : bands;
     this.scaleText.textContent = "× " + scale;
     for (const part of this.parts) {
       part.show(frame, scale, quantity, range);
@@ -222,20 +227,27 @@ class Viewer {
     }
     this.slider.value = frame;
     this.moment.textContent = `${measure(clock.time, "s")}  (${frame + 1} of ${this.frames})`;
-    this.showLegend(quantity, range);
+    this.showLegend(quantity, range, bands);
     this.draw();
   }
 
-  showLegend(quantity, [low, high]) {
+  /// Bands stand one above another, the highest on top, with the limits between them.
+  showLegend(quantity, [low, high], bands) {
     this.legend.replaceChildren();
     if (quantity?.field === "status") {
       this.legend.append(make("b", {}, quantity.label), ...statuses.map((name, i) =>
         make("span", {class: "swatch"}, make("i", {class: "map", style: `background-position:${50 * i}% 0`}), name)));
     } else if (quantity) {
       const {factor, unit} = scaleFor(Math.max(Math.abs(low), Math.abs(high)), quantity.unit);
-      const ticks = [0, 0.25, 0.5, 0.75, 1].map((t) => make("span", {}, digits((low + t * (high - low)) * factor, 3)));
-      this.legend.append(make("b", {}, `${quantity.label}${unit ? ", " + pretty(unit) : ""}`), make("i", {class: "map"}),
-                         make("div", {class: "ticks"}, ...ticks));
+      this.legend.append(make("b", {}, `${quantity.label}${unit ? ", " + pretty(unit) : ""}`));
+      if (bands > 0) {
+        const colours = Array.from({length: bands}, (_, k) => make("i", {style: `background:rgb(${colourOf((k + 0.5) / bands)})`}));
+        const texts = limits(low * factor, high * factor, bands).map((text) => make("span", {}, text));
+        this.legend.append(make("div", {class: "bands"}, make("div", {}, ...colours.reverse()), make("div", {}, ...texts.reverse())));
+      } else {
+        const ticks = [0, 0.25, 0.5, 0.75, 1].map((t) => make("span", {}, digits((low + t * (high - low)) * factor, 3)));
+        this.legend.append(make("i", {class: "map"}), make("div", {class: "ticks"}, ...ticks));
+      }
     }
     if (this.arrows && this.forces.checked)
       this.legend.append(make("span", {class: "arrow"}, `longest arrow ${measure(this.arrows.largest, "N", 3)}`));

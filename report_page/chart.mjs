@@ -1,4 +1,4 @@
-// One plot over time: lines, marks, a cursor that follows the view. SVG by D3.
+// One plot: lines, marks, over time a cursor that follows the view. SVG by D3.
 import {clock} from "clock";
 import {make} from "page";
 import {digits, measure, pretty, scaleFor} from "units";
@@ -53,10 +53,13 @@ function nearest(x, at) {
   return Math.abs(x[low] - at) <= Math.abs(x[high] - at) ? low : high;
 }
 
-/// @param plot  {title, unit, xLabel, xUnit, series: [{name, x, y, steps, colour}], marks: [{x, y, kind, text}], log, stages, timed}
+/// @param plot  {title, unit, xLabel, xUnit, series: [{name, x, y, steps, colour}], marks: [{x, y, kind, text}], log, stages, timed};
+///              choice: a control beside the title; range: of y, else that of what is shown; behind: [{x, y, text}], pale lines
+///              without keys; aside: what the keys say of these
+/// @returns  a function that draws it anew with changes of these; as many series as before
 export function chart(place, plot) {
   const log = plot.log;
-  const figure = make("figure", {class: "chart"}, make("figcaption", {}, plot.title));
+  const figure = make("figure", {class: "chart"}, make("figcaption", {}, plot.title, plot.choice ?? ""));
   const legend = make("div", {class: "keys"});
   const drawing = d3.select(figure).append("svg").attr("role", "img").attr("aria-label", plot.title);
   figure.append(legend, drawing.node());
@@ -65,17 +68,20 @@ export function chart(place, plot) {
   const hidden = new Set(), colour = (s) => `l${(plot.series[s].colour ?? s) % 7}`;
   const kinds = [...new Set((plot.marks ?? []).map((mark) => mark.kind))];
   const keys = plot.series.map((series, s) => {
-    const value = make("b");
-    const key = make("button", {type: "button", title: "Show or hide"}, make("i", {class: `line ${colour(s)}`}), series.name, value);
+    const name = make("span", {}, series.name), value = make("b");
+    const key = make("button", {type: "button", title: "Show or hide"}, make("i", {class: `line ${colour(s)}`}), name, value);
     key.addEventListener("click", () => {
       hidden.has(s) && hidden.delete(s) || hidden.add(s);
       key.classList.toggle("off", hidden.has(s));
       draw();
     });
     legend.append(key);
-    return value;
+    return {name, value};
   });
   kinds.forEach((kind, k) => legend.append(make("span", {class: "key"}, make("i", {class: `mark m${k}`}), kind)));
+
+  const aside = make("span", {}, plot.aside ?? "");
+  legend.append(aside);
 
   let toX, toY, cursor;
   let hover;
@@ -84,7 +90,7 @@ export function chart(place, plot) {
     const at = hover ?? (plot.timed ? clock.time : undefined);
     plot.series.forEach((series, s) => {
       const i = at === undefined ? -1 : nearest(series.x, at);
-      keys[s].textContent = i >= 0 && series.x.length > 0 ? measure(series.y[i], plot.unit) : "";
+      keys[s].value.textContent = i >= 0 && series.x.length > 0 ? measure(series.y[i], plot.unit) : "";
     });
     if (!cursor) return;
     const shown = at !== undefined && at >= toX.domain()[0] && at <= toX.domain()[1];
@@ -94,7 +100,8 @@ export function chart(place, plot) {
 
   function draw() {
     const shown = plot.series.filter((_, s) => !hidden.has(s));
-    const range = extent([...shown, ...(plot.marks ? [{y: plot.marks.map((mark) => mark.y)}] : [])], log) ?? (log ? [0.1, 1] : [0, 1]);
+    const within = plot.range ? [{y: plot.range}] : [...shown, ...(plot.marks ? [{y: plot.marks.map((mark) => mark.y)}] : [])];
+    const range = extent(within, log) ?? (log ? [0.1, 1] : [0, 1]);
     const width = Math.max(260, figure.clientWidth);
     const {factor, unit} = log ? {factor: 1, unit: plot.unit} : scaleFor(Math.max(Math.abs(range[0]), Math.abs(range[1])), plot.unit);
     drawing.selectAll("*").remove();
@@ -117,6 +124,11 @@ export function chart(place, plot) {
     }
     const along = scaleFor(Math.max(Math.abs(ends[0]), Math.abs(ends[1])), plot.xUnit ?? "");
     const xAxis = d3.svg.axis().scale(toX).orient("bottom").ticks(Math.max(3, width / 90)).tickSize(4).tickFormat((v) => digits(v * along.factor));
+    const span = ends[1] - ends[0];
+    if (plot.xUnit === "°" && span > 20) { // parts of a circle
+      const step = [5, 10, 15, 30, 45, 90].find((one) => span / one <= width / 50) ?? 180;
+      xAxis.tickValues(d3.range(step * Math.ceil(ends[0] / step - 0.01), ends[1] + 0.01 * step, step));
+    }
     const yAxis = d3.svg.axis().scale(toY).orient("left").tickSize(-(width - margin.left - margin.right)).tickPadding(6);
     if (log) {
       const decades = Math.log10(range[1] / range[0]);
@@ -133,14 +145,17 @@ export function chart(place, plot) {
       .text(plot.xLabel + (along.unit ? `, ${along.unit}` : ""));
     if (!log && unit) drawing.append("text").attr("class", "label").attr({x: margin.left - 6, y: margin.top - 8, "text-anchor": "end"}).text(pretty(unit));
 
+    const goodIn = (series) => (i) => isFinite(series.y[i]) && (!log || series.y[i] > 0);
+    const pathOf = (series, chosen) => d3.svg.line().x((i) => toX(series.x[i])).y((i) => y(series.y[i])).defined(goodIn(series))
+      .interpolate(series.steps ? "step-before" : "linear")(chosen);
+    for (const series of plot.behind ?? [])
+      drawing.append("path").attr("class", "behind").attr("d", pathOf(series, thinned(series.x, series.y, toX)))
+        .append("title").text(series.text);
     plot.series.forEach((series, s) => {
       if (hidden.has(s)) return;
-      const good = (i) => isFinite(series.y[i]) && (!log || series.y[i] > 0);
-      const line = d3.svg.line().x((i) => toX(series.x[i])).y((i) => y(series.y[i])).defined(good)
-        .interpolate(series.steps ? "step-before" : "linear");
-      const chosen = thinned(series.x, series.y, toX);
-      drawing.append("path").attr("class", `line ${colour(s)}`).attr("d", line(chosen));
-      if (chosen.length <= 60)
+      const good = goodIn(series), chosen = thinned(series.x, series.y, toX);
+      drawing.append("path").attr("class", `line ${colour(s)}`).attr("d", pathOf(series, chosen));
+      if (chosen.length <= 60 && !plot.behind)
         drawing.append("g").selectAll("circle").data(chosen.filter(good)).enter().append("circle")
           .attr("class", `dot ${colour(s)}`).attr({r: 2, cx: (i) => toX(series.x[i]), cy: (i) => y(series.y[i])});
     });
@@ -174,4 +189,10 @@ export function chart(place, plot) {
     }
   }).observe(figure);
   draw();
+  return (changes) => {
+    Object.assign(plot, changes);
+    plot.series.forEach((series, s) => (keys[s].name.textContent = series.name));
+    aside.textContent = plot.aside ?? "";
+    draw();
+  };
 }

@@ -1,6 +1,7 @@
 // Brings the page to life; without it, its text and pictures stand by themselves.
 import {clock} from "clock";
 import {makeContents, makeTheme, makeTools} from "page";
+import {makePaths} from "paths";
 import {makeCharts} from "plots";
 import {makeViewer} from "viewer";
 
@@ -27,6 +28,8 @@ async function present(settings) {
   const charts = window.d3 ? makeCharts().catch((error) => told(document.querySelector(".charts"), error)) : undefined;
   const viewer = place ? await makeViewer(place, settings).catch((error) => told(place, error)) : undefined;
   await charts;
+  const paths = document.querySelector("[data-charts=paths]");
+  if (window.d3 && paths) await makePaths(paths, viewer !== undefined).catch((error) => told(paths, error));
   return viewer;
 }
 

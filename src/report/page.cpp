@@ -206,6 +206,10 @@ std::string plots_of(const RunFiles& files, const PageOptions& options, PageData
         data.add_plots(files.plots);
         plots += charts("plots", "Plots of the scene");
     }
+    if (!files.paths.empty()) {
+        data.add_paths(files.paths, notes);
+        plots += charts("paths", "Along paths");
+    }
     if (files.history) data.add_table("history", *files.history, notes);
     if (has_columns(files, "pair."))
         plots += charts("contact", "Contact");

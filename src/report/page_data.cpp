@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <type_traits>
 
 namespace osculate::report {
 
@@ -13,7 +14,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::size_t most_numbers = 2'000'000; ///< of a table
+constexpr std::size_t most_numbers = 2'000'000;      ///< of a table
+constexpr std::size_t most_path_numbers = 2'000'000; ///< of all paths together, two bytes each
 constexpr std::size_t most_rejected = 2000, most_accepted = 20000;
 
 const char* name_of(PartKind kind) {
@@ -76,6 +78,40 @@ void PageData::add_plots(const std::vector<PlotFile>& plots) {
         }
         json["plots"].push_back(
             {{"title", plot.title}, {"x_label", plot.x_label}, {"y_label", plot.y_label}, {"curves", curves}});
+    }
+}
+
+void PageData::add_paths(const std::vector<PathFile>& paths, std::vector<std::string>& notes) {
+    json["paths"] = Json::array();
+    for (const PathFile& path : paths) {
+        const std::size_t times = path.times.size(), numbers = times * path.at.size() * path.fields.size();
+        const std::size_t share = most_path_numbers / paths.size();
+        const std::size_t every = std::max<std::size_t>(1, (numbers + share - 1) / share);
+        const auto kept = [&](const auto& all) {
+            std::remove_cvref_t<decltype(all)> some;
+            for (std::size_t f = 0; f < times; ++f)
+                if (f % every == 0 || f + 1 == times) some.push_back(all[f]);
+            return some;
+        };
+        if (every > 1)
+            notes.push_back(
+                fmt::format("The plot of probes/{}.csv shows every {}-th of its {} times.", path.name, every, times));
+        Json fields = Json::array();
+        for (const PathField& field : path.fields) {
+            const Packed packed = pack({1, kept(field.values.frames)});
+            fields.push_back({{"name", field.name},
+                              {"unit", field.unit},
+                              {"components", 1},
+                              {"low", packed.low},
+                              {"step", packed.step},
+                              {"array", add(packed.bytes)}});
+        }
+        json["paths"].push_back({{"name", path.name},
+                                 {"angle", path.angle},
+                                 {"size", path.at.size()},
+                                 {"at", add(packed_floats(path.at))},
+                                 {"times", kept(path.times)},
+                                 {"fields", fields}});
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "osculate/report/moving_surfaces.hpp"
 #include "osculate/time/attempt.hpp"
+#include "report/path_files.hpp"
 #include "report/plot_files.hpp"
 #include "report/run_files.hpp"
 
@@ -23,6 +24,8 @@ public:
     void add_table(const char* name, const output::NumberTable& table, std::vector<std::string>& notes);
     void add_attempts(const std::vector<time::Attempt>& attempts, std::vector<std::string>& notes);
     void add_plots(const std::vector<PlotFile>& plots);
+    /// Every n-th time of a path where there are too many, which is noted.
+    void add_paths(const std::vector<PathFile>& paths, std::vector<std::string>& notes);
     /// @param largest  bytes; frames are thinned out until the view takes no more
     void add_view(MovingSurfaces& surfaces, std::size_t largest, std::vector<std::string>& notes);
 

@@ -112,7 +112,10 @@ RunFiles read_run_files(const fs::path& folder) {
     files.history =
         read_table(folder / "history.csv", "history.csv is missing: there are no forces and energies to plot.", files);
     files.iterations = read_table(folder / "iterations.csv", "", files);
-    if (files.scene) files.plots = read_plot_files(folder, *files.scene, files.notes);
+    if (files.scene) {
+        files.plots = read_plot_files(folder, *files.scene, files.notes);
+        files.paths = read_path_files(folder, *files.scene, files.notes);
+    }
     if (const fs::path path = folder / output::post_mortem_file; fs::exists(path)) {
         try {
             files.post_mortem = output::read_post_mortem(path);

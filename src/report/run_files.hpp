@@ -4,6 +4,7 @@
 #include "osculate/output/csv_reader.hpp"
 #include "osculate/scene/scene.hpp"
 #include "osculate/time/post_mortem.hpp"
+#include "report/path_files.hpp"
 #include "report/plot_files.hpp"
 
 #include <filesystem>
@@ -21,6 +22,7 @@ struct RunFiles {
     std::optional<scene::Scene> scene;
     std::optional<output::NumberTable> history, iterations;
     std::vector<PlotFile> plots;
+    std::vector<PathFile> paths;
     std::optional<time::PostMortem> post_mortem;
     bool failed_iterate = false; ///< whether the last iterate of a run that gave up is there
     std::vector<std::string> notes;

@@ -223,6 +223,96 @@ output:
     EXPECT_THAT(missing(page.html, {"Plots of the scene"}), IsEmpty());
 }
 
+/// A scene with a probe along a line of three samples, one along an arc of two, and one that lies along no path.
+constexpr const char* paths_scene = R"(
+bodies:
+  a: {mesh: {block: {size: [1 m, 1 m, 1 m], divisions: [1, 1, 1]}}, material: {linear_elastic: {E: 1 MPa, nu: 0.3}}}
+  b: {mesh: {block: {size: [1 m, 1 m, 1 m], divisions: [1, 1, 1]}}, material: {linear_elastic: {E: 1 MPa, nu: 0.3}}}
+sets: {top: {body: a, surface: z_max}, under: {body: b, surface: z_min}}
+contact: {p: {between: [top, under], friction: 0}}
+stages: {s: {}}
+output:
+  probes:
+    depth: {line: {body: a, from: [0 m, 0 m, 0 m], to: [0 m, 0 m, 1 m], samples: 3}}
+    rim: {contact_arc: {pair: p, centre: [0 m, 0 m, 0 m], axis: [0, 0, 1], from: [1 m, 0 m, 0 m], samples: 2}}
+    corner: {point: {body: a, at: [0 m, 0 m, 0 m]}}
+    torn: {line: {body: a, from: [0 m, 0 m, 0 m], to: [0 m, 0 m, 1 m], samples: 2}}
+    never_written: {line: {body: a, from: [0 m, 0 m, 0 m], to: [0 m, 0 m, 1 m]}}
+)";
+
+class PageOfPaths : public Page {
+protected:
+    PageOfPaths() {
+        file("scene.yaml", paths_scene);
+        std::filesystem::create_directories(folder / "probes");
+    }
+    static FieldFrames values(const std::string& html, const nlohmann::json& path, std::size_t field) {
+        const nlohmann::json& one = path["fields"][field];
+        return unpack({one["low"], one["step"], array_of(html, one["array"])}, path["times"].size(), path["size"]);
+    }
+    static std::vector<float> places(const std::string& html, const nlohmann::json& path) {
+        const Bytes bytes = inflated(array_of(html, path["at"]));
+        std::vector<float> numbers(bytes.size() / sizeof(float));
+        std::memcpy(numbers.data(), bytes.data(), bytes.size());
+        return numbers;
+    }
+};
+
+TEST_F(PageOfPaths, FieldsLieTimeByTime) {
+    file("probes/depth.csv", "time [s],s [m],X [m],Y [m],Z [m],stress_xx [Pa],status,strain_xx\n"
+                             "1,0,0,0,0,10,0,\n1,0.5,0,0,0.5,20,1,\n1,1,0,0,1,,2,\n"
+                             "2,0,0,0,0,30,0,\n2,0.5,0,0,0.5,40,1,\n2,1,0,0,1,50,2,\n"
+                             "3,0,0,0,0,60,0,\n"); // the last time is not whole
+    file("probes/rim.csv", "time [s],s [m],angle [rad],X [m],Y [m],Z [m],gap [m]\n1,0,-0,1,0,0,7\n1,3,-3,-1,0,0,8\n");
+    file("probes/corner.csv", "time [s],displacement_x [m]\n1,0\n");
+    const std::string html = make_page(folder, options).html;
+    const nlohmann::json paths = data_of(html)["paths"];
+    ASSERT_EQ(paths.size(), 2U);
+    EXPECT_EQ(paths[0]["name"], "depth");
+    EXPECT_EQ(paths[0]["times"], (std::vector<double>{1, 2}));
+    EXPECT_EQ(places(html, paths[0]), (std::vector<float>{0, 0.5, 1}));
+    ASSERT_EQ(paths[0]["fields"].size(), 2U) << "one has no value anywhere";
+    EXPECT_EQ(paths[0]["fields"][0]["unit"], "Pa");
+    EXPECT_EQ(paths[0]["fields"][1]["unit"], "");
+    const FieldFrames stress = values(html, paths[0], 0);
+    EXPECT_TRUE(std::isnan(stress.frames[0][2])) << "outside of the body";
+    EXPECT_NEAR(stress.frames[0][1], 20, 1e-3);
+    EXPECT_NEAR(stress.frames[1][2], 50, 1e-3);
+    EXPECT_EQ(paths[1]["angle"], true);
+    EXPECT_EQ(places(html, paths[1]), (std::vector<float>{0, -3}));
+    EXPECT_THAT(missing(html, {"data-charts=\"paths\""}), IsEmpty());
+}
+
+TEST_F(PageOfPaths, OneThatCannotBeReadIsNoted) {
+    file("probes/depth.csv", "time [s],X [m],stress_xx [Pa]\n1,0,0\n");
+    file("probes/torn.csv",
+         "time [s],s [m],stress_xx [Pa]\n1,0,1\n1,1,2\n2,0,3\n3,1,4\n"); // rows of two times are missing
+    file("probes/rim.csv", "time [s],angle [rad],gap [m]\n1,0,1\n1,1,2\n2,0,3\n2,2,4\n");
+    const report::Page page = make_page(folder, options);
+    EXPECT_THAT(page.notes, Contains(HasSubstr("probes/depth.csv cannot be read: it has no column s")));
+    EXPECT_THAT(page.notes, Contains(HasSubstr("probes/torn.csv cannot be read: its rows are not the same places")));
+    EXPECT_THAT(page.notes, Contains(HasSubstr("probes/rim.csv cannot be read: its rows are not the same places")));
+    EXPECT_FALSE(data_of(page.html).contains("paths"));
+    EXPECT_THAT(found(page.html, {"data-charts=\"paths\""}), IsEmpty());
+}
+
+TEST_F(PageOfPaths, ManyTimesAreThinnedOutAndSaidSo) {
+    std::string rows = "time [s],s [m]", numbers;
+    for (int c = 0; c < 70; ++c) {
+        rows += ",stress_" + std::to_string(c) + " [Pa]";
+        numbers += ",1";
+    }
+    rows += '\n';
+    for (int t = 0; t < 10000; ++t)
+        for (const char* s : {",0", ",0.5", ",1"}) rows += std::to_string(t) + s + numbers + '\n';
+    file("probes/depth.csv", rows);
+    const report::Page page = make_page(folder, options);
+    EXPECT_THAT(page.notes, Contains(HasSubstr("probes/depth.csv shows every 2-th of its 10000 times")));
+    const nlohmann::json path = data_of(page.html)["paths"][0];
+    EXPECT_EQ(path["times"].size(), 5001U); // the last one too
+    EXPECT_EQ(values(page.html, path, 69).frames.size(), 5001U);
+}
+
 TEST_F(Page, ALongHistoryIsThinnedOutAndSaidSo) {
     file("summary.json", summary);
     std::string rows = "time,dt";

@@ -42,6 +42,10 @@ void BodyTerm::add_product(const Direction& d, Field& f, VectorRef) {
     bodies_.tangent().multiply_add(d.u, f, threads_);
 }
 
+void BodyTerm::add_transposed(const Weights& of, Weights& by) const {
+    bodies_.tangent().multiply_add(of.nodes, by.nodes, threads_);
+}
+
 void BodyTerm::complete(const ConstVectorRef&, model::State& state) const {
     bodies_.complete(state);
 }

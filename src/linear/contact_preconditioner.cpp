@@ -114,4 +114,47 @@ void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r,
     }
 }
 
+void ContactPreconditioner::apply_transposed(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const {
+    const auto at = [&](const ConstVectorRef& from, Index node) {
+        Vec3 local = Vec3::Zero();
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(node, k); e != Constraints::held) local(k) = from[e];
+        return constraints_.to_global(node, local);
+    };
+    const auto add = [&](Index node, const Vec3& weight) {
+        const Vec3 local = constraints_.to_local(node, weight);
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(node, k); e != Constraints::held) load_(e) += local(k);
+    };
+    // u = K_s^-1 (r_e + W^T S r_c) and lambda = S (r_c - B W u), from the end
+    load_ = r.head(constraints_.equations());
+    std::vector<Vec3> of_law(contacts_.size());
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {
+        const SoftContact& c = contacts_[j];
+        const Vec3 local = r.segment<3>(rows.multiplier(c.coupling));
+        of_law[j] = S_[j].transpose() * constraints_.to_global(c.where.slave, local);
+        if (c.where.masters.empty()) continue;
+        const Vec3 weight = c.B.transpose() * of_law[j];
+        add(c.where.slave, -weight);
+        for (std::size_t i = 0; i < c.where.masters.size(); ++i)
+            add(c.where.masters[i], Vec3(c.where.follow[i].transpose() * weight));
+    }
+    Vector w(constraints_.equations());
+    if (multigrid_)
+        multigrid_->cycle(load_.data(), w.data());
+    else
+        solver_->solve(load_.data(), w.data());
+    for (Index node = 0; node < constraints_.nodes(); ++node)
+        for (int k = 0; k < 3; ++k)
+            if (const Index e = constraints_.equation(node, k); e != Constraints::held)
+                z[rows.equilibrium_row(node, k)] = w(e);
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {
+        const SoftContact& c = contacts_[j];
+        Vec3 moved = at(w, c.where.slave);
+        for (std::size_t i = 0; i < c.where.masters.size(); ++i) moved -= c.where.follow[i] * at(w, c.where.masters[i]);
+        const Vec3 local = constraints_.to_local(c.where.slave, Vec3(of_law[j] + S_[j].transpose() * moved));
+        for (int k = 0; k < 3; ++k) z[rows.contact_row(c.coupling, k)] = local(k);
+    }
+}
+
 } // namespace osculate::linear

@@ -131,10 +131,15 @@ void ContactEvaluation::find_facets(const std::vector<Vec3>& x, const ContactHis
     });
 }
 
-void ContactEvaluation::take_facets_of(const ContactEvaluation& other) {
-    tracking_.facet = other.tracking_.facet;
-    given_.clear();
-    for (const contact::FacetHit& hit : other.tracking_.hits) given_.push_back(hit.latched ? 1 : 0);
+void ContactEvaluation::take_facets(HeldFacets facets) {
+    tracking_.facet = std::move(facets.facet);
+    given_ = std::move(facets.latched);
+}
+
+HeldFacets ContactEvaluation::held_facets() const {
+    HeldFacets held{tracking_.facet, {}};
+    for (const contact::FacetHit& hit : tracking_.hits) held.latched.push_back(hit.latched ? 1 : 0);
+    return held;
 }
 
 void ContactEvaluation::forget_path() {

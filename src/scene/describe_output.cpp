@@ -151,6 +151,43 @@ void describe(Visitor& v, Derivative& derivative) {
              derivative.change);
 }
 
+void direction(Visitor& v, Vec3& value) {
+    v.vector({.name = "direction",
+              .meaning = "Its component along this direction.",
+              .range = range::direction,
+              .required = true,
+              .direction = true},
+             value);
+}
+void describe(Visitor& v, MeanDisplacement& mean) {
+    v.text({.name = "set", .meaning = "Set of nodes.", .required = true, .names = Names::set}, mean.set);
+    direction(v, mean.direction);
+}
+void describe(Visitor& v, PairForce& force) {
+    pair(v, force.pair);
+    direction(v, force.direction);
+}
+void describe(Visitor& v, SupportForce& force) {
+    v.text({.name = "set", .meaning = "Set of nodes.", .required = true, .names = Names::set}, force.set);
+    direction(v, force.direction);
+}
+
+void describe(Visitor& v, Gradient& gradient) {
+    static const Words tags{"displacement", "contact_force", "reaction"};
+    one_of(v, tags,
+           {"Mean displacement of a set's nodes at the end of the run.",
+            "Contact force on a pair's slave side at the end of the run.",
+            "Force of the supports and driven motions on a set at the end of the run."},
+           true, gradient.of, [&](auto& of) { describe(v, of); });
+    named(v,
+          {.name = "by",
+           .meaning = "Numbers of the scene, by names for the table; `NAME: KEY` is short for `NAME: {key: KEY}`.",
+           .required = true,
+           .item = "derivative"},
+          gradient.by,
+          [&](const std::string& name, Derivative& by) { v.group({.name = name}, [&] { describe(v, by); }); });
+}
+
 } // namespace
 
 void describe_output(Visitor& v, Output& output) {
@@ -197,6 +234,13 @@ void describe_output(Visitor& v, Output& output) {
                       "`NAME: KEY` is short for `NAME: {key: KEY}`.",
            .item = "derivative"},
           output.derivatives, group);
+    named(v,
+          {.name = "gradients",
+           .meaning = "Derivatives of single quantities at the end of the run by many numbers of the scene, by its "
+                      "adjoint, into "
+                      "gradients/NAME.csv.",
+           .item = "gradient"},
+          output.gradients, group);
     v.flag({.name = "paraview",
             .meaning = "Write show_in_paraview.py beside the series, which shows it.",
             .default_text = from_template},

@@ -83,6 +83,12 @@ void expand_short_forms(Tree& scene, std::vector<Fault>& faults) {
     if (Tree* output = scene.find("output"); output && output->kind == Tree::Kind::map)
         if (Tree* derivatives = output->find("derivatives"); derivatives && derivatives->kind == Tree::Kind::map)
             for (Tree& derivative : derivatives->children) make_map(derivative, "key");
+    if (Tree* output = scene.find("output"); output && output->kind == Tree::Kind::map)
+        if (Tree* gradients = output->find("gradients"); gradients && gradients->kind == Tree::Kind::map)
+            for (Tree& gradient : gradients->children)
+                if (Tree* by = gradient.kind == Tree::Kind::map ? gradient.find("by") : nullptr;
+                    by && by->kind == Tree::Kind::map)
+                    for (Tree& derivative : by->children) make_map(derivative, "key");
     Tree* pairs = scene.find("contact");
     if (!pairs || pairs->kind != Tree::Kind::map) return;
     for (Tree& pair : pairs->children) {

@@ -66,6 +66,7 @@ std::vector<Override> Study::overrides_of(const Combination& combination,
     list.push_back({"output.probes", "{}"});
     list.push_back({"output.plots", "{}"});
     list.push_back({"output.derivatives", "{}"});
+    list.push_back({"output.gradients", "{}"});
     list.push_back({"output.body_fields", bodies ? "[displacement, stress, von_mises, reaction]" : "[]"});
     list.push_back(
         {"output.slave_fields", nodes ? "[gap, contact_force, normal_stress, slip, status, normal, area]" : "[]"});

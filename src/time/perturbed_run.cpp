@@ -62,7 +62,7 @@ std::string PerturbedRun::begin_step(const BesideStep& step, Vector& F) {
 std::string PerturbedRun::evaluate(const BesideStep& step, const Vector& z, Vector& F) {
     equilibrium::Equilibrium& own = now_->equilibrium;
     own.set_statuses(step.statuses, equilibrium::StatusRule::frozen, false);
-    for (std::size_t p = 0; p < step.contact.size(); ++p) own.contact()[p].take_facets_of(step.contact[p]);
+    for (std::size_t p = 0; p < step.contact.size(); ++p) own.contact()[p].take_facets(step.contact[p].held_facets());
     F.resize(z.size());
     if (own.residual(z, F) == solve::NonlinearProblem::Verdict::shorten || !F.allFinite())
         return "the changed scene has no residual";

@@ -17,7 +17,7 @@ struct RunContext {
     double characteristic_length = 1;       ///< m
     double largest_stiffness = 0;           ///< model::largest_stiffness
     std::unique_ptr<Audit> audit{};         ///< null: not wanted
-    std::vector<PerturbedPair*> beside{};   ///< runs that follow this one
+    std::vector<BesideRun*> beside{};       ///< runs that follow this one
     std::vector<double> shares_of_volume{}; ///< of volume_shares()
 
     /// model::volume_shares, made when first asked for.

@@ -53,7 +53,7 @@ StageRun::StageRun(RunContext& context, const Stage& stage, Progress& progress, 
                        machinery_->choice.multigrid ? MassSolution::by_conjugate_gradients : MassSolution::by_factors,
                        progress_);
     if (dynamics_) centres_.emplace(model, *dynamics_, constraints_, context.options.threads);
-    for (PerturbedPair* runs : context_.beside) runs->begin_stage(progress_.stage);
+    for (BesideRun* runs : context_.beside) runs->begin_stage(progress_.stage);
     targets_ = times_to_hit(stage, progress_.stage_start);
     if (context.model.general && !progress_.state.scope) {
         const double speed =
@@ -302,11 +302,15 @@ void StageRun::commit(StepAttempt& attempt) {
 
 void StageRun::lead(const StepAttempt& attempt) {
     solve::KinsolSolver& solver = machinery_->solver;
-    const bool regular = solver.linearise(equilibrium());
-    const auto inverse = [&](const Vector& F, Vector& dz) { return regular && solver.solve_linear(F, dz); };
-    const BesideStep step{attempt.z,  equilibrium().statuses(), equilibrium().contact(),        attempt.time,
-                          attempt.dt, progress_.impact,         equilibrium().reference_force()};
-    for (PerturbedPair* runs : context_.beside) runs->follow(step, inverse);
+    std::optional<bool> regular; // linearised when first asked for
+    const auto inverse = [&](const Vector& F, Vector& dz) {
+        if (!regular) regular = solver.linearise(equilibrium());
+        return *regular && solver.solve_linear(F, dz);
+    };
+    const BesideStep step{
+        progress_.state, attempt.next, attempt.z,        equilibrium().statuses(),       equilibrium().contact(),
+        attempt.time,    attempt.dt,   progress_.impact, equilibrium().reference_force()};
+    for (BesideRun* runs : context_.beside) runs->follow(step, inverse);
     equilibrium().rollback(); // what this needed leaves no trace in the run
 }
 

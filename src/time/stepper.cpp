@@ -48,7 +48,7 @@ void Stepper::run(StepObserver& observer) {
     }
 }
 
-void Stepper::lead(std::vector<PerturbedPair*> beside) {
+void Stepper::lead(std::vector<BesideRun*> beside) {
     context_->beside = std::move(beside);
 }
 

@@ -112,6 +112,7 @@ iterations.csv               . . . . . . . . . . . x x x
 checks                       x x x x x x x x x x x x x x
 probes                       . . x . . x x x x . . . . .
 derivatives                  . . . . . . . . . . . . . .
+gradients                    . . . . . . . . . . . . . .
 plots                        . . . . . x x x x . . . . .
 show_in_paraview.py          x . x . . x x x x x x x x x
 report                       . . . . . . . . . . . . . .

@@ -166,7 +166,7 @@ TEST_P(FlatPair, TakesTheFacetsOfAnotherUntilTheNextStep) {
     other.begin_step(beyond, pair->initial_history(), timings, 1);
     other.evaluate(beyond, timings, 1);
     ASSERT_NE(other.facets()[0], evaluation->facets()[0]);
-    evaluation->take_facets_of(other);
+    evaluation->take_facets(other.held_facets());
     evaluation->evaluate(x, timings, 1);
     EXPECT_EQ(evaluation->facets(), other.facets());
     EXPECT_EQ(evaluation->hit(0).facet, other.facets()[0]);

@@ -35,6 +35,8 @@ public:
     void add_magnitudes(const Iterate& at, Field& sums) const override { bodies_.add_terms(at.u, sums); }
     void linearise(const Iterate& at) override { (void)update_stiffness(at); }
     void add_product(const Direction& d, Field& f, VectorRef y) override;
+    /// @pre its stiffness is symmetric
+    void add_transposed(const Weights& of, Weights& by) const override;
     void complete(const ConstVectorRef& z, model::State& state) const override;
 
 private:

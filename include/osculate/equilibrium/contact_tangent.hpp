@@ -27,6 +27,16 @@ struct ContactTangent final : linear::ContactDerivatives {
             on.segment<3>(3 * i) = (E.middleRows<3>(3 * i) * lambda - on.segment<3>(3 * i)).eval();
         return value;
     }
+
+    /// The transpose of along(): of a weight of the law and of weights of the forces on masters (3 per carrier), the weights dy (3+3n)
+    /// of a motion, and returned that of the contact force, but for the part of the slave's force. @pre G is there
+    Vec3 along_transposed(const Vec3& of_law, const Vector& of_forces, Vector& dy) const {
+        dy.noalias() = A.transpose() * of_law;
+        Vec3 of_lambda = D.transpose() * of_law;
+        if (of_forces.size() == 0) return of_lambda;
+        dy.noalias() += G.transpose() * of_forces;
+        return of_lambda + E.transpose() * of_forces;
+    }
 };
 
 } // namespace osculate::equilibrium

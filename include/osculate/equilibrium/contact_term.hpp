@@ -98,6 +98,11 @@ public:
                                    double share) const override;
     void linearise(const Iterate& at) override;
     void add_product(const Direction& d, Field& f, VectorRef y) override;
+    void linearise_transposed(const Iterate& at) override;
+    void add_transposed(const Weights& of, Weights& by) const override;
+    /// The same by displacements and contact forces at the start of the step, of which slips are measured and elastic stick begins.
+    /// Only the laws depend on them. @pre statics
+    void add_transposed_of_start(const Weights& of, Weights& by) const;
     [[nodiscard]] bool add_pattern(std::vector<linear::Coupling>& couplings) const override;
     void add_derivatives(linear::SystemMatrix& matrix) override;
     void add_soft(std::vector<linear::SoftContact>& soft) const override;

@@ -81,6 +81,14 @@ public:
     [[nodiscard]] bool factorisable() const override { return factorisable_; }
     [[nodiscard]] solve::Tangent* tangent() override { return tangent_.by_products() ? &tangent_ : nullptr; }
 
+    /// See EquilibriumTangent, at the last residual, and ContactTerm::add_transposed_of_start().
+    void linearise_transposed() { tangent_.linearise_transposed(); }
+    void add_transposed(const Weights& of, Weights& by) { tangent_.add_transposed(of, by); }
+    [[nodiscard]] bool solve_transposed(const Weights& b, Vector& w, Weights& of, double tolerance) {
+        return tangent_.solve_transposed(b, w, of, tolerance);
+    }
+    void add_transposed_of_start(const Weights& of, Weights& by) const { contact_.add_transposed_of_start(of, by); }
+
     /// z from displacements and contact forces, and the state (without time) from z.
     [[nodiscard]] Vector unknowns(const Field& u, const std::vector<model::ContactHistory>& contact) const;
     [[nodiscard]] model::State state(const Vector& z) const;

@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,9 +66,23 @@ public:
         return condensed_ && !bodies_.bodies().stabilised() && condensed_->serves(contact_.bearing());
     }
     [[nodiscard]] bool solve(const ConstVectorRef& b, VectorRef x, double allowed) override;
+    /// by += J^T of at the last residual, with the rows of held components, too. @pre the bodies' stiffness is symmetric
+    void add_transposed(const Weights& of, Weights& by);
+    /// Computes the derivatives at the last residual for solve_transposed().
+    void linearise_transposed();
+    /// Computes w (rows) with J^T w = b to a relative error of `tolerance`, from b of the unknowns; of: w at nodes and couplings.
+    /// False where J is singular. @pre preconditions()
+    [[nodiscard]] bool solve_transposed(const Weights& b, Vector& w, Weights& of, double tolerance);
     [[nodiscard]] int factorisations() const override { return condensed_ ? condensed_->factorisations() : 0; }
 
 private:
+    /// Weights at nodes and couplings of a vector of rows.
+    void unpack_rows(const ConstVectorRef& w, Weights& of) const;
+    /// Weights as a vector of unknowns.
+    void pack_unknowns(const Weights& by, VectorRef b) const;
+    void multiply_transposed(const ConstVectorRef& w, VectorRef b);
+    /// solve_transposed() by factors of the whole tangent.
+    [[nodiscard]] bool solve_transposed_directly(const Vector& b, Vector& w);
     /// Stiffness of the bodies over nodes that have equations.
     [[nodiscard]] const linear::BlockMatrix& stiffness() const;
     /// The same with the rows of all processes.
@@ -89,7 +104,7 @@ private:
     std::unique_ptr<linear::FoldedMatrix> folded_; ///< null: no dependent node carries elements
     const Iterate& at_;
     Timings& timings_;
-    bool may_buckle_, products_;                               ///< products_: see TangentChoice
+    bool multigrid_, may_buckle_, products_;                   ///< products_: see TangentChoice
     std::vector<linear::Coupling> couplings_, kept_couplings_; ///< pattern of the matrix: current, at the last commit
     long patterns_built_ = 0, kept_patterns_ = 0;
     std::unique_ptr<linear::BlockMatrix> whole_;   ///< see whole_stiffness(); null: one process, or not needed yet
@@ -104,6 +119,9 @@ private:
     std::unique_ptr<Condensation> condensed_;                  ///< see TangentChoice; null: not used
     bool stale_preconditioner_ = false, stale_matrix_ = false; ///< the stiffness of the bodies has changed since
     Field product_u_, product_f_;                              ///< scratch of multiply()
+    std::optional<solve::SparseMatrix> transposed_; ///< of linearise_transposed(); none: products of the terms serve
+    Weights weights_of_, weights_by_;               ///< scratch of multiply_transposed()
+    bool worn_ = true; ///< the preconditioner takes solve_transposed() many iterations, or has no factors
 };
 
 } // namespace osculate::equilibrium

@@ -34,6 +34,12 @@ struct Direction {
     const ConstVectorRef& z;
 };
 
+/// Weights of forces at nodes and of rows of contact laws in a sum, or of displacements and contact forces. Global components.
+struct Weights {
+    Field nodes;
+    std::vector<Vec3> couplings;
+};
+
 /// The residual is a list of terms. Rows of equilibrium are sums of nodal forces over all terms; a term with its own
 /// unknowns writes its own rows. Functions that do not apply to a term keep the default.
 class Term {
@@ -68,6 +74,11 @@ public:
     virtual void linearise(const Iterate& at) = 0;
     /// Adds the change of its forces along a direction to f, (nodes) N, and writes the change of its own rows into y.
     virtual void add_product(const Direction& d, Field& f, VectorRef y) = 0;
+    /// Computes the derivatives at the last evaluate(), for add_transposed().
+    virtual void linearise_transposed(const Iterate& at) { linearise(at); }
+    /// Adds the products of the transposed derivatives with weights: of its forces, (nodes) in the unit of the weighted sum per N, and
+    /// of its own rows; to those of displacements, (nodes) per m, and of contact forces, (couplings) per N.
+    virtual void add_transposed(const Weights& of, Weights& by) const { (void)of, (void)by; }
     /// Adds to `couplings`, one for each coupling of the unknowns, the nodes that its derivatives may reach from the
     /// last evaluate(); true if `couplings` already had all of them.
     [[nodiscard]] virtual bool add_pattern(std::vector<linear::Coupling>& couplings) const {

@@ -45,6 +45,8 @@ public:
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
     /// z = P^-1 r; `rows` gives the numbering of the residual's rows.
     void apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const;
+    /// z = P^-T r: r as the unknowns are numbered, z as the rows are.
+    void apply_transposed(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const;
     [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }
     /// Estimate of the time of factorise() over that of an iteration of GMRES with it.
     [[nodiscard]] double effort() const;

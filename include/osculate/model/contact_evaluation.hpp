@@ -23,6 +23,12 @@ struct Taken {
     double algorithmic = 0; ///< where forces at the end weigh more than those at the start
 };
 
+/// Facets of an evaluation, for take_facets().
+struct HeldFacets {
+    std::vector<Index> facet;  ///< (slaves)
+    std::vector<char> latched; ///< (slaves)
+};
+
 class ContactEvaluation {
 public:
     explicit ContactEvaluation(const ContactPair& pair); ///< must outlive this object
@@ -58,7 +64,8 @@ public:
     void forget_path();
     /// Until begin_step(), facets are those of another evaluation of the same slaves and master, at positions that differ a little:
     /// where a slave is as near to one as to another, both take the same.
-    void take_facets_of(const ContactEvaluation& other);
+    void take_facets(HeldFacets facets);
+    [[nodiscard]] HeldFacets held_facets() const;
     /// Keeps partners, normals and weights of the last evaluate() from now on, until let_go() or begin_step(): gaps are then linear in
     /// the positions. For pairs with contact at nodes or of edges. @pre prepare_variations() with all that have a point
     void hold_geometry();

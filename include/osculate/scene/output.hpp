@@ -112,6 +112,30 @@ struct Derivative {
     bool operator==(const Derivative&) const = default;
 };
 
+/// What a run ends with, for its derivatives by many numbers.
+struct MeanDisplacement {
+    std::string set;
+    Vec3 direction = Vec3::UnitZ();
+    bool operator==(const MeanDisplacement&) const = default;
+};
+struct PairForce {
+    std::string pair;
+    Vec3 direction = Vec3::UnitZ();
+    bool operator==(const PairForce&) const = default;
+};
+struct SupportForce {
+    std::string set;
+    Vec3 direction = Vec3::UnitZ();
+    bool operator==(const SupportForce&) const = default;
+};
+
+/// Derivatives of one quantity at the end of the run by numbers of the scene, in gradients/NAME.csv.
+struct Gradient {
+    std::variant<MeanDisplacement, PairForce, SupportForce> of;
+    Named<Derivative> by;
+    bool operator==(const Gradient&) const = default;
+};
+
 struct Output {
     std::string template_name = "contact";  ///< or the absolute path of a user's template
     std::vector<std::string> body_fields;   ///< see output::all_fields
@@ -124,6 +148,7 @@ struct Output {
     Named<Probe> probes;
     Named<Plot> plots;
     Named<Derivative> derivatives;
+    Named<Gradient> gradients;
     bool paraview = false;      ///< write show_in_paraview.py next to the series
     bool report = false;        ///< write report.html at the end
     bool failed_iterate = true; ///< write the last iterate of a failed run

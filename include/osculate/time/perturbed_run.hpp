@@ -17,6 +17,7 @@ struct RunContext;
 
 /// An accepted step, for the runs beside it.
 struct BesideStep {
+    const model::State &start, &end;
     const Vector& z; ///< unknowns of the equilibrium
     const equilibrium::Statuses& statuses;
     const model::ContactEvaluations& contact; ///< evaluated at z
@@ -27,6 +28,14 @@ struct BesideStep {
 
 /// dz = J^-1 F with the tangent of the run that leads, at the end of its step. False if J is singular.
 using LinearSolve = std::function<bool(const Vector& F, Vector& dz)>;
+
+/// What follows a run step by step.
+class BesideRun {
+public:
+    virtual ~BesideRun() = default;
+    virtual void begin_stage(std::size_t number) = 0;
+    virtual void follow(const BesideStep& step, const LinearSolve& inverse) = 0;
+};
 
 /// The run of a model that differs a little from another one. It takes the steps, contact statuses and facets of the other.
 class PerturbedRun {
@@ -65,13 +74,13 @@ private:
 ///     z -/+ dz,   dz = J^-1 (F_below(z; state_below) - F_above(z; state_above)) / 2
 /// with the residuals and the states at the step's start of their own, so that (q_above - q_below) / 2 dp is the derivative of
 /// a quantity q, with an error of order dp^2.
-class PerturbedPair {
+class PerturbedPair final : public BesideRun {
 public:
     PerturbedPair(std::unique_ptr<PerturbedRun> below, std::unique_ptr<PerturbedRun> above)
         : below_(std::move(below)), above_(std::move(above)) {}
 
-    void begin_stage(std::size_t number);
-    void follow(const BesideStep& step, const LinearSolve& inverse);
+    void begin_stage(std::size_t number) override;
+    void follow(const BesideStep& step, const LinearSolve& inverse) override;
 
     /// Why it could not follow any more; empty as long as it can. The states are those before then.
     [[nodiscard]] const std::string& lost() const { return lost_; }

@@ -15,7 +15,7 @@
 
 namespace osculate::time {
 
-class PerturbedPair;
+class BesideRun;
 struct RunContext;
 struct FailedAttempt;
 struct PostMortem;
@@ -73,9 +73,9 @@ public:
     /// Makes run() continue from a checkpoint of the same model, stages and options. Call it before run().
     /// @throws RunFailure if the checkpoint does not fit
     void resume(Checkpoint checkpoint);
-    /// Makes run() take these runs along, see PerturbedPair; they must outlive it. Observers see an accepted step after they have
+    /// Makes run() take these runs along; they must outlive it. Observers see an accepted step after they have
     /// followed it. Leaves no trace in the run itself.
-    void lead(std::vector<PerturbedPair*> beside);
+    void lead(std::vector<BesideRun*> beside);
 
     [[nodiscard]] const model::State& state() const {
         return progress_.state;

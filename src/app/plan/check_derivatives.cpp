@@ -4,6 +4,7 @@
 #include "osculate/scene/number_at.hpp"
 #include "osculate/scene/writer.hpp"
 
+#include <algorithm>
 #include <regex>
 #include <string>
 
@@ -15,7 +16,57 @@ bool is_of_steps(const std::string& key) {
     static const std::regex pattern(R"((solver|output|expect)\..*|stages\.[^.]+\.(duration|steps|control(\..*)?))");
     return std::regex_match(key, pattern);
 }
+/// Faults of one number.
+void check_number(const std::string& resolved, const std::string& key, const std::string& where,
+                  std::vector<Fault>& faults) {
+    std::string found;
+    const auto number = scene::number_at(resolved, key, found);
+    if (is_of_steps(key))
+        faults.push_back(fault(where, "a number of what is simulated, as the steps stay as they are", "'" + key + "'"));
+    else if (!number)
+        faults.push_back(fault(where, "the path of a number, such as bodies.NAME.material.linear_elastic.E",
+                               "'" + key + "': " + found));
+    else if (number->value == 0)
+        faults.push_back(fault(where, "a number other than 0: it is changed by a part of it", "'" + key + "', 0"));
+}
+
+/// Why the adjoint of a run with this plan is not known; empty: it is.
+std::string bars_gradients(const Plan& plan) {
+    const model::Model& model = plan.model;
+    for (const time::Stage& stage : plan.stages) {
+        if (stage.dynamics) return "stage '" + stage.name + "', which is dynamic";
+        if (!stage.follower_pressures.empty()) return "stage '" + stage.name + "', whose pressure follows its surface";
+    }
+    if (model.has_dependent_nodes())
+        return "rigid bodies, couplings, ties, sectors, equations or faces with midside nodes in contact";
+    for (const model::Body& body : model.bodies)
+        if (std::ranges::any_of(body.kernels, [](const auto& kernel) { return kernel->history_size() > 0; }))
+            return "body '" + body.name + "', whose material has a past or temperatures";
+    return {};
+}
 } // namespace
+
+void check_gradients(const scene::Scene& scene, const Plan& plan, bool shared, std::vector<Fault>& faults) {
+    if (scene.output.gradients.empty()) return;
+    const char* all = "output.gradients";
+    if (shared) faults.push_back(fault(all, "a run by one process", "--distributed"));
+    if (scene.general) faults.push_back(fault(all, "contact by named pairs", "contact.general, whose pairs change"));
+    if (const std::string what = bars_gradients(plan); !what.empty())
+        faults.push_back(fault(all, "static stages of elastic bodies, each free of the others but for contact", what));
+    const std::string resolved = scene::write_scene(scene);
+    for (const auto& [name, gradient] : scene.output.gradients) {
+        const std::string where = "output.gradients." + name;
+        for (const auto& [label, by] : gradient.by)
+            check_number(resolved, by.key, where + ".by." + label + ".key", faults);
+        const auto* force = std::get_if<scene::SupportForce>(&gradient.of);
+        const auto held = [&](const linear::NodeConstraint& constraint) {
+            return constraint.set >= 0 && plan.model.sets[static_cast<std::size_t>(constraint.set)].name == force->set;
+        };
+        if (force != nullptr && !plan.stages.empty() && std::ranges::none_of(plan.stages.back().constraints, held))
+            faults.push_back(
+                fault(where + ".reaction.set", "a set that the last stage holds or drives", "'" + force->set + "'"));
+    }
+}
 
 void check_derivatives(const scene::Scene& scene, bool shared, std::vector<Fault>& faults) {
     if (scene.output.derivatives.empty()) return;
@@ -24,18 +75,7 @@ void check_derivatives(const scene::Scene& scene, bool shared, std::vector<Fault
         faults.push_back(fault("output.derivatives", "contact by named pairs", "contact.general, whose pairs change"));
     const std::string resolved = scene::write_scene(scene);
     for (const auto& [name, derivative] : scene.output.derivatives) {
-        std::string found;
-        const auto number = scene::number_at(resolved, derivative.key, found);
-        const std::string where = "output.derivatives." + name + ".key";
-        if (is_of_steps(derivative.key))
-            faults.push_back(fault(where, "a number of what is simulated, as the steps stay as they are",
-                                   "'" + derivative.key + "'"));
-        else if (!number)
-            faults.push_back(fault(where, "the path of a number, such as bodies.NAME.material.linear_elastic.E",
-                                   "'" + derivative.key + "': " + found));
-        else if (number->value == 0)
-            faults.push_back(
-                fault(where, "a number other than 0: it is changed by a part of it", "'" + derivative.key + "', 0"));
+        check_number(resolved, derivative.key, "output.derivatives." + name + ".key", faults);
     }
 }
 

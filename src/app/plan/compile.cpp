@@ -89,6 +89,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft);
     check_plots(scene, draft.plan, draft.faults);
     check_derivatives(scene, draft.ranks != nullptr, draft.faults);
+    check_gradients(scene, draft.plan, draft.ranks != nullptr, draft.faults);
     throw_faults(draft);
     if (draft.ranks) check_distributed(draft);
     throw_faults(draft);

@@ -149,6 +149,10 @@ Estimate estimate(const scene::Scene& scene, const Plan& plan) {
     const auto derivatives = static_cast<double>(scene.output.derivatives.size());
     result.seconds *= 1 + 0.5 * derivatives;
     result.bytes *= 1 + derivatives;
+    for (const auto& [name, gradient] : scene.output.gradients) {
+        result.seconds *= 1.3 + 0.1 * static_cast<double>(gradient.by.size());
+        result.bytes *= 1 + static_cast<double>(gradient.by.size());
+    }
     return result;
 }
 

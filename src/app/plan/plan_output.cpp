@@ -129,6 +129,12 @@ void add_output_items(const scene::Scene& scene, const Plan& plan, PlanList& lis
     list.say("derivatives", !out.derivatives.empty(),
              out.derivatives.empty() ? "none is asked for" : "two runs of a changed scene follow this one for each",
              {0, 2 * static_cast<double>(out.derivatives.size() * model.nodes()), "nodes a step"});
+    std::size_t numbers = 0;
+    for (const auto& [name, gradient] : out.gradients) numbers += gradient.by.size();
+    list.say("gradients", numbers > 0,
+             numbers == 0 ? "none is asked for"
+                          : "the adjoint of the run, after it; two changed scenes for each number",
+             {0, 2 * static_cast<double>(numbers) * static_cast<double>(model.nodes()), "nodes a step"});
     list.say("plots", !out.plots.empty(), out.plots.empty() ? "none is asked for" : "drawn at the end of the run",
              {0, static_cast<double>(out.plots.size()), "pictures"});
     list.say("show_in_paraview.py", frames && out.paraview,

@@ -1,9 +1,9 @@
 #include "app/run/derivatives.hpp"
 
-#include "app/fault.hpp"
+#include "app/run/changed_scene.hpp"
+#include "app/run/gradients.hpp"
 #include "osculate/output/history.hpp"
 #include "osculate/output/probe_file.hpp"
-#include "osculate/scene/number_at.hpp"
 #include "osculate/scene/writer.hpp"
 
 #include <Eigen/Geometry>
@@ -18,8 +18,6 @@
 namespace osculate::app {
 
 namespace {
-
-using output::Cell;
 
 std::string folder_of(const std::string& name) {
     return "derivatives/" + name + "/";
@@ -39,32 +37,6 @@ bool is_smooth(const std::string& column) {
     return !not_smooth.contains(column.substr(column.rfind('.') + 1));
 }
 
-/// What differs between two plans whose unknowns must be the same; empty: nothing.
-std::string difference(const Plan& a, const Plan& b) {
-    const auto shape = [](const model::Model& model) {
-        std::vector<Index> numbers{model.nodes()};
-        for (const model::Body& body : model.bodies) numbers.push_back(body.mesh.element_count());
-        return numbers;
-    };
-    if (shape(a.model) != shape(b.model)) return "another mesh";
-    const auto pairs = [](const model::Model& model) {
-        std::vector<std::vector<Index>> nodes;
-        for (const auto& pair : model.pairs) {
-            nodes.push_back(pair->slaves().node);
-            nodes.push_back(pair->master_nodes());
-        }
-        return nodes;
-    };
-    if (pairs(a.model) != pairs(b.model)) return "other contact nodes";
-    const auto held = [](const std::vector<time::Stage>& stages) {
-        std::vector<std::size_t> counts;
-        for (const time::Stage& stage : stages) counts.push_back(stage.constraints.size());
-        return counts;
-    };
-    if (held(a.stages) != held(b.stages)) return "other supports";
-    return {};
-}
-
 /// Whether a column of a probe says where a sample is in the undeformed model.
 bool is_place(const std::string& column) {
     static const std::set<std::string> places{"s", "angle", "X", "Y", "Z"};
@@ -80,29 +52,24 @@ std::string kind_of(const std::string& column) {
 }
 
 /// NaN: no number.
-double number_in(const Cell& cell) {
+double number_in(const output::Cell& cell) {
     const double* value = std::get_if<double>(&cell);
     return value != nullptr ? *value : std::nan("");
 }
 
-Cell cell_of(double value) {
-    return std::isnan(value) ? Cell{std::string()} : Cell{value};
+output::Cell cell_of(double value) {
+    return std::isnan(value) ? output::Cell{std::string()} : output::Cell{value};
 }
 
 } // namespace
 
 /// One derivative: the two changed scenes, and its tables.
 struct Derivatives::One {
-    struct Side {
-        scene::Scene scene;
-        Plan plan;
-    };
-
     std::string name, key;
     double step = 0;      ///< of the number, SI
     bool changes = false; ///< whether anything that is written has a derivative other than 0
     std::unique_ptr<time::PerturbedPair> runs;
-    std::array<std::unique_ptr<Side>, 2> sides; ///< below, above
+    std::array<std::unique_ptr<ChangedScene>, 2> sides; ///< below, above
     std::unique_ptr<output::CsvTable> history;
     std::vector<std::unique_ptr<output::CsvTable>> probes;
     std::vector<std::size_t> columns;                                ///< of history.csv
@@ -114,39 +81,21 @@ Derivatives::Derivatives(const LoadedScene& loaded, int threads, Timings& timing
     const std::string resolved = scene::write_scene(loaded.scene);
     std::vector<Fault> faults;
     for (const auto& [name, derivative] : loaded.scene.output.derivatives) {
-        std::string found;
-        const auto number = scene::number_at(resolved, derivative.key, found);
-        if (!number) continue; // a fault of check_derivatives()
         auto one = std::make_unique<One>();
         one->name = name;
         one->key = derivative.key;
-        one->step = std::abs(number->value) * derivative.change;
-        for (std::size_t k = 0; k < one->sides.size(); ++k) {
-            const double value = number->value + (k == 0 ? -one->step : one->step);
-            const std::string where = "output.derivatives." + name + ".key";
-            try {
-                auto side = std::make_unique<One::Side>();
-                side->scene = scene::parse_scene(resolved, "the scene with another number", {number->set(value)});
-                side->scene.output.derivatives.clear();
-                side->scene.output.plots.clear();
-                side->plan = compile(side->scene, threads, timings);
-                if (const std::string other = difference(loaded.plan, side->plan); !other.empty())
-                    faults.push_back(fault(where, "a number that leaves mesh, pairs and supports as they are",
-                                           fmt::format("{} at {:g}", other, value)));
-                one->sides[k] = std::move(side);
-            } catch (const SceneError& error) {
-                faults.push_back(
-                    fault(where, "a number that may be changed a little both ways",
-                          fmt::format("at {:.10g}, {}: expected {}, found {}", value, error.faults().front().key,
-                                      error.faults().front().expected, error.faults().front().found)));
-            }
-        }
+        ChangedScenes changed =
+            changed_scenes(loaded, resolved, derivative, "output.derivatives." + name, threads, timings, faults);
+        one->step = changed.step;
+        one->sides = std::move(changed.sides);
         all_.push_back(std::move(one));
     }
+    if (!loaded.scene.output.gradients.empty())
+        gradients_ = std::make_unique<Gradients>(loaded, resolved, threads, timings, faults);
     if (!faults.empty()) throw SceneError(std::move(faults));
     time::StepperOptions options = loaded.plan.stepper;
     options.audit = false;
-    const auto run_of = [&](const One::Side& side) {
+    const auto run_of = [&](const ChangedScene& side) {
         return std::make_unique<time::PerturbedRun>(side.plan.model, side.plan.stages, options, timings);
     };
     for (const auto& one : all_)
@@ -162,13 +111,19 @@ std::vector<std::string> Derivatives::files(const scene::Scene& scene, const Pla
         for (const PlannedProbe& probe : plan.probes)
             names.push_back(folder_of(name) + output::ProbeFile::relative_path(probe.name));
     }
+    for (const auto& [name, gradient] : scene.output.gradients) names.push_back(Gradients::file(name));
     return names;
 }
 
-std::vector<time::PerturbedPair*> Derivatives::runs() const {
-    std::vector<time::PerturbedPair*> runs;
+std::vector<time::BesideRun*> Derivatives::runs() const {
+    std::vector<time::BesideRun*> runs;
     for (const auto& one : all_) runs.push_back(one->runs.get());
+    if (gradients_) runs.push_back(&gradients_->run());
     return runs;
+}
+
+void Derivatives::finish(const std::filesystem::path& folder) {
+    if (gradients_) gradients_->write(folder);
 }
 
 void Derivatives::open(output::OutputFolder& folder) {
@@ -214,14 +169,14 @@ void Derivatives::accepted(const time::AcceptedStep& step, const std::vector<std
     for (const auto& one : all_) {
         if (!one->runs->lost().empty()) continue;
         std::array<std::optional<output::Snapshot>, 2> at;
-        std::array<std::vector<Cell>, 2> cells;
+        std::array<std::vector<output::Cell>, 2> cells;
         for (std::size_t k = 0; k < 2; ++k) {
             const Plan& plan = one->sides[k]->plan;
             const time::PerturbedRun& run = k == 0 ? one->runs->below() : one->runs->above();
             at[k].emplace(snapshot_of(plan, run.state(), run.equilibrium()));
             cells[k] = history_of(plan, *at[k], run.equilibrium(), run.ledger());
         }
-        std::vector<Cell> row{step.state.time};
+        std::vector<output::Cell> row{step.state.time};
         for (std::size_t i = 1; i < one->columns.size(); ++i) {
             const std::size_t c = one->columns[i];
             const double below = number_in(cells[0][c]), above = number_in(cells[1][c]), now = number_in(here[c]);
@@ -238,7 +193,7 @@ void Derivatives::accepted(const time::AcceptedStep& step, const std::vector<std
                        above = one->sides[1]->plan.probes[p].probe->rows(*at[1]);
             const auto& columns = loaded_.plan.probes[p].probe->columns();
             for (std::size_t r = 0; r < std::min(below.size(), above.size()); ++r) {
-                std::vector<Cell> cells_now{step.state.time};
+                std::vector<output::Cell> cells_now{step.state.time};
                 for (std::size_t c = 0; c < columns.size(); ++c) {
                     one->changes =
                         one->changes || (!std::isnan(above[r][c] - below[r][c]) && above[r][c] != below[r][c]);
@@ -259,6 +214,7 @@ std::vector<std::string> Derivatives::warnings() const {
     for (const Vec3& X : loaded_.plan.model.X) box.extend(X);
     const double length = box.diagonal().norm();
     std::vector<std::string> list;
+    if (gradients_) list = gradients_->warnings();
     for (const auto& one : all_) {
         if (const std::string& lost = one->runs->lost(); !lost.empty())
             list.push_back(fmt::format("derivative '{}' ends before its run does: {}", one->name, lost));

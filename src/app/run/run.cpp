@@ -122,6 +122,7 @@ output::Summary run(const LoadedScene& loaded, time::Stepper& stepper, Timings& 
         if (recorder.post_mortem().empty()) throw;
         throw GaveUp(failure.what(), recorder.post_mortem());
     }
+    if (settings.derivatives != nullptr) settings.derivatives->finish(settings.folder->path());
     recorder.finish("done");
     return recorder.summary();
 }
@@ -136,13 +137,20 @@ bool writes(const RunOptions& options) {
     return !options.ranks || options.ranks->rank() == 0;
 }
 
+/// Empty: there is none.
+std::string first_derivative(const scene::Output& output) {
+    if (!output.derivatives.empty()) return output.derivatives.front().first;
+    return output.gradients.empty() ? std::string() : output.gradients.front().first;
+}
+
 /// Null where the scene asks for none.
 std::unique_ptr<Derivatives> derivatives_of(const LoadedScene& loaded, const RunOptions& options, Timings& timings) {
-    const auto& asked = loaded.scene.output.derivatives;
-    if (asked.empty()) return nullptr;
+    const scene::Output& asked = loaded.scene.output;
+    if (asked.derivatives.empty() && asked.gradients.empty()) return nullptr;
     if (options.checkpoint_every.steps > 0 || options.checkpoint_every.seconds > 0)
-        refuse("--checkpoint-every", "a run without output.derivatives, which are in no checkpoint",
-               "'" + asked.front().first + "'");
+        refuse("--checkpoint-every",
+               "a run without output.derivatives and output.gradients, which are in no checkpoint",
+               "'" + first_derivative(asked) + "'");
     try {
         return std::make_unique<Derivatives>(loaded, options.threads, timings);
     } catch (const SceneError& error) {
@@ -189,7 +197,7 @@ Interrupted::Interrupted(int signal, double time, fs::path directory)
 
 Interrupted::Interrupted(int signal, double time)
     : std::runtime_error(
-          fmt::format("interrupted at {} s; a run with output.derivatives cannot go on later: run it again",
+          fmt::format("interrupted at {} s; a run with derivatives or gradients cannot go on later: run it again",
                       scene::number_text(time))),
       signal_(signal) {}
 
@@ -255,9 +263,9 @@ std::optional<output::Summary> resume(const fs::path& directory, const fs::path&
         refuse(scene_path, "the scene the checkpoint was written for", "another one");
     if (output::fingerprint(loaded.plan.model) != file.meshes)
         refuse(scene_path, "the meshes the checkpoint was written for", "others");
-    if (!loaded.scene.output.derivatives.empty())
-        refuse(scene_path, "a scene without output.derivatives, whose runs are in no checkpoint",
-               "'" + loaded.scene.output.derivatives.front().first + "'");
+    if (const std::string asked = first_derivative(loaded.scene.output); !asked.empty())
+        refuse(scene_path, "a scene without output.derivatives and output.gradients, which are in no checkpoint",
+               "'" + asked + "'");
     if (!writes(options)) {
         copy_tables(file, directory, options.directory);
         leave_out_frames(loaded.scene.output);

@@ -79,19 +79,23 @@ protected:
         {"thickness", "bodies.tube.mesh.half_tube.thickness"}};
 };
 
-/// A column of two blocks that stresses alone shorten: u(top) = -p (l_lower/E_lower + l_upper/E_upper).
+/// A column of two blocks that stresses alone shorten: u(top) = -p (l_lower/E_lower + l_upper/E_upper), and every force is p.
 TEST_F(GradientsOfRuns, AreThoseOfAColumn) {
     const Outcome outcome =
         run(blocks,
-            {"output.gradients={top: {displacement: {set: top, direction: [0, 0, 1]}, by: {E: "
-             "bodies.upper.material.linear_elastic.E, p: {key: stages.press.pressure.top, change: 1e-3}}}}"},
+            {"output.gradients={top: {displacement: {set: top, direction: [0, 0, 2]}, by: {E: "
+             "bodies.upper.material.linear_elastic.E, p: {key: stages.press.pressure.top, change: 1e-3}}}, bed: "
+             "{reaction: {set: bed, direction: [0, 0, -1]}, by: {p: stages.press.pressure.top}}, joint: "
+             "{contact_force: {pair: joint, direction: [1, 0, 1]}, by: {p: stages.press.pressure.top}}}"},
             "run");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     constexpr double E = 1e7, p = 20e3, exact = 1e-7;
-    const fs::path table = folder / "run/gradients/top.csv";
-    EXPECT_NEAR(derivative(table, "E"), p / (E * E), exact * p / (E * E));
-    EXPECT_NEAR(derivative(table, "p"), -2 / E, exact * 2 / E);
-    EXPECT_EQ(Csv(table).number(1, "value"), p);
+    const fs::path tables = folder / "run/gradients";
+    EXPECT_NEAR(derivative(tables / "top.csv", "E"), p / (E * E), exact * p / (E * E));
+    EXPECT_NEAR(derivative(tables / "top.csv", "p"), -2 / E, exact * 2 / E);
+    EXPECT_NEAR(derivative(tables / "bed.csv", "p"), -1, exact);
+    EXPECT_NEAR(derivative(tables / "joint.csv", "p"), 1 / std::sqrt(2), exact);
+    EXPECT_EQ(Csv(tables / "top.csv").number(1, "value"), p);
 }
 
 TEST_F(GradientsOfRuns, FollowFrictionAlongACurvedSurface) {
@@ -136,7 +140,7 @@ TEST_F(GradientsOfRuns, SayWhatTheyCannotHave) {
     };
     const std::string top = "displacement: {set: top, direction: [0, 0, 1]}", load = "stages.press.pressure.top";
     EXPECT_THAT(said(blocks, {gradient("displacement: {set: tup, direction: [0, 0, 1]}", load)}), HasSubstr("top"));
-    EXPECT_THAT(said(blocks, {gradient("reaction: {set: top, direction: [0, 0, 1]}", load)}),
+    EXPECT_THAT(said(blocks, {gradient("reaction: {set: under, direction: [0, 0, 1]}", load)}),
                 HasSubstr("a set that the last stage holds or drives"));
     EXPECT_THAT(said(blocks, {gradient(top, "bodies.uper.material.linear_elastic.E")}),
                 HasSubstr("no 'bodies.uper' in the resolved scene"));

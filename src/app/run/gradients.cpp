@@ -38,13 +38,15 @@ time::FinalQuantity Gradients::quantity(const scene::Gradient& gradient) const {
     std::visit(Overloaded{[&](const scene::MeanDisplacement& mean) {
                               const auto set = std::ranges::find(plan.model.sets, mean.set, &model::Set::name);
                               for (const Index node : set->nodes)
-                                  q.weights.nodes[node] += mean.direction / static_cast<double>(set->nodes.size());
+                                  q.weights.nodes[node] +=
+                                      mean.direction.normalized() / static_cast<double>(set->nodes.size());
                           },
                           [&](const scene::PairForce& force) {
                               const auto pair = std::ranges::find_if(
                                   plan.model.pairs, [&](const auto& one) { return one->name() == force.pair; });
                               const auto p = static_cast<std::size_t>(pair - plan.model.pairs.begin());
-                              for (Index j = first[p]; j < first[p + 1]; ++j) q.weights.couplings[j] = force.direction;
+                              for (Index j = first[p]; j < first[p + 1]; ++j)
+                                  q.weights.couplings[j] = force.direction.normalized();
                           },
                           [&](const scene::SupportForce& force) {
                               const auto set = std::ranges::find(plan.model.sets, force.set, &model::Set::name);
@@ -56,7 +58,7 @@ time::FinalQuantity Gradients::quantity(const scene::Gradient& gradient) const {
                                       if (const auto* held = constraints.constraint(node, k);
                                           held != nullptr && held->set == number) {
                                           const Vec3 axis = constraints.frame(node).col(k);
-                                          q.reactions[node] += axis * axis.dot(force.direction);
+                                          q.reactions[node] += axis * axis.dot(force.direction.normalized());
                                       }
                           }},
                gradient.of);

@@ -72,7 +72,7 @@ protected:
     const Changes coarse{"bodies.tube.mesh.half_tube.divisions=[7, 6, 1]",
                          "bodies.contactor.mesh.contactor.divisions=[6, 8, 1]", "stages.slide.steps=6",
                          "solver.tolerance=1e-12"};
-    const std::vector<std::pair<std::string, std::string>> numbers{
+    const std::vector<std::pair<std::string, std::string>> of_half_tube{
         {"mu", "contact.sliding.friction"},
         {"pressure", "stages.press.pressure.top"},
         {"path", "stages.slide.displacement.rear.y"},
@@ -99,14 +99,14 @@ TEST_F(GradientsOfRuns, AreThoseOfAColumn) {
 }
 
 TEST_F(GradientsOfRuns, FollowFrictionAlongACurvedSurface) {
-    expect_as_forward(half_tube, coarse, "sliding", "rear", "face", numbers);
+    expect_as_forward(half_tube, coarse, "sliding", "rear", "face", of_half_tube);
 }
 
 TEST_F(GradientsOfRuns, FollowLargeStrains) {
     Changes changes = coarse;
     changes.emplace_back("bodies.contactor.material={neo_hookean: {E: 10 MPa, nu: 0.2}}");
     changes.emplace_back("stages.press.pressure.top=0.3 MPa");
-    expect_as_forward(half_tube, changes, "sliding", "rear", "face", numbers);
+    expect_as_forward(half_tube, changes, "sliding", "rear", "face", of_half_tube);
 }
 
 /// Slave nodes that are driven stick elastically: their forces at the start of a step count.
@@ -114,7 +114,7 @@ TEST_F(GradientsOfRuns, FollowElasticStick) {
     Changes changes = coarse;
     changes.emplace_back("contact.sliding.friction=0.6");
     changes.emplace_back("contact.sliding.stick_stiffness=50 MPa/m");
-    expect_as_forward(half_tube, changes, "sliding", "rear", "face", numbers);
+    expect_as_forward(half_tube, changes, "sliding", "rear", "face", of_half_tube);
 }
 
 TEST_F(GradientsOfRuns, LeaveTheRunAsItIs) {

@@ -9,7 +9,8 @@
 namespace osculate::time {
 
 namespace {
-constexpr double linear_tolerance = 1e-9;
+/// Of linear systems. Derivatives of forces of supports are small differences of large sums: those of what is held and of what moves.
+constexpr double linear_tolerance = 1e-9, linear_tolerance_of_reactions = 1e-12;
 
 /// Components of a field at held directions, in the order of nodes and directions.
 Vector held_components(const linear::Constraints& constraints, const Field& values) {
@@ -159,7 +160,8 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
         for (std::size_t q = 0; q < quantities.size(); ++q) {
             Vector w;
             equilibrium::Weights of;
-            if (!equilibrium.solve_transposed(by[q], w, of, linear_tolerance)) return {};
+            const double tolerance = quantities[q].reactions.empty() ? linear_tolerance : linear_tolerance_of_reactions;
+            if (!equilibrium.solve_transposed(by[q], w, of, tolerance)) return {};
             add(q, -1, w, step, &Step::Change::residual);
             // the next one backwards; what is held there is in the differences
             equilibrium::Weights start{Field(by[q].nodes.size()),

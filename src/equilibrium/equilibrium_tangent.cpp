@@ -26,8 +26,8 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
                                        ContactTerm& contact, const linear::Dependence* dependence, const Iterate& at,
                                        const TangentChoice& choice, Timings& timings, int threads)
     : constraints_(constraints), unknowns_(unknowns), terms_(terms), bodies_(bodies), contact_(contact),
-      dependence_(dependence), at_(at), timings_(timings),
-      multigrid_(choice.multigrid), may_buckle_(model.nonlinear != nullptr || dependence != nullptr), products_(choice.products) {
+      dependence_(dependence), at_(at), timings_(timings), multigrid_(choice.multigrid),
+      may_buckle_(model.nonlinear != nullptr || dependence != nullptr), products_(choice.products) {
     if (dependence != nullptr && linear::needs_folding(*dependence, bodies_.bodies().tangent())) {
         folded_ = std::make_unique<linear::FoldedMatrix>(*dependence, bodies_.bodies().tangent());
         fold_stiffness();

@@ -123,7 +123,8 @@ bool EquilibriumTangent::solve_transposed(const Weights& weights, Vector& w, Wei
             multiply_transposed(w, product);
             scale(product, stiffness);
             left = right - product;
-            if (left.norm() <= allowed) break;
+            done = left.norm() <= allowed;
+            if (done) break;
             const auto result = gmres.solve(J, P, left.data(), more.data(), 0.5 * allowed);
             iterations += result.iterations;
             if (!more.allFinite()) break;
@@ -144,7 +145,10 @@ bool EquilibriumTangent::solve_transposed_directly(const Vector& b, Vector& w) {
     const auto solver = solve::make_lu();
     if (solver->factorise(*transposed_) != solve::FactorStatus::ok) return false;
     solver->solve(b.data(), w.data());
-    return true;
+    constexpr double of_factors = 1e-6; // what a tangent that is all but singular leaves more of
+    Vector product(b.size());
+    transposed_->multiply(w.data(), product.data());
+    return (product - b).norm() <= of_factors * b.norm();
 }
 
 } // namespace osculate::equilibrium

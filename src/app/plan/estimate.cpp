@@ -149,9 +149,14 @@ Estimate estimate(const scene::Scene& scene, const Plan& plan) {
     const auto derivatives = static_cast<double>(scene.output.derivatives.size());
     result.seconds *= 1 + 0.5 * derivatives;
     result.bytes *= 1 + derivatives;
+    // the adjoint once more than a run, a fifth of one for each number, two models of each, and all steps until the end
     for (const auto& [name, gradient] : scene.output.gradients) {
-        result.seconds *= 1.3 + 0.1 * static_cast<double>(gradient.by.size());
-        result.bytes *= 1 + static_cast<double>(gradient.by.size());
+        constexpr double vectors = 5; // of a step: its unknowns, and the state at its start
+        const auto numbers = static_cast<double>(gradient.by.size());
+        result.seconds *= 2 + 0.2 * numbers;
+        result.bytes *= 1 + numbers;
+        result.bytes +=
+            result.steps * (vectors + numbers) * 3 * static_cast<double>(plan.model.nodes()) * sizeof(double);
     }
     return result;
 }

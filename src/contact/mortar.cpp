@@ -1,6 +1,7 @@
 #include "osculate/contact/mortar.hpp"
 
 #include "contact/facet_rule.hpp"
+#include "osculate/contact/latch.hpp"
 #include "osculate/core/parallel.hpp"
 #include "osculate/core/rounded_sum.hpp"
 
@@ -111,10 +112,9 @@ int Mortar::evaluate(const PairPositions& at, FacetTracking& tracking, std::vect
         for (Index f = begin; f < end; ++f)
             for (GapPoint& q : facets_[static_cast<std::size_t>(f)].gap_points) {
                 const Vec3 s = position(q, at.slaves);
-                q.hit = q.changes < tracking.changes_before_latch
-                            ? at.search.track(s, q.facet, at.vertices, tracking.hysteresis)
-                            : at.search.closest_on(q.facet, s, at.vertices);
-                q.hit.latched = q.changes >= tracking.changes_before_latch;
+                const bool latched = q.changes >= tracking.changes_before_latch;
+                q.hit = at.search.track(s, q.facet, at.vertices, latched ? latched_hysteresis : tracking.hysteresis);
+                q.hit.latched = latched;
             }
     });
     int changed = 0;

@@ -1,5 +1,6 @@
 #include "osculate/model/contact_evaluation.hpp"
 
+#include "osculate/contact/latch.hpp"
 #include "osculate/core/parallel.hpp"
 #include "osculate/model/model.hpp"
 
@@ -182,9 +183,10 @@ void ContactEvaluation::evaluate(const std::vector<Vec3>& x, Timings& timings, i
                 }
                 const Vec3& s = now_.slaves[j];
                 const bool given = !given_.empty(), latched = given ? given_[j] != 0 : tracking_.changes[j] >= latch;
-                hits[j] = facet[j] >= 0 && (given || latched)
+                hits[j] = given && facet[j] >= 0
                               ? search_.closest_on(facet[j], s, vertices_, choice(j))
-                              : search_.track(s, facet[j], vertices_, tracking_.hysteresis, choice(j));
+                              : search_.track(s, facet[j], vertices_,
+                                              latched ? contact::latched_hysteresis : tracking_.hysteresis, choice(j));
                 hits[j].latched = latched;
                 if (!pair_->slaves().around.empty()) end_at_bounds(j);
             }

@@ -76,6 +76,21 @@ TEST_P(FlatPair, HasNoDriftWhenBothSidesMoveTogether) {
     for (Index j = 0; j < 2; ++j) EXPECT_LT(evaluation->state(j, Vec3::Zero()).drift.norm(), round_off);
 }
 
+TEST_P(FlatPair, ComesBackFromWhereIteratesRanAway) {
+    const std::vector<Vec3> start = x;
+    const Index facet = evaluation->facets()[0];
+    for (int k = 0; k < 6; ++k) { // more often than it takes to be latched
+        x[slave(0)].x() = k % 2 == 0 ? 4.2 : 2.2;
+        evaluation->evaluate(x, timings, 1);
+    }
+    ASSERT_TRUE(evaluation->hit(0).latched);
+    evaluation->evaluate(start, timings, 1);
+    EXPECT_EQ(evaluation->facets()[0], facet);
+    EXPECT_NEAR(evaluation->hit(0).distance, 0.1, round_off);
+    EXPECT_NEAR(evaluation->point(0).gap, 0.1, round_off);
+    EXPECT_LT((evaluation->point(0).foot - Vec3(1.2, 1.3, 0)).norm(), round_off);
+}
+
 TEST_P(FlatPair, MeasuresTheDriftOfTheSlaveSinceTheStepBegan) {
     const Vec3 slip(0.04, -0.03, 0.02), lambda(1, 2, 3);
     x[slave(0)] += slip;
@@ -179,12 +194,12 @@ TEST_P(FlatPair, TakesTheFacetsOfAnotherUntilTheNextStep) {
 /// The projection itself does not depend on the facet on a flat master, so the latch costs nothing here.
 TEST_P(FlatPair, StaysOnItsFacetAfterFourChangesInOneAttempt) {
     for (int change = 0; change < 7; ++change) {
-        x[slave(0)].x() += change % 2 == 0 ? 0.5 : -0.5;
+        x[slave(0)].x() = change % 2 == 0 ? 1.6 : 1.4; // on either side of an edge
         evaluation->evaluate(x, timings, 1);
         EXPECT_EQ(evaluation->facet_changes(), change < 4) << change;
     }
     evaluation->begin_step(x, pair->initial_history(), timings, 1);
-    x[slave(0)].x() -= 0.5;
+    x[slave(0)].x() = 1.4;
     evaluation->evaluate(x, timings, 1);
     EXPECT_EQ(evaluation->facet_changes(), 1) << "a new attempt is free again";
 }

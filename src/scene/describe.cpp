@@ -36,12 +36,15 @@ void describe(Visitor& v, Solver& solver) {
                        "accepted with springs in place."},
            solver.stabilisation);
     v.flag({.name = "audit",
-            .meaning = "After every solved step, look for nodes and edges inside another body or their own, by "
-                       "geometry alone, independent of contact; the summary says if it is off."},
+            .meaning = "After every solved step, look for nodes and edges inside another body or their own, and for "
+                       "contact forces on nodes far from the other surface, by geometry alone, independent of contact; "
+                       "the summary says if it is off."},
            solver.audit);
     v.number({.name = "audited_depth",
-              .meaning = "Fraction of the facet size: how deep a body may lie inside another, beyond what facets of "
-                         "smooth surfaces bulge by, before the audit cuts the step.",
+              .meaning =
+                  "Fraction of the facet size: how deep a body may lie inside another, or how far a node may be "
+                  "from the surface that presses on it, beyond what facets of smooth surfaces bulge by, before the "
+                  "audit cuts the step.",
               .range = {.low = 0, .high = 1, .open_low = true}},
              solver.audited_depth);
 }

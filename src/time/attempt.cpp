@@ -21,6 +21,7 @@ std::string name(Reason reason) {
     case Reason::closing_energy: return "energy";
     case Reason::collision: return "collision";
     case Reason::audit: return "audit";
+    case Reason::distance: return "distance";
     case Reason::reach: return "reach";
     case Reason::impact: return "impact";
     case Reason::forced: return "forced";

@@ -95,6 +95,7 @@ Cause cause_of_decision(const FailedAttempt& failed, const PostMortem& found) {
     case Reason::interpenetration: return failed.decision.unseen ? Cause::unseen_contact : Cause::interpenetration;
     case Reason::collision: return Cause::collision;
     case Reason::audit: return Cause::unseen_contact;
+    case Reason::distance: return Cause::far_contact;
     case Reason::error: return Cause::time_error;
     case Reason::energy: return Cause::energy;
     default: return cause_of_solve(failed, found);

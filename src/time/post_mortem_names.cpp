@@ -16,7 +16,7 @@ struct CauseWords {
     const char *name, *words;
 };
 
-constexpr std::array<CauseWords, 17> causes{{
+constexpr std::array<CauseWords, 18> causes{{
     {Cause::unsupported_body, "unsupported_body", "nothing holds a body: a static load moves it without end"},
     {Cause::singular_tangent, "singular_tangent",
      "the tangent has no inverse: the equations contradict or repeat each other"},
@@ -35,6 +35,9 @@ constexpr std::array<CauseWords, 17> causes{{
     {Cause::unseen_contact, "unseen_contact",
      "a body goes into another, or into itself, where no contact force acts on it: no pair has both surfaces, or the "
      "place is at an edge between nodes, at a node of a master, or where averages over facets see nothing"},
+    {Cause::far_contact, "far_contact",
+     "contact puts a force on a node that geometry finds far from the surface it should lie on: the contact is wrong "
+     "there"},
     {Cause::collision, "collision", "the step takes a node through a surface"},
     {Cause::time_error, "time_error", "the step makes a larger error in time than is allowed"},
     {Cause::energy, "energy", "contact adds more energy in the step than is allowed"},

@@ -1,6 +1,7 @@
 #include "time/stage_run.hpp"
 
 #include "osculate/model/general_contact.hpp"
+#include "osculate/time/far_force.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 #include "time/stage_state.hpp"
@@ -209,6 +210,8 @@ void StageRun::gather_evidence(StepAttempt& attempt) {
         const ScopedTimer timer(context_.timings, Part::audit);
         attempt.audit = &context_.audit->examine(attempt.next.u);
         evidence.intrusion = context_.audit->deepest();
+        evidence.far =
+            farthest_force(context_.model, equilibrium().contact(), attempt.next, stage_.limits.audited_depth);
     }
     if (dynamics_) gather_dynamic_evidence(attempt);
     if (const auto& general = context_.model.general;
@@ -259,6 +262,10 @@ Attempt StageRun::row_of(const StepAttempt& attempt) {
         name_node(model, decision.intrusion->node, row);
         row.cause = in_words(*decision.intrusion, model) + "; " + row.cause;
     }
+    if (decision.reason == Reason::distance)
+        row.cause = in_words(*attempt.evidence.far,
+                             *progress_.state.contact[static_cast<std::size_t>(decision.pair)].pair, model) +
+                    "; " + row.cause;
     if (attempt.not_finite) explain(*attempt.not_finite, model, row);
     if (decision.reason == Reason::error && attempt.worst_in_time >= 0) name_node(model, attempt.worst_in_time, row);
     return row;

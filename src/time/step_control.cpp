@@ -41,6 +41,8 @@ Objection strongest(const StepEvidence& evidence, const StepLimits& limits, bool
         consider(governing, {Reason::collision, evidence.collision, evidence.collision, nullptr});
     if (evidence.intrusion && !(evidence.intrusion->relative() <= limits.audited_depth))
         consider(governing, {Reason::audit, limits.failure_lambda, evidence.intrusion->excess, nullptr});
+    if (evidence.far && !(evidence.far->relative() <= limits.audited_depth))
+        consider(governing, {Reason::distance, limits.failure_lambda, evidence.far->distance, nullptr});
     if (!(evidence.local_error <= limits.error_tolerance)) {
         const double lambda =
             limits.reserve * std::cbrt(limits.error_tolerance / evidence.local_error); // of order dt^3
@@ -79,6 +81,12 @@ void describe(std::ostream& text, const Objection& objection, const StepEvidence
              << " m more than facets of a smooth surface may, allowed is "
              << limits.audited_depth * evidence.intrusion->length << " m";
         break;
+    case Reason::distance: {
+        const FarForce& far = *evidence.far;
+        text << "a contact force acts across " << far.distance << " m, allowed is "
+             << far.distance - far.excess + limits.audited_depth * far.length << " m";
+        break;
+    }
     case Reason::error:
         if (objection.of_velocity) {
             text << "the error of the centres' velocities is " << objection.value
@@ -176,6 +184,9 @@ Decision judge(const StepEvidence& evidence, const StepLimits& limits, double dt
         decision.slave = evidence.collision_slave;
     } else if (objection.reason == Reason::audit) {
         decision.intrusion = evidence.intrusion;
+    } else if (objection.reason == Reason::distance) {
+        decision.pair = evidence.far->pair;
+        decision.slave = evidence.far->slave;
     }
     std::ostringstream cause;
     describe(cause, objection, evidence, limits);

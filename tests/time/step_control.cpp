@@ -11,6 +11,7 @@
 namespace osculate::time::OSCULATE_THIS_FILE {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -65,6 +66,30 @@ TEST(ReductionFactor, IsZeroWhereNoFractionIsAdmissible) {
     EXPECT_EQ(reduction_factor(-0.5, -1, 0.1), 0);
     EXPECT_EQ(reduction_factor(-2, -1, 0.1), 0); // rises, and (28) would be above 1
     EXPECT_EQ(reduction_factor(-1, -1, 0.1), 0);
+}
+
+TEST(StepControl, CutsAStepWithAForceFarFromTheMasterAndNamesItInTheEnd) {
+    StepEvidence evidence;
+    evidence.far = FarForce{.pair = 1, .slave = 5, .force = 7, .distance = 0.5, .excess = 0.3, .length = 2};
+    StepLimits limits;
+    limits.audited_depth = 0.2;
+    EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::accept) << "0.15 of a facet";
+    limits.audited_depth = 0.1;
+    Decision decision = judge(evidence, limits, 1, 0);
+    EXPECT_EQ(decision.verdict, Verdict::retry);
+    EXPECT_EQ(decision.reason, Reason::distance);
+    EXPECT_EQ(decision.dt, limits.failure_lambda);
+    EXPECT_EQ(decision.pair, 1);
+    EXPECT_EQ(decision.slave, 5);
+    EXPECT_EQ(decision.value, 0.5);
+    limits.dt_min = 1;
+    decision = judge(evidence, limits, 1, 0);
+    EXPECT_EQ(decision.verdict, Verdict::give_up);
+    EXPECT_THAT(decision.cause, AllOf(HasSubstr("across 0.5 m"), HasSubstr("allowed is 0.4 m"), HasSubstr("dt_min")));
+    const support::FloatingPointTraps suspended(false); // a comparison with NaN is an invalid operation
+    evidence.far->excess = std::numeric_limits<double>::quiet_NaN();
+    limits.audited_depth = 0.9;
+    EXPECT_EQ(judge(evidence, limits, 1, 0).verdict, Verdict::give_up) << "what is no number objects";
 }
 
 TEST(StepControl, AcceptsAndRemembersTheResidualWhenNothingObjects) {

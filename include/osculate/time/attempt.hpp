@@ -16,17 +16,16 @@ enum class Reason {
     energy,
     collision,
     audit,
+    distance,
     closing_energy,
     reach,
     impact,
     forced
 };
 /// Those whose names differ.
-inline constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration,
-                                     Reason::solver, Reason::error,
-                                     Reason::energy, Reason::collision,
-                                     Reason::audit,  Reason::reach,
-                                     Reason::impact, Reason::forced};
+inline constexpr Reason reasons[] = {Reason::none,   Reason::interpenetration, Reason::solver, Reason::error,
+                                     Reason::energy, Reason::collision,        Reason::audit,  Reason::distance,
+                                     Reason::reach,  Reason::impact,           Reason::forced};
 
 /// A row of steps.csv.
 struct Attempt {

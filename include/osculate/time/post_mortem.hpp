@@ -27,6 +27,7 @@ enum class Cause {
     inside_out,           ///< an element has det F <= 0
     interpenetration,
     unseen_contact, ///< bodies penetrate each other where no contact node detects it
+    far_contact,    ///< a contact force acts on a node that is far from the master
     collision,
     time_error,
     energy,

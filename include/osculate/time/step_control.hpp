@@ -32,6 +32,20 @@ struct GapEvidence {
     double length = 1; ///< unit of StepLimits::allowed_interpenetration here, m
 };
 
+/// A slave that carries a contact force although the facets of its master are far from it.
+struct FarForce {
+    Index pair = -1, slave = -1;
+    double force = 0;    ///< N
+    double distance = 0; ///< of the slave from the closest facet of the master, m
+    /// The distance less the gap that contact reports, and less what smooth surfaces may bulge by, >= 0, m. Where gaps are averages
+    /// over facets of the slave, the distance of these counts.
+    double excess = 0;
+    double length = 1; ///< size of the larger of the facets there, m
+
+    /// Excess in facet sizes.
+    [[nodiscard]] double relative() const { return excess / length; }
+};
+
 /// Steps count as equal if their lengths differ by less than this, relatively: more than the stretch in fit_to().
 inline constexpr double same_step = 1e-6;
 
@@ -57,8 +71,9 @@ struct StepEvidence {
     GapEvidence unseen;
     /// Deepest place at which a body is inside another in the solution, from geometry alone.
     std::optional<contact::Intrusion> intrusion;
-    bool impact = false; ///< the attempt was made by the rule for impacts
-    bool forced = false; ///< repeat the step unchanged, to test repetition
+    std::optional<FarForce> far; ///< contact force across the largest distance, from geometry as well
+    bool impact = false;         ///< the attempt was made by the rule for impacts
+    bool forced = false;         ///< repeat the step unchanged, to test repetition
 };
 
 struct StepLimits {
@@ -77,7 +92,7 @@ struct StepLimits {
     double growth = 1.5;                                                 ///< factor on dt after an easy step
     int easy_iterations = 5;               ///< an easy step needs no more, and is accepted at the first attempt
     double unseen_interpenetration = 0.01; ///< allowed StepEvidence::unseen, in GapEvidence::length
-    double audited_depth = std::numeric_limits<double>::infinity();   ///< largest Intrusion::relative()
+    double audited_depth = std::numeric_limits<double>::infinity();   ///< largest Intrusion and FarForce::relative()
     double error_tolerance = std::numeric_limits<double>::infinity(); ///< m
     double energy_tolerance = std::numeric_limits<double>::infinity();
     double velocity_error = std::numeric_limits<double>::infinity(); ///< ignored if the step cannot be cut, as the next
@@ -95,7 +110,7 @@ struct Decision {
     double lambda = 1;   ///< fraction of a rejected attempt's dt that was required, with floor but without dt_min
     double value =
         0; ///< deciding value: gap g1, residual, local error, energy jump, share or fraction; if accepted: the residual
-    Index pair = -1, slave = -1;                 ///< governing point of an interpenetration or a collision
+    Index pair = -1, slave = -1;                 ///< governing point of an interpenetration, a collision or a far force
     bool unseen = false;                         ///< an interpenetration that no average detects
     std::optional<contact::Intrusion> intrusion; ///< intrusion found by the audit
     std::string cause;                           ///< in words; empty when accepted
@@ -105,7 +120,7 @@ struct Decision {
 [[nodiscard]] bool cannot_be_cut(const StepLimits& limits, double dt, int repeats);
 
 /// The objection with the smallest lambda governs; among equal ones the first of: solver, interpenetration, collision,
-/// audit, error, velocity_error, energy, closing_energy. A cut never goes below dt_min, which is tried before giving
+/// audit, distance, error, velocity_error, energy, closing_energy. A cut never goes below dt_min, which is tried before giving
 /// up. Errors of velocities and closing gaps only cut: if the step cannot be cut they are ignored, and RunChecks
 /// reports their cost. With inelastic impacts, an objection that a shock can cause (solver, error of velocities, energy,
 /// closing_energy) makes the step an impact of the same dt; in an impact, errors of velocities and closing gaps are no

@@ -56,6 +56,7 @@ public:
         case Cause::interpenetration:
         case Cause::collision: too_deep(); break;
         case Cause::unseen_contact: unseen(); break;
+        case Cause::far_contact: far(); break;
         case Cause::time_error: time_error(); break;
         case Cause::energy: energy(); break;
         case Cause::load_not_finite: break;
@@ -394,6 +395,14 @@ private:
             "slave nodes at most " + rounded(apart) + " m apart along its edges, and the mesh of '" + master +
                 "' unchanged: contact sees nodes against facets, not edges against edges between their nodes, and with "
                 "this spacing a node meets a facet before the edge is too deep");
+    }
+
+    void far() {
+        const model::ContactPair& pair = *failed_.last.contact[static_cast<std::size_t>(failed_.decision.pair)].pair;
+        smaller_steps("nodes then move over fewer facets in a step");
+        change(surface_key(pair), "facets", "facets, whose gaps are those of the mesh itself");
+        if (averages(pair.options().discretisation))
+            change(key_of(pair) + ".discretisation", "node", "node: the force then acts where the gap is");
     }
 
     void time_error() {

@@ -1,4 +1,5 @@
 #include "contact/blend_variation.hpp"
+#include "contact/creases.hpp"
 #include "contact/placed_patch.hpp"
 #include "contact/reach.hpp"
 #include "osculate/core/parallel.hpp"
@@ -12,8 +13,8 @@ namespace {
 class BlendSurface final : public MasterSurface {
 public:
     BlendSurface(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options)
-        : surface_(surface), vertex_patches_(surface, X, options), facets_(make_facets_surface(surface)) {
-        find_creases();
+        : surface_(surface), vertex_patches_(surface, X, options), facets_(make_facets_surface(surface)),
+          creases_(surface) {
         find_reach();
     }
 
@@ -30,7 +31,7 @@ public:
                 if (vertex_patches_.bare[facet] != 0) nodes.insert(nodes.end(), own.begin(), own.end());
             };
             add(f);
-            for (const Neighbour& other : creases_[f]) add(other.facet);
+            for (const Creases::Neighbour& other : creases_.of(f)) add(other.facet);
             std::sort(nodes.begin(), nodes.end());
             nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
             reach_.push_back(std::move(nodes));
@@ -56,7 +57,7 @@ public:
         for (const FacetHit& hit : hits)
             if (hit.facet >= 0) {
                 want(hit.facet);
-                for (const Neighbour& other : creases_[hit.facet]) want(other.facet);
+                for (const Creases::Neighbour& other : creases_.of(hit.facet)) want(other.facet);
             }
         parallel_for(threads, count, [&](Index begin, Index end) {
             for (Index p = begin; p < end; ++p) {
@@ -98,15 +99,13 @@ public:
         point.trace = trace;
         Side& side = *trace;
         look(s, hit, x, placement, side);
-        for (const Index facet : across_crease(hit)) {
+        for (const Index facet : creases_.across(hit)) {
             FacetHit there;
             there.facet = facet;
             there.distance = hit.distance;
             Side other;
             look(s, there, x, placement, other);
-            // beyond a crease both sides are planes, more or less, through it: the one s is farther from faces s. For
-            // a convex edge that is the larger gap, for a concave one the smaller; a tie keeps the closest facet
-            if (other.found && (!side.found || std::abs(other.gap) > std::abs(side.gap) + tie * size))
+            if (other.found && (!side.found || Creases::is_on_other(side.gap, other.gap, size)))
                 side = std::move(other);
         }
         point.found = side.found;
@@ -143,7 +142,6 @@ public:
     }
 
 private:
-    static constexpr double tie = 1e-9; ///< of coordinates and gaps, of the facet size
     /// How much farther than its facet a foot may be from s, in facet sizes: smooth surfaces leave their facets by a tenth. What is
     /// farther is another place of a patch that is folded.
     static constexpr double farther = 0.25;
@@ -165,12 +163,6 @@ private:
     };
     /// What a vertex has in the blend: three numbers, and one.
     using PressingAndWeight = Eigen::Vector4d;
-    /// Another smooth side that meets a facet in one of its edges or corners.
-    struct Neighbour {
-        int corner; ///< the edge is the one that leaves it
-        bool edge;
-        Index facet;
-    };
 
     /// The trace of a point's last evaluation where nothing else holds it, or a new one.
     static std::shared_ptr<Side> own_trace(const ContactPoint& point) {
@@ -231,40 +223,6 @@ private:
             side.behind = point.behind;
             side.gap = point.gap;
         } // else s is too far off for any foot
-    }
-
-    /// Facets of the other sides when s lies beyond a crease, so that its closest point is on one.
-    [[nodiscard]] std::vector<Index> across_crease(const FacetHit& hit) const {
-        std::vector<Index> result;
-        if (hit.latched || hit.limited || hit.overhang == 0 || creases_[hit.facet].empty()) return result;
-        const int n = static_cast<int>(surface_.facet_vertices(hit.facet).size());
-        const auto on_edge = [&](int c) {
-            const Vec2& u = hit.u;
-            const double square[] = {1 + u.y(), 1 - u.x(), 1 - u.y(), 1 + u.x()};
-            const double triangle[] = {u.y(), 1 - u.sum(), u.x()};
-            return (n == 4 ? square : triangle)[c] < tie;
-        };
-        for (const Neighbour& k : creases_[hit.facet]) {
-            const bool this_edge = on_edge(k.corner), last_edge = on_edge((k.corner + n - 1) % n);
-            if (k.edge ? this_edge : this_edge && last_edge) result.push_back(k.facet);
-        }
-        return result;
-    }
-
-    void find_creases() {
-        creases_.resize(static_cast<std::size_t>(surface_.facet_count()));
-        for (Index f = 0; f < surface_.facet_count(); ++f) {
-            const auto v = surface_.facet_vertices(f);
-            for (std::size_t c = 0; c < v.size(); ++c) {
-                const int corner = static_cast<int>(c);
-                const Index h = surface_.first_half_edge(f) + corner;
-                if (surface_.is_feature_edge(h))
-                    creases_[f].push_back({corner, true, surface_.half_edges()[surface_.half_edges()[h].twin].facet});
-                for (const auto& sector : sectors(surface_, v[c]))
-                    if (!std::binary_search(sector.begin(), sector.end(), f))
-                        creases_[f].push_back({corner, false, sector.front()});
-            }
-        }
     }
 
     /// g = sum psi_v g_v / P;  dg = (1/P) sum [ psi_v dg_v + (g_v - g) dpsi_v ];  weights (1/P) sum psi_v Phi_i
@@ -332,8 +290,8 @@ private:
     const mesh::HalfEdgeSurface& surface_;
     VertexPatches vertex_patches_;
     std::shared_ptr<const MasterSurface> facets_;
-    std::vector<std::vector<Neighbour>> creases_; ///< per facet
-    std::vector<std::vector<Index>> reach_;       ///< per facet, vertices of all patches it may need
+    Creases creases_;
+    std::vector<std::vector<Index>> reach_; ///< per facet, vertices of all patches it may need
 };
 
 } // namespace

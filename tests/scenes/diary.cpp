@@ -107,7 +107,7 @@ TEST_F(Diary, NamesEveryDamagedLineAndWhatWasExpectedThere) {
                                                           "'acept' (did you mean 'accept'?)");
     expect_refusal(header + "1,1,1,retry,weather,,,0,1,3\n",
                    "2:13: reason: expected one of none, interpenetration, solver, error, energy, collision, audit, "
-                   "reach, impact, forced, found 'weather'");
+                   "distance, reach, impact, forced, found 'weather'");
     expect_refusal(header + "1,1,0,accept,none,,,0,1,3\n", "2:5: dt: expected a time in s, > 0, found '0'");
     expect_refusal(header + "1,nan,1,accept,none,,,0,1,3\n", "2:3: time: expected a time in s, found 'nan'");
     expect_refusal(header + "1,1,1,retry,solver,cap,x,0,1,3\n",

@@ -180,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "stages.drive.displacement",
                 {"stages.drive.displacement={top: {x: 0 m, y: 0 m, z: -0.1 m}}"},
                 true},
-        Failure{"given_way", "diverged", "block", 0.05, "stages.press", {"stages.press.pressure.top=1 MPa"}, true},
+        Failure{"given_way", "diverged", "block", -1, "stages.press", {"stages.press.pressure.top=1 MPa"}, true},
         Failure{"edges_unseen",
                 "unseen_contact",
                 "upper",

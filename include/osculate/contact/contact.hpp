@@ -5,4 +5,5 @@
 #include "osculate/contact/contact_point.hpp"  // IWYU pragma: export
 #include "osculate/contact/master_surface.hpp" // IWYU pragma: export
 #include "osculate/contact/search.hpp"         // IWYU pragma: export
+#include "osculate/contact/sided_surface.hpp"  // IWYU pragma: export
 #include "osculate/mesh/half_edge_surface.hpp" // IWYU pragma: export

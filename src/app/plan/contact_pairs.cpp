@@ -9,6 +9,7 @@
 #include "osculate/contact/mirror.hpp"
 #include "osculate/contact/mortar.hpp"
 #include "osculate/contact/path_crossing.hpp"
+#include "osculate/contact/sided_surface.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 #include "osculate/model/general_contact.hpp"
 
@@ -90,26 +91,28 @@ std::optional<contact::Multiquadric> radial_basis(const Surface& s, Discretisati
 std::unique_ptr<contact::MasterSurface> make_master(const scene::MasterSpec& spec, Discretisation discretisation,
                                                     const mesh::HalfEdgeSurface& surface,
                                                     const std::vector<Vec3>& vertices, model::ContactOptions& options) {
-    return std::visit(Overloaded{
-                          [](const scene::AutomaticSurface&) -> std::unique_ptr<contact::MasterSurface> {
-                              throw std::logic_error("the surface of a pair is not settled");
-                          },
-                          [&](const scene::FacetsSurface& s) {
-                              options.hysteresis = s.hysteresis;
-                              return contact::make_facets_surface(surface);
-                          },
-                          [&](const scene::RpimSurface& s) {
-                              options.hysteresis = s.hysteresis;
-                              return contact::make_rpim_surface(
-                                  surface, vertices, {s.ring, radial_basis(s, discretisation), s.m, s.coordinates});
-                          },
-                          [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
-                              options.hysteresis = 0;
-                              return contact::make_blend_surface(
-                                  surface, vertices, {s.ring, radial_basis(s, discretisation), s.m, s.coordinates});
-                          },
-                      },
-                      spec.surface);
+    return std::visit(
+        Overloaded{
+            [](const scene::AutomaticSurface&) -> std::unique_ptr<contact::MasterSurface> {
+                throw std::logic_error("the surface of a pair is not settled");
+            },
+            [&](const scene::FacetsSurface& s) {
+                options.hysteresis = s.hysteresis;
+                return contact::with_sides(surface, contact::make_facets_surface(surface));
+            },
+            [&](const scene::RpimSurface& s) {
+                options.hysteresis = s.hysteresis;
+                return contact::with_sides(
+                    surface, contact::make_rpim_surface(surface, vertices,
+                                                        {s.ring, radial_basis(s, discretisation), s.m, s.coordinates}));
+            },
+            [&](const scene::BlendSurface& s) { // does not depend on the facet: no hysteresis
+                options.hysteresis = 0;
+                return contact::make_blend_surface(surface, vertices,
+                                                   {s.ring, radial_basis(s, discretisation), s.m, s.coordinates});
+            },
+        },
+        spec.surface);
 }
 
 /// The surface through the slave nodes that mortar takes its gaps from: as smooth as the master's. None where that is its

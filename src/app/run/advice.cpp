@@ -132,7 +132,10 @@ private:
         add("supports",
             "hold body '" + loose.body + "', which is " + ways + ": fix one of its sets, or add a symmetry plane");
         const bool adrift = failed_.result.adrift >= 0;
-        if (loose.in_pair && loose.pressed == 0 && (loose.touching + loose.touched > 0 || adrift)) {
+        constexpr double apart = 1e-6; // facets
+        const bool lay = loose.nearest_gap <= apart * loose.facet,
+                   slid = adrift && lay && closed_again(loose.nearest_pair);
+        if (loose.in_pair && loose.pressed == 0 && !slid && (loose.touching + loose.touched > 0 || adrift)) {
             const std::string how = loose.touching > 0
                                         ? "contact would have to pull at " + std::to_string(loose.touching) + " nodes"
                                     : loose.touched > 0 ? "it touched at " + std::to_string(loose.touched) +
@@ -141,9 +144,7 @@ private:
             add(stage_, "this stage pulls body '" + loose.body + "' off (" + how +
                             "): reverse or reduce the load, or move the body by a displacement instead of a load");
         }
-        constexpr double apart = 1e-6; // facets
-        if (loose.in_pair && loose.touching + loose.touched == 0 && !loose.nearest_pair.empty() &&
-            loose.nearest_gap > apart * loose.facet) {
+        if (loose.in_pair && loose.touching + loose.touched == 0 && !loose.nearest_pair.empty() && !lay) {
             add(in_stage("displacement"),
                 "move the body by a displacement until it touches, instead of loading it: its nearest slave node is " +
                     number(loose.nearest_gap) + " m away");
@@ -156,13 +157,21 @@ private:
                        "above " + number(loose.nearest_gap / loose.facet) +
                            ", so that nodes this close count as touching in the first solve");
         }
-        if (loose.pressed > 0)
+        if (loose.pressed > 0 || slid)
             if (const model::ContactPair* const one = pair(loose.nearest_pair);
                 one != nullptr && one->options().friction == 0)
                 change(key_of(*one) + ".friction", "0.3",
                        "above 0, for example 0.3, if the real surfaces are rough: without friction, contact holds "
                        "the body only along its normals");
         dynamics("if body '" + loose.body + "' is really meant to move freely: its inertia then holds it");
+    }
+
+    /// Whether nodes of a pair that opened during the last attempt closed again: what pulls a body off does not do that.
+    [[nodiscard]] bool closed_again(const std::string& name) const {
+        return std::ranges::any_of(found_.changes, [&](const time::StatusChanges& one) {
+            const auto opened = std::ranges::find_if_not(one.sequence, contact::is_closed);
+            return one.pair == name && std::any_of(opened, one.sequence.end(), contact::is_closed);
+        });
     }
 
     void dynamics(const std::string& why) {
@@ -184,8 +193,10 @@ private:
     }
 
     void diverged() {
-        constexpr std::size_t few = 3; // attempts; where so many cuts changed nothing, more of them do not help
-        if (found_.attempts.size() < few) smaller_steps("Newton starts nearer to the solution");
+        // where so many cuts changed nothing, in this step or before, more of them do not help
+        constexpr std::size_t few = 3; // attempts
+        constexpr double cut = 0.125;
+        if (found_.attempts.size() < few && found_.dt > cut * whole_step()) smaller_steps("Newton starts nearer to the solution");
         add(stage_, "less load than at " + number(found_.last_time) +
                         " s, the last equilibrium, or a displacement instead of the load: a displacement can move a "
                         "body past the point where it gives way under a load");

@@ -161,9 +161,6 @@ void ContactTerm::add_soft(std::vector<linear::SoftContact>& soft) const {
 void ContactTerm::linearise(const Iterate&) {
     const ScopedTimer timer(timings_, Part::contact);
     tangents_.resize(static_cast<std::size_t>(first_.back()));
-    open_laws_.assign(tangents_.size(), Mat3::Zero());
-    bearing_.clear();
-    bearing_owner_.clear();
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         const model::ContactEvaluation& evaluation = evaluations_[p];
         const Index size = evaluation.pair().size();
@@ -178,7 +175,18 @@ void ContactTerm::linearise(const Iterate&) {
                     linearise_law(p, j, own[j]);
                 }
         });
-        for (Index j = 0; j < size; ++j)
+    }
+    list_bearing();
+}
+
+void ContactTerm::list_bearing() {
+    open_laws_.assign(tangents_.size(), Mat3::Zero());
+    bearing_.clear();
+    bearing_owner_.clear();
+    for (std::size_t p = 0; p < evaluations_.size(); ++p) {
+        const model::ContactEvaluation& evaluation = evaluations_[p];
+        const ContactTangent* own = tangents_.data() + first_[p];
+        for (Index j = 0; j < evaluation.pair().size(); ++j)
             if (own[j].reaches) {
                 bearing_.push_back({&own[j], evaluation.point_nodes(j), soften(p, j)});
                 if (evaluation.share() != nullptr) bearing_owner_.push_back(evaluation.share()->owner(j));

@@ -15,32 +15,34 @@ void ContactTerm::linearise_transposed(const Iterate&) {
             for (Index j = begin; j < end; ++j) linearise(p, j, contact::VariationForm::matrices, own[j]);
         });
     }
+    list_bearing();
 }
 
-void ContactTerm::add_transposed(const Weights& of, Weights& by) const {
+void ContactTerm::add_transposed(const Field& of_nodes, const std::vector<Vec3>& of_laws, Field& by_nodes,
+                                 std::vector<Vec3>& by_forces) const {
     Vector dy, of_forces;
     for (std::size_t p = 0; p < evaluations_.size(); ++p)
         for (Index j = 0; j < evaluations_[p].pair().size(); ++j) {
             const Index coupling = first_[p] + j, slave = unknowns_.slave(coupling);
             const ContactTangent& tangent = tangents_[coupling];
-            const Vec3& of_law = of.couplings[coupling];
-            Vec3& of_lambda = by.couplings[coupling];
-            of_lambda -= of.nodes[slave];
+            const Vec3& of_law = of_laws[coupling];
+            Vec3& of_lambda = by_forces[coupling];
+            of_lambda -= of_nodes[slave];
             if (!tangent.reaches) {
                 of_lambda += tangent.D.transpose() * of_law;
                 continue;
             }
             const std::vector<Index>& nodes = evaluations_[p].point_nodes(j);
             of_forces.resize(3 * tangent.carriers);
-            for (Index i = 0; i < tangent.carriers; ++i) of_forces.segment<3>(3 * i) = of.nodes[nodes[i]];
+            for (Index i = 0; i < tangent.carriers; ++i) of_forces.segment<3>(3 * i) = of_nodes[nodes[i]];
             of_lambda += tangent.along_transposed(of_law, of_forces, dy);
-            by.nodes[slave] += dy.head<3>();
+            by_nodes[slave] += dy.head<3>();
             for (std::size_t i = 0; i < nodes.size(); ++i)
-                by.nodes[nodes[i]] += dy.segment<3>(3 + 3 * static_cast<Index>(i));
+                by_nodes[nodes[i]] += dy.segment<3>(3 + 3 * static_cast<Index>(i));
         }
 }
 
-void ContactTerm::add_transposed_of_start(const Weights& of, Weights& by) const {
+void ContactTerm::add_transposed_of_start(const Weights& of, StateWeights& by) const {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
         const model::ContactEvaluation& evaluation = evaluations_[p];
         const model::ContactPair& pair = evaluation.pair();
@@ -56,10 +58,10 @@ void ContactTerm::add_transposed_of_start(const Weights& of, Weights& by) const 
             // d = (s - s_start) - sum_i Phi_i (x_i - x_i,start)
             const contact::ContactPoint& point = evaluation.point(j);
             const Vec3 of_start = in_plane.empty() ? of_drift : Vec3(in_plane[j].transpose() * of_drift);
-            by.nodes[slave] -= of_start;
+            by.u[slave] -= of_start;
             for (std::size_t i = 0; i < point.nodes.size(); ++i) {
                 const Index v = point.nodes[i];
-                by.nodes[pair.node(v)] += point.weights(static_cast<Index>(i)) * (pair.image(v).transpose() * of_start);
+                by.u[pair.node(v)] += point.weights(static_cast<Index>(i)) * (pair.image(v).transpose() * of_start);
             }
         }
     }

@@ -4,6 +4,9 @@
 #include "osculate/solve/direct_solver.hpp"
 #include "osculate/solve/gmres.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace osculate::equilibrium {
 
 namespace {
@@ -35,7 +38,7 @@ solve::SparseMatrix transposed(const solve::SparseMatrix& A) {
 
 void EquilibriumTangent::linearise_transposed() {
     // a matrix is read once for each product; blocks of single slave nodes overlap and take several times as long
-    transposed_ = multigrid_ ? std::nullopt : std::optional(transposed(jacobian()));
+    transposed_ = multigrid_ || condensed_ ? std::nullopt : std::optional(transposed(jacobian()));
     if (transposed_) return;
     update_stiffness();
     for (Term* term : terms_) term->linearise_transposed(at_);
@@ -83,6 +86,37 @@ void EquilibriumTangent::pack_unknowns(const Weights& by, VectorRef b) const {
         b.segment<3>(unknowns_.multiplier(j)) = constraints_.to_local(unknowns_.slave(j), by.couplings[j]);
 }
 
+bool EquilibriumTangent::solve_condensed(const Vector& b, Vector& w, double tolerance) {
+    constexpr int most_corrections = 2;
+    if (!condensed_ || transposed_) return false;
+    linear::CondensedTangent& condensed = condensed_->tangent_for(contact_.bearing());
+    if (!condensed.covers(contact_.bearing())) return false;
+    condensed.set(contact_.bearing());
+    const auto contact = [&](const Field& of_nodes, const std::vector<Vec3>& of_laws, Field& by_nodes,
+                             std::vector<Vec3>& by_forces) {
+        contact_.add_transposed(of_nodes, of_laws, by_nodes, by_forces);
+    };
+    double stiffness = 0; // residuals are in one unit, see below
+    for (const linear::BearingContact& one : contact_.bearing()) stiffness = std::max(stiffness, one.law.c);
+    if (!(stiffness > 0)) stiffness = 1;
+    const Index forces = 3 * unknowns_.couplings();
+    const auto size_of = [&](const Vector& x) {
+        return std::hypot(x.head(x.size() - forces).norm(), stiffness * x.tail(forces).norm());
+    };
+    Vector left = b, more(b.size()), product(b.size());
+    for (int k = 0; k <= most_corrections; ++k) {
+        const double allowed = tolerance * size_of(b) / size_of(left);
+        if (!condensed.solve_transposed(unknowns_, contact_.open_laws(), contact, left, more, allowed, timings_))
+            return false;
+        if (!more.allFinite()) return false;
+        w += more;
+        multiply_transposed(w, product);
+        left = b - product;
+        if (size_of(left) <= 2 * tolerance * size_of(b)) return true; // its own measure, and round-off
+    }
+    return false;
+}
+
 bool EquilibriumTangent::solve_transposed(const Weights& weights, Vector& w, Weights& of, double tolerance) {
     constexpr int worth_keeping = 20; // iterations beyond which factors are worth making anew
     constexpr int most_restarts = 5;
@@ -90,7 +124,9 @@ bool EquilibriumTangent::solve_transposed(const Weights& weights, Vector& w, Wei
     Vector b(size);
     pack_unknowns(weights, b);
     w.setZero(size);
-    bool done = b.isZero(0), fresh = false;
+    bool done = b.isZero(0) || solve_condensed(b, w, tolerance), fresh = false;
+    if (!done) w.setZero();
+    if (!done && condensed_ && !transposed_) transposed_ = transposed(jacobian());
     while (!done) {
         if (worn_) {
             if (fresh || factorise() != solve::FactorStatus::ok) break;

@@ -250,22 +250,23 @@ void CondensedTangent::apply_contact(const Vector& lambda, const Vector& u, doub
     collect(by, z);
 }
 
+bool CondensedTangent::prepare(Timings& timings) {
+    const ScopedTimer timer(timings, Part::factor);
+    if (!factorised_) factorise_bodies();
+    if (!usable_) return false;
+    if (!schur_) {
+        schur_ = schur_complement();
+        ++factorisations_;
+    }
+    if (!schur_->factorised) factorise(*schur_);
+    if (schur_->usable) return true;
+    schur_ = nullptr;
+    return false;
+}
+
 bool CondensedTangent::solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x,
                              double allowed, Timings& timings) {
-    {
-        const ScopedTimer timer(timings, Part::factor);
-        if (!factorised_) factorise_bodies();
-        if (!usable_) return false;
-        if (!schur_) {
-            schur_ = schur_complement();
-            ++factorisations_;
-        }
-        if (!schur_->factorised) factorise(*schur_);
-        if (!schur_->usable) {
-            schur_ = nullptr;
-            return false;
-        }
-    }
+    if (!prepare(timings)) return false;
     const ScopedTimer timer(timings, Part::solve);
     const Index equations = constraints_.equations(), n = first_.back();
     // equilibrium, and the forces of slave nodes that bear on nothing

@@ -35,12 +35,19 @@ bool DenseLu::factorise(Matrix A, bool ill_conditioned) {
 }
 
 void DenseLu::solve(double* b) const {
+    solve('N', b);
+}
+
+void DenseLu::solve_transposed(double* b) const {
+    solve('T', b);
+}
+
+void DenseLu::solve(char form, double* b) const {
     const auto n = static_cast<int>(LU_.rows());
     if (n == 0) return;
-    const char plain = 'N';
     const int one = 1;
     int info = 0;
-    dgetrs_(&plain, &n, &one, LU_.data(), &n, pivot_.data(), b, &n, &info);
+    dgetrs_(&form, &n, &one, LU_.data(), &n, pivot_.data(), b, &n, &info);
 }
 
 } // namespace osculate::solve

@@ -10,7 +10,7 @@ namespace osculate::time {
 
 namespace {
 /// Of linear systems. Derivatives of forces of supports are small differences of large sums: those of what is held and of what moves.
-constexpr double linear_tolerance = 1e-9, linear_tolerance_of_reactions = 1e-12;
+constexpr double linear_tolerance = 1e-11, linear_tolerance_of_reactions = 1e-12;
 
 /// Components of a field at held directions, in the order of nodes and directions.
 Vector held_components(const linear::Constraints& constraints, const Field& values) {
@@ -47,24 +47,26 @@ struct AdjointRun::Step {
     equilibrium::Statuses statuses;
     std::vector<model::HeldFacets> facets; ///< (pairs)
     double time = 0, dt = 0, reference_force = 1;
+    bool impact = false;
     std::vector<Change> by; ///< (numbers)
 };
 
 /// A stage, with means to solve with its transposed tangent.
 struct AdjointRun::StageNow {
     StageNow(RunContext& context, const Stage& stage, const model::State& state)
-        : constraints(constraints_of(context.model, stage)),
-          equilibrium(context.model, model::pairs_of(state.contact), constraints, nullptr, choice(stage),
-                      context.timings, context.options.threads) {
+        : constraints(constraints_of(context.model, stage)), dynamics(stage.dynamics),
+          equilibrium(context.model, model::pairs_of(state.contact), constraints, dynamics ? &*dynamics : nullptr,
+                      choice(stage), context.timings, context.options.threads) {
         for (model::ContactEvaluation& evaluation : equilibrium.contact()) evaluation.pass_over_far_nodes(true);
     }
     static equilibrium::TangentChoice choice(const Stage& stage) {
         equilibrium::TangentChoice choice = stage.tangent;
-        choice.condensed = choice.reduced = choice.grows = false;
+        choice.reduced = choice.grows = false;
         choice.preconditioned = choice.products = true;
         return choice;
     }
     linear::Constraints constraints;
+    std::optional<equilibrium::Dynamics> dynamics; ///< of the step; none in statics
     equilibrium::Equilibrium equilibrium;
 };
 
@@ -103,6 +105,7 @@ void AdjointRun::follow(const BesideStep& step, const LinearSolve&) {
     mine.time = step.time;
     mine.dt = step.dt;
     mine.reference_force = step.reference_force;
+    mine.impact = step.impact;
     progress_.state = step.end;
     progress_.state.time = step.time;
     for (const Number& one : numbers_) {
@@ -133,55 +136,72 @@ void AdjointRun::follow(const BesideStep& step, const LinearSolve&) {
 
 std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQuantity>& quantities) {
     std::vector<std::vector<double>> gradients(quantities.size(), std::vector<double>(numbers_.size(), 0.0));
-    std::vector<equilibrium::Weights> by;
-    for (const FinalQuantity& quantity : quantities) by.push_back(quantity.weights);
     const auto add = [&](std::size_t q, double factor, const Vector& weights, const Step& step, auto of_change) {
         for (std::size_t p = 0; p < numbers_.size(); ++p)
             gradients[q][p] += factor * weights.dot(step.by[p].*of_change);
     };
     std::optional<StageNow> now;
     std::size_t stage = stages_.size();
+    const auto nothing = [&] {
+        const auto nodes = static_cast<std::size_t>(context_->model.nodes());
+        equilibrium::StateWeights none{Field(nodes), {}, {}, std::vector<Vec3>(first_coupling_.back(), Vec3::Zero())};
+        if (now->dynamics) none.v = none.a = none.u;
+        return none;
+    };
+    std::vector<equilibrium::StateWeights> end; // (quantities) of the state at the end of a step
     for (std::size_t n = steps_.size(); n-- > 0;) {
         const Step& step = steps_[n];
         if (stage != step.stage) now.emplace(*context_, stages_[step.stage], step.start);
         stage = step.stage;
         equilibrium::Equilibrium& equilibrium = now->equilibrium;
-        if (!open(step, equilibrium, now->constraints)) return {};
-        if (n + 1 == steps_.size())
-            for (std::size_t q = 0; q < quantities.size(); ++q) {
-                add(q, 1, held_components(now->constraints, by[q].nodes), step, &Step::Change::prescribed);
-                if (quantities[q].reactions.empty()) continue;
-                const equilibrium::Weights reactions{held_part(now->constraints, quantities[q].reactions),
-                                                     std::vector<Vec3>(by[q].couplings.size(), Vec3::Zero())};
-                add(q, 1, held_components(now->constraints, reactions.nodes), step, &Step::Change::reaction);
-                equilibrium.add_transposed(reactions, by[q]);
-            }
+        if (!open(step, *now)) return {};
+        const bool last = n + 1 == steps_.size();
         equilibrium.linearise_transposed();
         for (std::size_t q = 0; q < quantities.size(); ++q) {
+            const bool reacts = last && !quantities[q].reactions.empty();
+            if (last) {
+                end.push_back(nothing());
+                end[q].u = quantities[q].weights.nodes;
+                end[q].couplings = quantities[q].weights.couplings;
+                add(q, 1, held_components(now->constraints, end[q].u), step, &Step::Change::prescribed);
+            }
+            equilibrium::Weights by{end[q].u, end[q].couplings}, of, reactions;
+            if (now->dynamics) equilibrium.bodies().add_weights_of_motion(end[q], by.nodes);
+            if (reacts) {
+                reactions = {held_part(now->constraints, quantities[q].reactions),
+                             std::vector<Vec3>(by.couplings.size(), Vec3::Zero())};
+                add(q, 1, held_components(now->constraints, reactions.nodes), step, &Step::Change::reaction);
+                equilibrium.add_transposed(reactions, by);
+            }
             Vector w;
-            equilibrium::Weights of;
             const double tolerance = quantities[q].reactions.empty() ? linear_tolerance : linear_tolerance_of_reactions;
-            if (!equilibrium.solve_transposed(by[q], w, of, tolerance)) return {};
+            if (!equilibrium.solve_transposed(by, w, of, tolerance)) return {};
             add(q, -1, w, step, &Step::Change::residual);
             // the next one backwards; what is held there is in the differences
-            equilibrium::Weights start{Field(by[q].nodes.size()),
-                                       std::vector<Vec3>(by[q].couplings.size(), Vec3::Zero())};
-            equilibrium.add_transposed_of_start(of, start);
-            for (Vec3& weight : start.nodes.values()) weight = -weight;
-            for (Vec3& weight : start.couplings) weight = -weight;
-            by[q] = std::move(start);
+            if (reacts) of.nodes.add(-1, reactions.nodes);
+            equilibrium::StateWeights start = nothing();
+            for (Vec3& weight : of.nodes.values()) weight = -weight;
+            for (Vec3& weight : of.couplings) weight = -weight;
+            equilibrium.add_transposed_of_start(of, end[q], start);
+            end[q] = std::move(start);
         }
         equilibrium.commit();
     }
     return gradients;
 }
 
-bool AdjointRun::open(const Step& step, equilibrium::Equilibrium& equilibrium, const linear::Constraints& constraints) {
+bool AdjointRun::open(const Step& step, StageNow& now) {
     Progress& at = begins_[step.stage];
     at.state.time = step.start.time;
+    const Stage& stage = stages_[step.stage];
+    equilibrium::Equilibrium& equilibrium = now.equilibrium;
+    if (now.dynamics)
+        now.dynamics->integrator = step.impact ? equilibrium::backward_euler() : stage.dynamics->integrator;
     equilibrium.set_reference_force(step.reference_force);
     equilibrium.begin_attempt(
-        step.start, mean_load(context_->model, stages_[step.stage], constraints, nullptr, at, step.time), step.dt);
+        step.start,
+        mean_load(context_->model, stage, now.constraints, now.dynamics ? &*now.dynamics : nullptr, at, step.time),
+        step.dt);
     equilibrium.set_statuses(step.statuses, equilibrium::StatusRule::frozen, false);
     for (std::size_t p = 0; p < step.facets.size(); ++p) equilibrium.contact()[p].take_facets(step.facets[p]);
     Vector F(step.z.size());

@@ -27,43 +27,49 @@ protected:
         ADD_FAILURE() << "no row " << name << " in " << table;
         return 0;
     }
-    /// Gradients of two forces, which hold one another in balance, and of a mean displacement beside derivatives that go forward: products
-    /// with a tangent that is not transposed.
-    void expect_as_forward(const std::string& scene, Changes changes, const std::string& pair, const std::string& held,
-                           const std::string& moved,
-                           const std::vector<std::pair<std::string, std::string>>& numbers) const {
+    using Numbers = std::vector<std::pair<std::string, std::string>>; ///< names and keys
+    /// A quantity, and where the run says what it is.
+    struct Quantity {
+        std::string name, of, table, column;
+        double sign = 1;
+    };
+    /// Gradients beside derivatives that go forward: products with a tangent that is not transposed.
+    void expect_as_forward(const std::string& scene, Changes changes, const std::vector<Quantity>& quantities,
+                           const Numbers& numbers) const {
         constexpr double allowed = 1e-6;
-        std::string by, forward;
-        for (const auto& [name, key] : numbers) {
-            by += (by.empty() ? "" : ", ") + name + ": " + key;
-            forward += (forward.empty() ? "" : ", ") + name + ": " + key;
-        }
-        changes.push_back("output.derivatives={" + forward + "}");
-        changes.push_back("output.gradients={force: {contact_force: {pair: " + pair + ", direction: [0, 1, 0]}, by: {" +
-                          by + "}}, reaction: {reaction: {set: " + held + ", direction: [0, 1, 0]}, by: {" + by +
-                          "}}, displacement: {displacement: {set: " + moved + ", direction: [0, 0, 1]}, by: {" + by +
-                          "}}}");
-        changes.push_back("output.probes={moved: {nodes: {set: " + moved +
-                          ", fields: [displacement], reduce: [mean]}}}");
+        std::string by, all;
+        for (const auto& [name, key] : numbers) by += (by.empty() ? "" : ", ") + name + ": " + key;
+        for (const Quantity& q : quantities)
+            all += (all.empty() ? "" : ", ") + q.name + ": {" + q.of + ", by: {" + by + "}}";
+        changes.push_back("output.derivatives={" + by + "}");
+        changes.push_back("output.gradients={" + all + "}");
         changes.emplace_back("output.plots={}");
         const Outcome outcome = run(scene, changes, "run");
         ASSERT_EQ(outcome.code, 0) << outcome.err;
-        for (const auto& [name, key] : numbers) {
-            const fs::path out = folder / "run" / "derivatives" / name;
-            const Csv history(out / "history.csv"), probe(out / "probes/moved.csv");
-            const auto last = [](const Csv& table, const std::string& column) {
-                return table.number(table.rows.size() - 1, column);
-            };
-            const auto expect = [&](const std::string& gradient, double value) {
-                EXPECT_NEAR(derivative(folder / "run/gradients" / (gradient + ".csv"), name), value,
+        for (const auto& [name, key] : numbers)
+            for (const Quantity& q : quantities) {
+                const Csv rows(folder / "run" / "derivatives" / name / q.table);
+                const double value = q.sign * rows.number(rows.rows.size() - 1, q.column);
+                EXPECT_NE(value, 0);
+                EXPECT_NEAR(derivative(folder / "run/gradients" / (q.name + ".csv"), name), value,
                             allowed * std::abs(value))
-                    << gradient << " by " << key;
-            };
-            expect("force", last(history, "pair." + pair + ".force_y"));
-            expect("reaction", -last(history, "pair." + pair + ".force_y"));
-            expect("displacement", last(probe, "mean_displacement_z"));
-        }
+                    << q.name << " by " << key;
+            }
         fs::remove_all(folder / "run");
+    }
+    /// Two forces, which hold one another in balance, and a mean displacement.
+    void expect_as_forward(const std::string& scene, Changes changes, const std::string& pair, const std::string& held,
+                           const std::string& moved, const Numbers& numbers) const {
+        changes.push_back("output.probes={moved: {nodes: {set: " + moved +
+                          ", fields: [displacement], reduce: [mean]}}}");
+        const std::string force = "pair." + pair + ".force_y";
+        expect_as_forward(
+            scene, changes,
+            {{"force", "contact_force: {pair: " + pair + ", direction: [0, 1, 0]}", "history.csv", force},
+             {"reaction", "reaction: {set: " + held + ", direction: [0, 1, 0]}", "history.csv", force, -1},
+             {"displacement", "displacement: {set: " + moved + ", direction: [0, 0, 1]}", "probes/moved.csv",
+              "mean_displacement_z"}},
+            numbers);
     }
 
     const std::string blocks = scene_file("tests/scenes/column.yaml"),
@@ -71,11 +77,10 @@ protected:
     const Changes coarse{"bodies.tube.mesh.half_tube.divisions=[7, 6, 1]",
                          "bodies.contactor.mesh.contactor.divisions=[6, 8, 1]", "stages.slide.steps=6",
                          "solver.tolerance=1e-12"};
-    const std::vector<std::pair<std::string, std::string>> of_half_tube{
-        {"mu", "contact.sliding.friction"},
-        {"pressure", "stages.press.pressure.top"},
-        {"path", "stages.slide.displacement.rear.y"},
-        {"thickness", "bodies.tube.mesh.half_tube.thickness"}};
+    const Numbers of_half_tube{{"mu", "contact.sliding.friction"},
+                               {"pressure", "stages.press.pressure.top"},
+                               {"path", "stages.slide.displacement.rear.y"},
+                               {"thickness", "bodies.tube.mesh.half_tube.thickness"}};
 };
 
 /// A column of two blocks that stresses alone shorten: u(top) = -p (l_lower/E_lower + l_upper/E_upper), and every force is p.
@@ -116,6 +121,55 @@ TEST_F(GradientsOfRuns, FollowElasticStick) {
     expect_as_forward(half_tube, changes, "sliding", "rear", "face", of_half_tube);
 }
 
+/// A hub that is shrunk on a shaft, and the shaft is pressed out: stages, pairs out of force, temperatures.
+TEST_F(GradientsOfRuns, FollowTemperatures) {
+    expect_as_forward(
+        scene_file("configs/tutorials/press_fit.yaml"),
+        {"bodies.shaft.mesh.tube.divisions=[24, 2, 3]", "bodies.hub.mesh.tube.divisions=[28, 2, 5]",
+         "stages.cool.temperature.hub=10 K", "solver.tolerance=1e-12", "output.history=[pairs, reactions]",
+         "output.probes={moved: {nodes: {set: bore, fields: [displacement], reduce: [mean]}}}"},
+        {{"push", "contact_force: {pair: fit, direction: [0, 0, 1]}", "history.csv", "pair.fit.force_z"},
+         {"held", "reaction: {set: hub_end, direction: [0, 0, 1]}", "history.csv", "set.hub_end.reaction_z"},
+         {"wide", "displacement: {set: bore, direction: [1, 0, 0]}", "probes/moved.csv", "mean_displacement_x"}},
+        {{"E", "bodies.hub.material.linear_elastic.E"},
+         {"mu", "stages.push.friction.fit"},
+         {"expansion", "bodies.hub.material.linear_elastic.expansion"},
+         {"warm", "stages.cool.temperature.hub"},
+         {"thick", "bodies.hub.mesh.tube.thickness"},
+         {"way", "{key: stages.push.displacement.shaft_end.z, change: 3e-4}"}});
+}
+
+/// A block that falls, touches and bounces, by numbers of what falls, of how it begins, and of what drives it; its plate with dampers.
+TEST_F(GradientsOfRuns, FollowABounce) {
+    const Quantity up{"up", "displacement: {set: underside, direction: [0, 0, 1]}", "probes/moved.csv",
+                      "mean_displacement_z"},
+        along{"along", "displacement: {set: underside, direction: [1, 0, 0]}", "probes/moved.csv",
+              "mean_displacement_x"},
+        held{"held", "reaction: {set: rigid, direction: [0, 0, 1]}", "history.csv", "set.rigid.reaction_z"};
+    const auto falling = [](const std::string& duration, double rho_inf) {
+        return Changes{"stages.fall.control={step_size: fixed, allowed_interpenetration: 1}",
+                       "bodies.block.initial_velocity=[0.2 m/s, 0 m/s, -2 m/s]",
+                       "stages.fall.duration=" + duration,
+                       "stages.fall.steps=100",
+                       "solver.tolerance=1e-12",
+                       "contact.floor.friction=0.2",
+                       "stages.fall.analysis.dynamic={integrator: {generalised_alpha: {rho_inf: " +
+                           std::to_string(rho_inf) + "}}, mass_damping: 0.5 1/s, stiffness_damping: 1e-4 s}",
+                       "output.history=[pairs, reactions]",
+                       "output.probes={moved: {nodes: {set: underside, fields: [displacement], reduce: [mean]}}}"};
+    };
+    const Numbers numbers{{"E", "bodies.block.material.linear_elastic.E"},
+                          {"density", "bodies.block.material.linear_elastic.density"},
+                          {"gravity", "gravity.2"},
+                          {"start", "bodies.block.initial_velocity.2"},
+                          {"height", "{key: bodies.block.mesh.block.origin.2, change: 2e-6}"},
+                          {"mu", "contact.floor.friction"},
+                          {"damping", "stages.fall.analysis.dynamic.mass_damping"}};
+    const std::string scene = scene_file("configs/validation/falling_block.yaml");
+    expect_as_forward(scene, falling("0.25 s", 0.6), {up, along}, numbers);
+    expect_as_forward(scene, falling("0.1825 s", 1), {held}, {numbers[0], numbers[1], numbers[3]}); // it touches
+}
+
 TEST_F(GradientsOfRuns, LeaveTheRunAsItIs) {
     Changes asked = coarse;
     asked.emplace_back("output.gradients={f: {contact_force: {pair: sliding, direction: [0, 1, 0]}, by: {mu: "
@@ -144,9 +198,13 @@ TEST_F(GradientsOfRuns, SayWhatTheyCannotHave) {
     EXPECT_THAT(said(blocks, {gradient(top, "bodies.uper.material.linear_elastic.E")}),
                 HasSubstr("no 'bodies.uper' in the resolved scene"));
     EXPECT_THAT(said(blocks, {gradient(top, "stages.press.steps")}), HasSubstr("of what is simulated"));
-    EXPECT_THAT(said(scene_file("configs/validation/falling_block.yaml"),
-                     {gradient("displacement: {set: underside, direction: [0, 0, 1]}", "gravity.2")}),
-                HasSubstr("dynamic"));
+    const std::string falling = scene_file("configs/validation/falling_block.yaml"),
+                      fall = gradient("displacement: {set: underside, direction: [0, 0, 1]}", "gravity.2");
+    EXPECT_THAT(
+        said(falling, {fall, "bodies.block.material={neo_hookean: {E: 10 MPa, nu: 0.3, density: 1000 kg/m^3}}"}),
+        HasSubstr("found a dynamic stage with finite strains or temperatures"));
+    EXPECT_THAT(said(falling, {fall, "contact.floor.pressure_overclosure={linear: {stiffness: 1e9 N/m^3}}"}),
+                HasSubstr("pair 'floor', whose forces in dynamics are means over a step"));
 }
 
 } // namespace

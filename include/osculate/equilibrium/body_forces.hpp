@@ -3,6 +3,7 @@
 /// and contact.
 
 #include "osculate/equilibrium/dynamics.hpp"
+#include "osculate/equilibrium/weights.hpp"
 #include "osculate/fe/element_block.hpp"
 #include "osculate/linear/dependence.hpp"
 #include "osculate/mesh/surface_faces.hpp"
@@ -83,6 +84,12 @@ public:
     /// Computes velocities, accelerations and element histories at the end of the step from the displacements there; no
     /// velocities or accelerations in statics.
     void complete(model::State& state) const;
+    /// Adds to weights of the displacements at the end of the step those of velocities and accelerations there, which are affine in
+    /// them.
+    void add_weights_of_motion(const StateWeights& end, Field& by_u) const;
+    /// Adds the weights that the state at the start has by weights of forces f (nodes), and by those of velocities and accelerations
+    /// at the end, all at fixed displacements there. @pre dynamics of linear bodies without follower pressures
+    void add_transposed_of_start(const Field& of, const StateWeights& end, StateWeights& start) const;
     /// Inertia part of the tangent: d/du of the force in one direction, summed over the row of a node, N/m.
     [[nodiscard]] double inertia(Index node) const;
     /// Work over the step that ended in `state`.

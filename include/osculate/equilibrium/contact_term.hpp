@@ -99,10 +99,14 @@ public:
     void linearise(const Iterate& at) override;
     void add_product(const Direction& d, Field& f, VectorRef y) override;
     void linearise_transposed(const Iterate& at) override;
-    void add_transposed(const Weights& of, Weights& by) const override;
+    void add_transposed(const Weights& of, Weights& by) const override {
+        add_transposed(of.nodes, of.couplings, by.nodes, by.couplings);
+    }
+    void add_transposed(const Field& of_nodes, const std::vector<Vec3>& of_laws, Field& by_nodes,
+                        std::vector<Vec3>& by_forces) const;
     /// The same by displacements and contact forces at the start of the step, of which slips are measured and elastic stick begins.
-    /// Only the laws depend on them. @pre statics
-    void add_transposed_of_start(const Weights& of, Weights& by) const;
+    /// Only the laws depend on them.
+    void add_transposed_of_start(const Weights& of, StateWeights& by) const;
     [[nodiscard]] bool add_pattern(std::vector<linear::Coupling>& couplings) const override;
     void add_derivatives(linear::SystemMatrix& matrix) override;
     void add_soft(std::vector<linear::SoftContact>& soft) const override;
@@ -116,6 +120,8 @@ private:
     /// Whether slave j of pair p has a contact partner and is closed or carries a contact force.
     [[nodiscard]] bool reaches(std::size_t p, Index j) const;
     void prepare_variations(std::size_t p, bool all);
+    /// Fills in bearing_ and open_laws_ from tangents_.
+    void list_bearing();
     void linearise(std::size_t p, Index j, contact::VariationForm form, ContactTangent& tangent) const;
     /// Of a slave node that does not reach its master, or whose derivatives another process has.
     void linearise_law(std::size_t p, Index j, ContactTangent& tangent) const;

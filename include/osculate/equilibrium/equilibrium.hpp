@@ -87,7 +87,12 @@ public:
     [[nodiscard]] bool solve_transposed(const Weights& b, Vector& w, Weights& of, double tolerance) {
         return tangent_.solve_transposed(b, w, of, tolerance);
     }
-    void add_transposed_of_start(const Weights& of, Weights& by) const { contact_.add_transposed_of_start(of, by); }
+    /// Adds the weights that the state at the step's start has by weights of residuals, and by those of velocities and accelerations
+    /// at its end, all at fixed unknowns.
+    void add_transposed_of_start(const Weights& of, const StateWeights& end, StateWeights& start) const {
+        contact_.add_transposed_of_start(of, start);
+        if (bodies().dynamic()) bodies().add_transposed_of_start(of.nodes, end, start);
+    }
 
     /// z from displacements and contact forces, and the state (without time) from z.
     [[nodiscard]] Vector unknowns(const Field& u, const std::vector<model::ContactHistory>& contact) const;

@@ -81,6 +81,8 @@ private:
     /// Weights as a vector of unknowns.
     void pack_unknowns(const Weights& by, VectorRef b) const;
     void multiply_transposed(const ConstVectorRef& w, VectorRef b);
+    /// solve_transposed() on the nodes of the contact pairs. False where that is not possible.
+    [[nodiscard]] bool solve_condensed(const Vector& b, Vector& w, double tolerance);
     /// solve_transposed() by factors of the whole tangent.
     [[nodiscard]] bool solve_transposed_directly(const Vector& b, Vector& w);
     /// Stiffness of the bodies over nodes that have equations.

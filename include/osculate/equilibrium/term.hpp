@@ -2,6 +2,7 @@
 /// One term of the residual: its forces on the left of the equilibrium, and its own rows.
 
 #include "osculate/equilibrium/body_forces.hpp"
+#include "osculate/equilibrium/weights.hpp"
 #include "osculate/linear/contact_preconditioner.hpp"
 #include "osculate/linear/system_matrix.hpp"
 #include "osculate/linear/unknowns.hpp"
@@ -32,12 +33,6 @@ struct Iterate {
 struct Direction {
     const Field& u; ///< (nodes) global components
     const ConstVectorRef& z;
-};
-
-/// Weights of forces at nodes and of rows of contact laws in a sum, or of displacements and contact forces. Global components.
-struct Weights {
-    Field nodes;
-    std::vector<Vec3> couplings;
 };
 
 /// The residual is a list of terms. Rows of equilibrium are sums of nodal forces over all terms; a term with its own

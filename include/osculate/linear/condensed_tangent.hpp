@@ -64,6 +64,14 @@ public:
     /// @param D  (couplings) derivatives by lambda for the couplings without contact
     [[nodiscard]] bool solve(const Unknowns& rows, std::span<const Mat3> D, const ConstVectorRef& b, VectorRef x,
                              double allowed, Timings& timings);
+    /// Adds the products of the transposed derivatives of contact with weights of forces at nodes and of laws: weights of
+    /// displacements and of contact forces. Global numbers and components.
+    using TransposedContact = std::function<void(const Field& of_nodes, const std::vector<Vec3>& of_laws,
+                                                 Field& by_nodes, std::vector<Vec3>& by_forces)>;
+    /// Computes w, of rows, with |b - J^T w| <= tolerance |b|, b of unknowns; unknowns of forces count by the stiffness of contact.
+    /// False as solve().
+    [[nodiscard]] bool solve_transposed(const Unknowns& rows, std::span<const Mat3> D, const TransposedContact& contact,
+                                        const ConstVectorRef& b, VectorRef w, double tolerance, Timings& timings);
 
 private:
     using Nodal = std::vector<Vec3>; ///< one per contact node, global components
@@ -76,6 +84,8 @@ private:
         bool factorised = false, usable = false;
     };
     void factorise_bodies();
+    /// All that is factorised. False if it is singular.
+    [[nodiscard]] bool prepare(Timings& timings);
     /// Calls work(body) for every body, in parallel.
     void each_body(const std::function<void(std::size_t)>& work) const;
     [[nodiscard]] std::shared_ptr<SchurComplement> schur_complement() const;
@@ -90,6 +100,10 @@ private:
     /// The forces of contacts and then springs in P, for displacements u without these forces and right sides r of the
     /// contact laws.
     [[nodiscard]] Vector contact_forces(const Vector& u, const double* r) const;
+    /// The same in P^T: weights of laws, T^T w = r + C u.
+    [[nodiscard]] Vector law_weights(const Vector& u, const double* r) const;
+    /// reduced -= C^T B^T w
+    void subtract_laws(const Vector& weights, double* reduced) const;
     /// P^-1 y on the contact nodes: forces, displacements, and f with K u = f.
     void precondition(const double* y, Vector& lambda, Vector& u, Vector& f) const;
     /// C^T lambda + E lambda + G u, and A u + D lambda

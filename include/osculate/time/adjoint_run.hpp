@@ -17,8 +17,9 @@ struct FinalQuantity {
 ///     J_n^T w_n = dq/dz_n - (dF_{n+1}/dz_n)^T w_{n+1}
 ///     dq/dp = - sum_n w_n . dF_n/dp
 /// so that one solution a step serves all numbers p. dF_n/dp is a difference of residuals of two changed models, with p - dp and
-/// p + dp, at the unknowns of the run; its error is of order dp^2. Steps are static; bodies have a symmetric stiffness and no
-/// memory. How patches are fitted anew is taken as given.
+/// p + dp, at the unknowns of the run; its error is of order dp^2. In dynamics a state has velocities and accelerations, too, which are
+/// affine in the displacements; bodies are linear there, and all stages dynamic. Bodies have a symmetric stiffness and no memory but
+/// that of temperatures. How patches are fitted anew is taken as given.
 class AdjointRun final : public BesideRun {
 public:
     /// @param model  of the run; it and all else must outlive this object
@@ -45,8 +46,7 @@ private:
     struct StageNow;
 
     /// Evaluates the residual of a step. False if it has none.
-    [[nodiscard]] bool open(const Step& step, equilibrium::Equilibrium& equilibrium,
-                            const linear::Constraints& constraints);
+    [[nodiscard]] bool open(const Step& step, StageNow& now);
 
     std::vector<Stage> stages_;
     std::unique_ptr<RunContext> context_;

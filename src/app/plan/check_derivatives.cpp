@@ -30,18 +30,32 @@ void check_number(const std::string& resolved, const std::string& key, const std
         faults.push_back(fault(where, "a number other than 0: it is changed by a part of it", "'" + key + "', 0"));
 }
 
+bool is_plastic(const scene::Material& material) {
+    return std::holds_alternative<scene::ElasticPlastic>(material);
+}
+bool is_plastic(const scene::Body& body) {
+    return is_plastic(body.material) ||
+           std::ranges::any_of(body.sections, [](const auto& one) { return is_plastic(one.second.material); });
+}
+
 /// Why the adjoint of a run with this plan is not known; empty: it is.
-std::string bars_gradients(const Plan& plan) {
+std::string bars_gradients(const scene::Scene& scene, const Plan& plan) {
     const model::Model& model = plan.model;
-    for (const time::Stage& stage : plan.stages) {
-        if (stage.dynamics) return "stage '" + stage.name + "', which is dynamic";
+    const auto dynamic = [](const time::Stage& stage) { return stage.dynamics.has_value(); };
+    for (const time::Stage& stage : plan.stages)
         if (!stage.follower_pressures.empty()) return "stage '" + stage.name + "', whose pressure follows its surface";
-    }
     if (model.has_dependent_nodes())
         return "rigid bodies, couplings, ties, sectors, equations or faces with midside nodes in contact";
+    for (const auto& [name, body] : scene.bodies)
+        if (is_plastic(body)) return "body '" + name + "', whose material has a past";
+    if (std::ranges::none_of(plan.stages, dynamic)) return {};
+    if (!std::ranges::all_of(plan.stages, dynamic)) return "static and dynamic stages";
     for (const model::Body& body : model.bodies)
-        if (std::ranges::any_of(body.kernels, [](const auto& kernel) { return kernel->history_size() > 0; }))
-            return "body '" + body.name + "', whose material has a past or temperatures";
+        if (!std::ranges::all_of(body.kernels, [](const auto& kernel) { return kernel->linear(); }))
+            return "a dynamic stage with finite strains or temperatures, in body '" + body.name + "'";
+    for (const auto& pair : model.pairs)
+        if (pair->options().overclosure || pair->options().tangential_damping > 0)
+            return "pair '" + pair->name() + "', whose forces in dynamics are means over a step";
     return {};
 }
 } // namespace
@@ -51,8 +65,11 @@ void check_gradients(const scene::Scene& scene, const Plan& plan, bool shared, s
     const char* all = "output.gradients";
     if (shared) faults.push_back(fault(all, "a run by one process", "--distributed"));
     if (scene.general) faults.push_back(fault(all, "contact by named pairs", "contact.general, whose pairs change"));
-    if (const std::string what = bars_gradients(plan); !what.empty())
-        faults.push_back(fault(all, "static stages of elastic bodies, each free of the others but for contact", what));
+    if (const std::string what = bars_gradients(scene, plan); !what.empty())
+        faults.push_back(fault(all,
+                               "stages of elastic bodies, each free of the others but for contact: static ones, or "
+                               "dynamic ones at small strain",
+                               what));
     const std::string resolved = scene::write_scene(scene);
     for (const auto& [name, gradient] : scene.output.gradients) {
         const std::string where = "output.gradients." + name;

@@ -151,7 +151,9 @@ Estimate estimate(const scene::Scene& scene, const Plan& plan) {
     result.bytes *= 1 + derivatives;
     // the adjoint once more than a run, a fifth of one for each number, two models of each, and all steps until the end
     for (const auto& [name, gradient] : scene.output.gradients) {
-        constexpr double vectors = 5; // of a step: its unknowns, and the state at its start
+        // of a step: its unknowns, and the state at its start, with velocities and accelerations
+        const double vectors =
+            std::ranges::any_of(plan.stages, [](const auto& one) { return one.dynamics.has_value(); }) ? 7 : 5;
         const auto numbers = static_cast<double>(gradient.by.size());
         result.seconds *= 2 + 0.2 * numbers;
         result.bytes *= 1 + numbers;

@@ -196,7 +196,8 @@ private:
         // where so many cuts changed nothing, in this step or before, more of them do not help
         constexpr std::size_t few = 3; // attempts
         constexpr double cut = 0.125;
-        if (found_.attempts.size() < few && found_.dt > cut * whole_step()) smaller_steps("Newton starts nearer to the solution");
+        if (found_.attempts.size() < few && found_.dt > cut * whole_step())
+            smaller_steps("Newton starts nearer to the solution");
         add(stage_, "less load than at " + number(found_.last_time) +
                         " s, the last equilibrium, or a displacement instead of the load: a displacement can move a "
                         "body past the point where it gives way under a load");

@@ -79,6 +79,20 @@ TEST_F(CheckWarnings, OneFullHexahedronThroughAPlateThatBendsIsNamed) {
     EXPECT_THAT(checked("configs/extreme/stack_of_20.yaml"), Not(HasSubstr(silent))) << "plates between plates";
 }
 
+TEST_F(CheckWarnings, LoadsOnWhatIsHeldAreNamed) {
+    const std::string bolt = "configs/tutorials/bolted_joint.yaml", moves_nothing = "and moves nothing";
+    EXPECT_THAT(
+        checked(bolt, {"stages.load.force={bolt: [0 N, 0 N, -1 kN]}"}),
+        HasSubstr("warning: stages.load.force.bolt.z: it acts along a direction that is held, or driven in this "
+                  "or an earlier stage"));
+    EXPECT_THAT(checked(bolt), Not(HasSubstr(moves_nothing))) << "free when it is tightened, without force when driven";
+    const auto with = [&](const std::string& set) {
+        return checked(press, {"stages.press.nodal_force={" + set + ": [1 N, 0 N, 0 N]}"});
+    };
+    EXPECT_THAT(with("bed"), HasSubstr("warning: stages.press.nodal_force.bed.x: it acts along"));
+    EXPECT_THAT(with("under"), Not(HasSubstr(moves_nothing)));
+}
+
 TEST_F(CheckWarnings, FacetsThatTwoPairsKeepApartAreNamed) {
     const std::string twice = "contact.joint already pairs these facets", ways = "and its master is the slave there";
     EXPECT_THAT(checked(press, {"contact.again={slave: under, master: {set: ground}}"}),

@@ -91,7 +91,7 @@ Check examine(const LoadedScene& loaded, int threads) {
     check.dofs = degrees_of_freedom(plan);
     check.cost = estimate(loaded.scene, plan);
     check.warnings = unit_warnings(loaded.scene, plan);
-    append(check.warnings, support_warnings(loaded.scene));
+    append(check.warnings, support_warnings(loaded.scene, plan));
     append(check.warnings, thin_layers(loaded.scene, plan));
     append(check.warnings, twice_paired(loaded.scene, plan));
     Timings unused;

@@ -1,11 +1,15 @@
 #include "app/check/support_warnings.hpp"
 
+#include "app/plan/held_loads.hpp"
+
 #include <algorithm>
+#include <utility>
 
 namespace osculate::app {
 
-std::vector<Warning> support_warnings(const scene::Scene& scene) {
+std::vector<Warning> support_warnings(const scene::Scene& scene, const Plan& plan) {
     std::vector<Warning> found;
+    for (std::string& key : held_loads(scene, plan)) found.push_back({std::move(key), why_held_load_is_odd});
     for (const auto& [name, support] : scene.supports) {
         if (support.symmetry || std::ranges::count(support.fixed, true) > 0) continue;
         const bool moved = std::ranges::any_of(scene.stages, [&name = name](const auto& stage) {

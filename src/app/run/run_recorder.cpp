@@ -1,6 +1,7 @@
 #include "app/run/run_recorder.hpp"
 
 #include "app/plan/gaps.hpp"
+#include "app/plan/held_loads.hpp"
 #include "app/report/plots.hpp"
 #include "osculate/app/advice.hpp"
 #include "osculate/app/report.hpp"
@@ -407,6 +408,8 @@ void RunRecorder::count_up() {
         summary_.audit->on = plan_.stepper.audit;
     }
     summary_.warnings = checks_.warnings();
+    for (const std::string& key : held_loads(scene_, plan_))
+        summary_.warnings.push_back(key + ": " + why_held_load_is_odd);
     if (settings_.derivatives == nullptr) return;
     for (std::string& warning : settings_.derivatives->warnings()) summary_.warnings.push_back(std::move(warning));
 }

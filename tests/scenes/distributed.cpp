@@ -24,7 +24,7 @@ protected:
         return mpirun(ranks,
                       std::string(OSCULATE_PROGRAM) + " run " + file + " --distributed --quiet --threads 1 " + options);
     }
-    void expect_the_same(const fs::path& a, const fs::path& b, double tolerance) const {
+    void expect_the_same(const fs::path& a, const fs::path& b, double tolerance, double more_iterations = 2) const {
         const Csv first(a / "history.csv"), second(b / "history.csv");
         ASSERT_EQ(first.columns, second.columns);
         ASSERT_EQ(first.rows.size(), second.rows.size());
@@ -41,7 +41,8 @@ protected:
             largest = std::max(largest, std::abs(first.number(row, column)));
         });
         each([&](std::size_t row, const std::string& column) {
-            const double allowed = column == "iterations" ? 2 : tolerance * largest; // tests at the last digit
+            const double allowed =
+                column == "iterations" ? more_iterations : tolerance * largest; // tests at the last digit
             EXPECT_NEAR(first.number(row, column), second.number(row, column), allowed) << column;
         });
     }
@@ -196,7 +197,8 @@ TEST_F(DistributedRun, SharesRigidBodiesAlone) {
     for (const int ranks : {1, 2})
         ASSERT_EQ(with_ranks(ranks, scene_file("configs/tutorials/dominoes.yaml"), options + std::to_string(ranks)), 0)
             << content(folder / "said.txt");
-    expect_the_same(folder / "run_1", folder / "run_2", 1e-9);
+    constexpr double of_an_impact = 20; // which last digits decide
+    expect_the_same(folder / "run_1", folder / "run_2", 1e-9, of_an_impact);
 }
 
 TEST_F(DistributedRun, GoesOnFromACheckpointWithAnotherNumberOfProcesses) {

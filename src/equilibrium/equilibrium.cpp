@@ -27,7 +27,7 @@ Equilibrium::Equilibrium(const model::Model& model, model::ContactPairs pairs, c
       rigid_(model.has_dependent_nodes() ? std::make_unique<RigidTerm>(model, constraints, dynamics) : nullptr),
       terms_(list_of_terms()), tangent_(model, constraints, unknowns_, terms_, bodies_, contact_,
                                         rigid_ ? &rigid_->dependence() : nullptr, at_, choice, timings, threads),
-      factorisable_(choice.factorisable) {
+      factorisable_(choice.factorisable), multigrid_(choice.multigrid) {
     if (dynamics != nullptr) contact_.set_dynamics(*dynamics);
     if (const Share* share = model.K.share()) contact_.share_out(share->ranks());
     at_.u.reset(model.X.size());

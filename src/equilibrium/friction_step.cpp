@@ -45,47 +45,52 @@ bool FrictionStep::factorise(const Iterate& at) {
         ++factorisations_;
         return solver_->factorise(stiffness_.matrix()) == solve::FactorStatus::ok;
     };
+    if (bodies_.bodies().symmetric() && done(cholesky_, solve::make_cholesky)) return true;
     // at finite strain the stresses of an iterate may make K indefinite, though it is far from buckling
-    return (bodies_.bodies().symmetric() && done(cholesky_, solve::make_cholesky)) || done(lu_, solve::make_lu);
+    return !bodies_.bodies().semidefinite() && done(lu_, solve::make_lu);
 }
 
-void FrictionStep::add_force(Index any, const Vec3& all, VectorRef right) const {
-    const auto add = [&](Index node, const Vec3& force) {
-        const Vec3 local = constraints_.to_local(node, force);
-        for (int k = 0; k < 3; ++k)
-            if (const Index e = constraints_.equation(node, k); e != Constraints::held) right(e) += local(k);
+template <class Each> void FrictionStep::for_carriers(Index node, Each&& each) const {
+    each(node, Mat3::Identity(), Mat3::Identity()); // as far as it has equations of its own
+    if (dependence_ == nullptr || !dependence_->depends(node)) return;
+    for (const linear::Dependence::Carrier& carrier : dependence_->carriers(node))
+        each(carrier.node, carrier.moves, carrier.loads);
+}
+
+FrictionStep::Couplings FrictionStep::couplings(const std::vector<LinearisedContact>& contacts) const {
+    using Entry = Eigen::Triplet<double>;
+    std::vector<Entry> moving, loading;
+    const auto add_motion = [&](Index row, Index any, const Mat3& weight) {
+        for_carriers(any, [&](Index node, const Mat3& moves, const Mat3&) {
+            const Mat3 local = weight * moves * constraints_.frame(node);
+            for (int k = 0; k < 3; ++k)
+                if (const Index e = constraints_.equation(node, k); e != Constraints::held)
+                    for (int i = 0; i < 3; ++i) moving.emplace_back(row + i, e, local(i, k));
+        });
     };
-    add(any, all); // as far as it has equations of its own
-    if (dependence_ == nullptr || !dependence_->depends(any)) return;
-    for (const linear::Dependence::Carrier& carrier : dependence_->carriers(any))
-        add(carrier.node, carrier.loads * all);
-}
-
-Vec3 FrictionStep::motion(Index any, const ConstVectorRef& du) const {
-    const auto own = [&](Index node) {
-        Vec3 local = Vec3::Zero();
-        for (int k = 0; k < 3; ++k)
-            if (const Index e = constraints_.equation(node, k); e != Constraints::held) local(k) = du(e);
-        return constraints_.to_global(node, local);
+    const auto add_force = [&](Index column, Index any, const Mat3& force) {
+        for_carriers(any, [&](Index node, const Mat3&, const Mat3& loads) {
+            const Mat3 local = constraints_.frame(node).transpose() * loads * force;
+            for (int k = 0; k < 3; ++k)
+                if (const Index e = constraints_.equation(node, k); e != Constraints::held)
+                    for (int i = 0; i < 3; ++i) loading.emplace_back(e, column + i, local(k, i));
+        });
     };
-    Vec3 moved = own(any);
-    if (dependence_ == nullptr || !dependence_->depends(any)) return moved;
-    for (const linear::Dependence::Carrier& carrier : dependence_->carriers(any))
-        moved += carrier.moves * own(carrier.node);
-    return moved;
-}
-
-void FrictionStep::add_forces(const LinearisedContact& contact, const Vec3& r, VectorRef right) const {
-    add_force(contact.slave, contact.axes * r, right);
-    for (Index i = 0; i < contact.F.rows() / 3; ++i)
-        add_force(contact.masters[static_cast<std::size_t>(i)], contact.F.middleRows<3>(3 * i) * r, right);
-}
-
-Vec3 FrictionStep::relative(const LinearisedContact& contact, const ConstVectorRef& du) const {
-    Vec3 w = contact.A.leftCols<3>() * motion(contact.slave, du);
-    for (std::size_t i = 0; i < contact.masters.size(); ++i)
-        w += contact.A.middleCols<3>(3 + 3 * static_cast<Index>(i)) * motion(contact.masters[i], du);
-    return w;
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+        const LinearisedContact& contact = contacts[j];
+        const Index first = 3 * static_cast<Index>(j);
+        add_motion(first, contact.slave, contact.A.leftCols<3>());
+        for (std::size_t i = 0; i < contact.masters.size(); ++i)
+            add_motion(first, contact.masters[i], contact.A.middleCols<3>(3 + 3 * static_cast<Index>(i)));
+        add_force(first, contact.slave, contact.axes);
+        for (Index i = 0; i < contact.F.rows() / 3; ++i)
+            add_force(first, contact.masters[static_cast<std::size_t>(i)], contact.F.middleRows<3>(3 * i));
+    }
+    const auto rows = static_cast<Index>(3 * contacts.size());
+    Couplings couplings{{rows, constraints_.equations()}, {constraints_.equations(), rows}};
+    couplings.motion.setFromTriplets(moving.begin(), moving.end());
+    couplings.load.setFromTriplets(loading.begin(), loading.end());
+    return couplings;
 }
 
 bool FrictionStep::advance(const Iterate& at, const Field& unbalanced, Vector& z) {
@@ -104,24 +109,19 @@ bool FrictionStep::advance(const Iterate& at, const Field& unbalanced, Vector& z
     solver_->solve(right.data(), du.data());
 
     solve::FrictionProblem problem{Matrix(3 * n, 3 * n), Vector(3 * n), Vector(n)};
-    Matrix columns, solved;
+    const Couplings couplings = this->couplings(contacts);
+    Matrix solved;
     for (Index begin = 0; begin < 3 * n; begin += batch) {
         const Index count = std::min(batch, 3 * n - begin);
-        columns.setZero(equations, count);
-        for (Index c = 0; c < count; ++c)
-            add_forces(contacts[static_cast<std::size_t>((begin + c) / 3)], Vec3::Unit((begin + c) % 3),
-                       columns.col(c));
-        solver_->solve(columns, solved);
-        for (Index j = 0; j < n; ++j)
-            for (Index c = 0; c < count; ++c)
-                problem.W.block<3, 1>(3 * j, begin + c) =
-                    relative(contacts[static_cast<std::size_t>(j)], solved.col(c));
+        solver_->solve(Matrix(couplings.load.middleCols(begin, count)), solved);
+        problem.W.middleCols(begin, count).noalias() = couplings.motion * solved;
     }
+    const Vector moved = couplings.motion * du;
     Vector drag = Vector::Zero(3 * n);
     for (Index j = 0; j < n; ++j) {
         const LinearisedContact& contact = contacts[static_cast<std::size_t>(j)];
         problem.mu(j) = contact.friction;
-        problem.q.segment<3>(3 * j) = contact.w + relative(contact, du);
+        problem.q.segment<3>(3 * j) = contact.w + moved.segment<3>(3 * j);
         drag.segment<2>(3 * j + 1).setConstant(contact.drag);
     }
     // u = W r + q with r = r_c - drag u:  u = (I + W drag)^-1 (W r_c + q)
@@ -145,8 +145,7 @@ bool FrictionStep::advance(const Iterate& at, const Field& unbalanced, Vector& z
     if (!solution.converged) return false;
     if (resists) solution.r -= drag.cwiseProduct(motion.W * solution.r + motion.q);
 
-    for (Index j = 0; j < n; ++j)
-        add_forces(contacts[static_cast<std::size_t>(j)], solution.r.segment<3>(3 * j), right);
+    right += couplings.load * solution.r;
     solver_->solve(right.data(), du.data());
     z.head(equations) += du;
     z.tail(z.size() - equations).setZero();

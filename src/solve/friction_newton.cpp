@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace osculate::solve {
 
@@ -69,20 +70,39 @@ FrictionSolution newton_friction(const FrictionProblem& problem, Vector r, doubl
     };
     FrictionSolution solution;
     DenseLu lu;
+    std::vector<Index> closed; // points whose equations are not r = 0
     for (; solution.iterations < most_iterations; ++solution.iterations) {
         if (friction_error(problem, r) <= tolerance) break;
         const Vector u = problem.W * r + problem.q;
-        Matrix J(3 * n, 3 * n);
         Vector step(3 * n);
+        closed.clear();
         for (Index j = 0; j < n; ++j) {
-            const PointEquation e = equation_of(r, u, j);
-            step.segment<3>(3 * j) = e.value;
-            J.middleRows<3>(3 * j).noalias() = e.by_u * problem.W.middleRows<3>(3 * j);
-            J.block<3, 3>(3 * j, 3 * j) += e.by_r;
+            step.segment<3>(3 * j) = equation_of(r, u, j).value;
+            if (r(3 * j) - rho(j) * u(3 * j) > 0) closed.push_back(j);
         }
         const double before = step.norm();
-        if (!lu.factorise(std::move(J))) break;
-        lu.solve(step.data());
+        // the others' steps are known
+        Vector opening = step;
+        for (const Index j : closed) opening.segment<3>(3 * j).setZero();
+        const Vector by_opening = problem.W * opening;
+        const auto m = static_cast<Index>(closed.size());
+        Matrix J(3 * m, 3 * m);
+        Vector of_closed(3 * m);
+        for (Index a = 0; a < m; ++a) {
+            const Index j = closed[static_cast<std::size_t>(a)];
+            const PointEquation e = equation_of(r, u, j);
+            of_closed.segment<3>(3 * a) = e.value - e.by_u * by_opening.segment<3>(3 * j);
+            for (Index b = 0; b < m; ++b)
+                J.block<3, 3>(3 * a, 3 * b).noalias() =
+                    e.by_u * problem.W.block<3, 3>(3 * j, 3 * closed[static_cast<std::size_t>(b)]);
+            J.block<3, 3>(3 * a, 3 * a) += e.by_r;
+        }
+        if (m > 0) {
+            if (!lu.factorise(std::move(J))) break;
+            lu.solve(of_closed.data());
+        }
+        for (Index a = 0; a < m; ++a)
+            step.segment<3>(3 * closed[static_cast<std::size_t>(a)]) = of_closed.segment<3>(3 * a);
         double length = 1;
         Vector next = r - step;
         for (int k = 0; k < most_halvings && !(norm(next) <= (1 - descent * length) * before); ++k) {

@@ -133,12 +133,18 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
     while (result.stabilised_solves < most_solves && slow < most_slow && failures < most_failures &&
            result.iterations < most_iterations) {
         z = anchor_z;
+        equilibrium.set_sparing(true);
         auto solved = newton(true);
-        if (solved.outcome == KinsolOutcome::stopped) {
+        equilibrium.set_sparing(false);
+        if (solved.outcome == KinsolOutcome::unsolved || solved.outcome == KinsolOutcome::stopped) {
             z = anchor_z;
             const LadderResult rubbed = settle_friction(equilibrium, solver, z, statuses, options);
             result.iterations += rubbed.iterations;
             if (rubbed.converged()) solved.outcome = rubbed.outcome;
+        }
+        if (solved.outcome == KinsolOutcome::unsolved && equilibrium.factorisable()) {
+            z = anchor_z;
+            solved = newton(true);
         }
         ++result.stabilised_solves;
         if (solved.outcome != KinsolOutcome::converged) {

@@ -80,6 +80,8 @@ public:
     [[nodiscard]] bool symmetric() const {
         return !follower_pressure_ && !also_ && (dynamics_ == nullptr || !nonlinear());
     }
+    /// Whether the tangent is never indefinite: it can at most be singular.
+    [[nodiscard]] bool semidefinite() const { return symmetric() && !nonlinear(); }
 
     /// Computes velocities, accelerations and element histories at the end of the step from the displacements there; no
     /// velocities or accelerations in statics.

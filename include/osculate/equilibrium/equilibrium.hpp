@@ -53,6 +53,9 @@ public:
     /// Whether solves stop as soon as they come back to statuses or gain nothing for a while, since a rung that needs no
     /// luck follows.
     void set_impatient(bool impatient) { cycles_.set_impatient(impatient); }
+    /// Whether solves end where GMRES with multigrid fails instead of factorising the whole tangent, since a rung that needs less
+    /// follows.
+    void set_sparing(bool sparing) { sparing_ = sparing; }
     /// Statuses for the next solve, see ContactTerm.
     void set_statuses(Statuses statuses, StatusRule rule, bool force_first);
     /// Makes the next residual linear in the displacements about u, (nodes) m: for elements under a driven motion that
@@ -78,7 +81,7 @@ public:
     [[nodiscard]] solve::Preconditioner* preconditioner() override {
         return tangent_.preconditions() ? &tangent_ : nullptr;
     }
-    [[nodiscard]] bool factorisable() const override { return factorisable_; }
+    [[nodiscard]] bool factorisable() const override { return factorisable_ && !(sparing_ && multigrid_); }
     [[nodiscard]] solve::Tangent* tangent() override { return tangent_.by_products() ? &tangent_ : nullptr; }
 
     /// See EquilibriumTangent, at the last residual, and ContactTerm::add_transposed_of_start().
@@ -163,7 +166,7 @@ private:
     Iterate at_; ///< of the last residual
     EquilibriumTangent tangent_;
     std::unique_ptr<FrictionStep> friction_; ///< null: not needed yet
-    bool factorisable_;
+    bool factorisable_, multigrid_, sparing_ = false;
     Field prescribed_; ///< StepLoad::prescribed of the attempt
     double reference_force_ = 1;
     Field unbalanced_;

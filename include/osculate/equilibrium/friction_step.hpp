@@ -7,6 +7,7 @@
 #include "osculate/linear/penalty_stiffness.hpp"
 #include "osculate/solve/direct_solver.hpp"
 
+#include <Eigen/SparseCore>
 #include <memory>
 #include <vector>
 
@@ -32,12 +33,14 @@ public:
 
 private:
     [[nodiscard]] bool factorise(const Iterate& at);
-    void add_force(Index node, const Vec3& force, VectorRef right) const;
-    [[nodiscard]] Vec3 motion(Index node, const ConstVectorRef& du) const;
-    /// right += F_j r
-    void add_forces(const LinearisedContact& contact, const Vec3& r, VectorRef right) const;
-    /// A_j du
-    [[nodiscard]] Vec3 relative(const LinearisedContact& contact, const ConstVectorRef& du) const;
+    /// Of all A_j and F_j, in equations.
+    struct Couplings {
+        Eigen::SparseMatrix<double, Eigen::RowMajor> motion; ///< (3n x equations) A_j du
+        Eigen::SparseMatrix<double> load;                    ///< (equations x 3n) F_j r_j
+    };
+    [[nodiscard]] Couplings couplings(const std::vector<LinearisedContact>& contacts) const;
+    /// Calls each(node, moves, loads) for the node and those that it depends on.
+    template <class Each> void for_carriers(Index node, Each&& each) const;
 
     const linear::Constraints& constraints_;
     const linear::Unknowns& unknowns_;

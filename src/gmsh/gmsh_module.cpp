@@ -1,6 +1,7 @@
 /// mesh::read_gmsh and mesh::mesh_cad by Gmsh: a module of its own, as Gmsh and Open CASCADE are large and may be missing.
 
 #include "gmsh/check_msh.hpp"
+#include "gmsh/contact_size.hpp"
 #include "gmsh/session.hpp"
 #include "osculate/mesh/gmsh.hpp"
 #include "osculate/mesh/mesh_error.hpp"
@@ -18,6 +19,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <unordered_map>
@@ -351,10 +353,15 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
             return focus.size_at(distance * unit, size * unit) / unit;
         };
         // What would not end is refused before it begins.
-        if (cubes(box, point, size_at) > most)
+        std::optional<ContactSize> contact;
+        if (options->contact.size > 0 && !options->meeting.empty()) contact.emplace(options->contact, options->meeting);
+        if (cubes(box, point, size_at) + (contact ? contact->cubes(box.volume() * unit * unit * unit) : 0) > most)
             throw MeshError(options->file, "elements of that size would be more than 2e7: the geometry is " +
                                                std::to_string(diagonal * unit) + " m across");
-        const SizeCallback sizes([&](const Vec3& x) { return size_at((x - point).norm()); });
+        const SizeCallback sizes([&](const Vec3& x) {
+            const double all = size_at((x - point).norm());
+            return contact ? contact->at(x * unit, all * unit) / unit : all;
+        });
         gmsh::option::setNumber("Mesh.MeshSizeMax", size);
         gmsh::option::setNumber("Mesh.MeshSizeMin", options->smallest / unit);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", options->per_circle);

@@ -63,6 +63,13 @@ public:
         if (m.size > 0 && m.focus.size >= m.size)
             fault(size, "less than the size of all elements, " + number_text(m.size) + " m",
                   number_text(m.focus.size) + " m");
+        const std::vector<std::string> contact{"bodies", body, "mesh", "cad", "contact", "size"};
+        if (m.size > 0 && m.contact.size >= m.size)
+            fault(contact, "less than the size of all elements, " + number_text(m.size) + " m",
+                  number_text(m.contact.size) + " m");
+        if (m.contact.size > 0 && m.smallest > m.contact.size)
+            fault({"bodies", body, "mesh", "cad", "smallest"},
+                  "at most the size at contact, " + number_text(m.contact.size) + " m", number_text(m.smallest) + " m");
         if (m.focus.size > 0 && m.smallest > m.focus.size)
             fault({"bodies", body, "mesh", "cad", "smallest"},
                   "at most the size of focus, " + number_text(m.focus.size) + " m", number_text(m.smallest) + " m");

@@ -254,6 +254,19 @@ void describe(Visitor& v, mesh::CadFocus& f) {
              f.growth);
 }
 
+void describe(Visitor& v, mesh::CadContact& c) {
+    v.number({.name = "size",
+              .meaning = "Edge length of the elements there.",
+              .unit = dimension::length,
+              .range = {.low = 0, .high = 1e9},
+              .default_text = "0, which is that of all elements"},
+             c.size);
+    v.number({.name = "growth",
+              .meaning = "Each further element is at most about this many times longer than the one before.",
+              .range = {.low = 1, .high = 10}},
+             c.growth);
+}
+
 void describe(Visitor& v, CadMesh& m) {
     v.text({.name = "path",
             .meaning = "Geometry: .step .stp .iges .igs, whose own units count, or .brep, in metres; a relative path "
@@ -279,6 +292,11 @@ void describe(Visitor& v, CadMesh& m) {
            m.quadratic);
     v.group({.name = "focus", .meaning = "Small elements around a point, growing away from it in all directions."},
             [&] { describe(v, m.focus); });
+    v.group({.name = "contact",
+             .meaning = "Small elements at the body's sets in contact pairs, growing away from them. The geometry is "
+                        "meshed twice: "
+                        "without them first, to find the sets."},
+            [&] { describe(v, m.contact); });
     describe_share(v, m);
 }
 

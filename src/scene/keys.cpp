@@ -1,5 +1,6 @@
 #include "osculate/scene/keys.hpp"
 
+#include "scene/article.hpp"
 #include "scene/describe.hpp"
 #include "scene/overrides.hpp"
 #include "scene/tree.hpp"
@@ -65,7 +66,7 @@ public:
         list(key, "list of " + join(vocabulary), "[]");
     }
     void points(const Key& key, std::vector<Vec3>& /*value*/) override {
-        list(key, "points [x, y, z], each a " + unit(key), "none");
+        list(key, "points [x, y, z], each " + with_article(unit(key)), "none");
     }
     void axes(const Key& key, Mat3& /*value*/) override { list(key, "two directions", "[[1, 0, 0], [0, 1, 0]]"); }
     void group(const Key& key, const std::function<void()>& body) override {

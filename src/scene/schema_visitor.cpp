@@ -1,5 +1,6 @@
 #include "scene/schema_visitor.hpp"
 
+#include "scene/article.hpp"
 #include "scene/quantity_pattern.hpp"
 #include "scene/tree.hpp"
 
@@ -48,7 +49,7 @@ Json quantity(const Key& key) {
     Json schema{{"type", {"number", "string"}}};
     schema.update(bounds(key.range));
     schema["pattern"] = quantity_pattern(key);
-    schema["patternErrorMessage"] = "expected a " + in_words(key);
+    schema["patternErrorMessage"] = "expected " + with_article(in_words(key));
     Json not_finite{{"type", "number"}, {"minimum", 1e308}}; // NaN is not below anything either
     if (key.not_whole)
         schema["not"]["anyOf"] = {not_finite, {{"type", "integer"}}};
@@ -237,17 +238,17 @@ void SchemaVisitor::optional_relative_length(const Key& key, std::optional<Relat
     length.range = range::size;
     Json schema = quantity(key);
     schema["pattern"] = quantity_pattern(length);
-    schema["patternErrorMessage"] = "expected a " + in_words(key) + ", or a length with its unit";
+    schema["patternErrorMessage"] = "expected " + with_article(in_words(key)) + ", or a length with its unit";
     add(key, schema, in_words(key) + ", or a length with its unit", nullptr);
 }
 
 void SchemaVisitor::vector(const Key& key, Vec3& value) {
-    add(key, key.direction ? direction(key) : list_of(quantity(key), 3), "[x, y, z], each a " + in_words(key),
-        Json{plain(value.x()), plain(value.y()), plain(value.z())});
+    add(key, key.direction ? direction(key) : list_of(quantity(key), 3),
+        "[x, y, z], each " + with_article(in_words(key)), Json{plain(value.x()), plain(value.y()), plain(value.z())});
 }
 
 void SchemaVisitor::optional_vector(const Key& key, std::optional<Vec3>& /*value*/) {
-    add(key, list_of(quantity(key), 3), "[x, y, z], each a " + in_words(key), nullptr);
+    add(key, list_of(quantity(key), 3), "[x, y, z], each " + with_article(in_words(key)), nullptr);
 }
 
 void SchemaVisitor::course(const Key& key, Course& value) {
@@ -259,7 +260,7 @@ void SchemaVisitor::optional_course(const Key& key, std::optional<Course>& /*val
 }
 
 void SchemaVisitor::courses(const Key& key, std::array<Course, 3>& /*value*/) {
-    add(key, list_of(course_of(key), 3), "[x, y, z], each a " + in_words(key) + over_time, nullptr);
+    add(key, list_of(course_of(key), 3), "[x, y, z], each " + with_article(in_words(key)) + over_time, nullptr);
 }
 
 void SchemaVisitor::table(const Key& key, const Key& first, Table& /*value*/) {
@@ -324,7 +325,7 @@ void SchemaVisitor::words(const Key& key, const Words& vocabulary, std::vector<s
 
 void SchemaVisitor::points(const Key& key, std::vector<Vec3>& /*value*/) {
     add(key, {{"type", "array"}, {"minItems", 2}, {"items", list_of(quantity(key), 3)}},
-        "a list of [x, y, z], each a " + in_words(key), nullptr);
+        "a list of [x, y, z], each " + with_article(in_words(key)), nullptr);
 }
 
 void SchemaVisitor::axes(const Key& key, Mat3& /*value*/) {

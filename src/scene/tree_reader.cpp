@@ -1,6 +1,7 @@
 #include "scene/tree_reader.hpp"
 
 #include "osculate/scene/nearest.hpp"
+#include "scene/article.hpp"
 #include "scene/frame.hpp"
 
 #include <algorithm>
@@ -12,11 +13,6 @@
 namespace osculate::scene {
 
 namespace {
-
-std::string with_article(const std::string& noun) {
-    const bool vowel = std::string("aeiou").find(noun.front()) != std::string::npos;
-    return (vowel ? "an " : "a ") + noun;
-}
 
 std::string expected_integer(const Key& key) {
     const std::string bounds = key.range.text();

@@ -254,8 +254,8 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         bool singular = false;
         // an iterate that ran away says nothing about what holds the bodies
         const auto found_singular = [&] {
-            return solve::is_singular(result.outcome) &&
-                   largest_component(equilibrium.displacements(z)) <= options.farthest;
+            return now.ran_away || (solve::is_singular(result.outcome) &&
+                                    largest_component(equilibrium.displacements(z)) <= options.farthest);
         };
         if (newton("semismooth Newton", options.predicted, force_first)) return singular;
         singular = found_singular();

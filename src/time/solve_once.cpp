@@ -17,6 +17,13 @@ solve::KinsolOptions kinsol_options(equilibrium::Equilibrium& equilibrium, Index
     return kinsol;
 }
 
+/// Whether nothing holds a body of this solution, though round-off kept the tangent from being singular.
+bool nothing_holds(const equilibrium::Equilibrium& equilibrium, const Vector& z, const LadderOptions& options) {
+    constexpr double absurd = 1000; // times where an iterate counts as astray
+    return options.stabilisation.share && !equilibrium.contact().empty() &&
+           !(largest_component(equilibrium.displacements(z)) <= absurd * options.farthest);
+}
+
 } // namespace
 
 solve::KinsolResult solve_once(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
@@ -31,6 +38,10 @@ solve::KinsolResult solve_once(equilibrium::Equilibrium& equilibrium, solve::Kin
         return solved;
     };
     solve::KinsolResult solved = call();
+    if (solved.outcome == KinsolOutcome::converged && nothing_holds(equilibrium, z, options)) {
+        solved.outcome = KinsolOutcome::singular;
+        options.ran_away = true;
+    }
     if (solved.outcome != KinsolOutcome::stopped) return solved; // it may still gain
     const double moved = largest_component(equilibrium.displacements(z));
     if (!(moved <= options.farthest)) return solved; // it rests nowhere near a solution

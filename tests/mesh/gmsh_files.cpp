@@ -316,6 +316,49 @@ TEST_F(GmshFiles, ElementsAreSmallAroundAFocusAndGrowAwayFromIt) {
     EXPECT_GT(ratio / near, 1 / mean);
 }
 
+TEST_F(GmshFiles, ElementsAreSmallAtSurfacesInContactAndGrowAwayFromThem) {
+    const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep";
+    CadOptions options{brep, 0.25};
+    const std::size_t even = make_mesh(mesh_cad(options)).nodes.size();
+    options.contact = {.size = 0.04, .growth = 1.4};
+    EXPECT_EQ(make_mesh(mesh_cad(options)).nodes.size(), even) << "nothing is met";
+    options.meeting = {{Vec3(0, 0, 0), Vec3(0.4, 0, 0), Vec3(0.4, 0.4, 0)},
+                       {Vec3(0, 0, 0), Vec3(0.4, 0.4, 0), Vec3(0, 0.4, 0)}};
+    const auto asked = [&](const Vec3& x) { // the distance from a square
+        const Vec3 foot(std::clamp(x.x(), 0.0, 0.4), std::clamp(x.y(), 0.0, 0.4), 0);
+        return std::min(options.size, options.contact.size + (options.contact.growth - 1) * (x - foot).norm());
+    };
+    const Mesh mesh = make_mesh(mesh_cad(options));
+    EXPECT_THAT(faults(mesh), IsEmpty());
+    EXPECT_GT(mesh.nodes.size(), 2 * even);
+    constexpr double longest = 2.5, mean = 1.35; // of free meshes, times what is asked for
+    double at_contact = 0, elsewhere = 0;
+    int near = 0, far = 0;
+    for (std::size_t e = 0; e < mesh.blocks[0].connectivity.size(); e += 4)
+        for (std::size_t a = 0; a < 4; ++a)
+            for (std::size_t b = 0; b < a; ++b) {
+                const Vec3& p = mesh.nodes[static_cast<std::size_t>(mesh.blocks[0].connectivity[e + a])];
+                const Vec3& q = mesh.nodes[static_cast<std::size_t>(mesh.blocks[0].connectivity[e + b])];
+                const double ratio = (p - q).norm() / asked((p + q) / 2);
+                EXPECT_LT(ratio, longest);
+                if (asked(p) == options.contact.size && asked(q) == options.contact.size) {
+                    at_contact += ratio;
+                    ++near;
+                } else {
+                    elsewhere += ratio;
+                    ++far;
+                }
+            }
+    ASSERT_GT(near, 0);
+    ASSERT_GT(far, 0);
+    for (const double ratio : {at_contact / near, elsewhere / far}) {
+        EXPECT_LT(ratio, mean);
+        EXPECT_GT(ratio, 1 / mean);
+    }
+    options.contact.size = 1e-5;
+    EXPECT_THROW((void)mesh_cad(options), MeshError) << "too many elements";
+}
+
 TEST_F(GmshFiles, AFocusWhoseElementsWouldBeTooManyIsRefused) {
     const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep";
     CadOptions options{brep, 0.25};

@@ -5,7 +5,9 @@
 #include "osculate/mesh/raw_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <vector>
 
 namespace osculate::mesh {
 
@@ -25,6 +27,13 @@ struct CadFocus {
     }
 };
 
+/// Small elements at surfaces that meet others. size 0: none.
+struct CadContact {
+    double size = 0;     ///< edge length at these surfaces, m
+    double growth = 1.3; ///< largest ratio of the lengths of an edge farther away and its inner neighbour
+    bool operator==(const CadContact&) const = default;
+};
+
 /// Geometry to be meshed with tetrahedra.
 struct CadOptions {
     std::string file;       ///< STEP or IGES, with the units of the file, or BREP, in metres
@@ -33,6 +42,8 @@ struct CadOptions {
     int per_circle = 0;     ///< elements per full circle of curved faces; 0: curvature does not count
     bool quadratic = false; ///< tet10, with midside nodes on the geometry; false: tet4
     CadFocus focus{};
+    CadContact contact{};
+    std::vector<std::array<Vec3, 3>> meeting{}; ///< corners of triangles of those surfaces, m
     bool operator==(const CadOptions&) const = default;
 };
 

@@ -97,6 +97,7 @@ struct CadMesh {
     int per_circle = 0;     ///< elements around a full circle; 0: ignores curvature
     bool quadratic = false; ///< tet10; false: tet4
     mesh::CadFocus focus;
+    mesh::CadContact contact;
     std::string part;
     int piece = 0;
     bool operator==(const CadMesh&) const = default;

@@ -25,7 +25,8 @@ struct LadderOptions {
     /// Reference force due to round-off of the internal forces, divided by the largest displacement, N/m: a lower limit
     /// for the reference force of a solve that stagnates there.
     double round_off = 0;
-    double farthest = 0; ///< m, an iterate with larger displacements counts as astray
+    double farthest = 0;   ///< m, an iterate with larger displacements counts as astray
+    bool ran_away = false; ///< set where a solution is so far away that the tangent was singular but for round-off
     /// (nodes) displacements of the start values, driven nodes at their old places: with nonlinear elements the first
     /// residuals are linear about them (Equilibrium::linearise_first_about); empty: exact from the start.
     Field predicted{}, unpredicted{};

@@ -1,5 +1,6 @@
 #include "app/fault.hpp"
 #include "app/overloaded.hpp"
+#include "app/plan/contact_triangles.hpp"
 #include "app/plan/mesh_share.hpp"
 #include "app/plan/rigid_surface.hpp"
 #include "osculate/app/compile.hpp"
@@ -64,8 +65,9 @@ void number_sections(const scene::Body& body, mesh::Mesh& m) {
     mesh::divide(m, section);
 }
 
+/// @param meeting  triangles of surfaces in contact, for geometries that are meshed anew
 mesh::Mesh generate(const scene::Body& body, const std::string& directory, Sources& sources,
-                    std::vector<std::string>& notes) {
+                    std::vector<std::string>& notes, const std::vector<std::array<Vec3, 3>>& meeting) {
     const scene::MeshSpec& spec = body.mesh;
     mesh::Mesh m = std::visit(
         Overloaded{
@@ -98,7 +100,9 @@ mesh::Mesh generate(const scene::Body& body, const std::string& directory, Sourc
                                                c.smallest,
                                                c.per_circle,
                                                c.quadratic,
-                                               c.focus};
+                                               c.focus,
+                                               meeting.empty() ? mesh::CadContact{} : c.contact,
+                                               meeting};
                 return mesh::make_mesh(sources.geometry(options), {c.part, c.piece, {}, named_sections(body)}, &notes);
             },
         },
@@ -132,26 +136,33 @@ void add_shells(const scene::Scene& scene, std::vector<mesh::Mesh>& meshes, std:
 } // namespace
 
 std::vector<mesh::Mesh> build_meshes(const scene::Scene& scene, std::vector<std::string>* notes) {
-    std::vector<mesh::Mesh> meshes;
+    std::vector<mesh::Mesh> meshes(scene.bodies.size());
     std::vector<Fault> faults;
     Sources sources;
-    for (const auto& [name, body] : scene.bodies) try {
-            if (body.rigid_surface) {
-                meshes.emplace_back();
-                continue;
-            }
-            std::vector<std::string> of_body;
-            meshes.push_back(generate(body, scene.directory, sources, of_body));
-            for (const std::string& note : of_body)
-                if (notes != nullptr) notes->push_back("body " + name + ": " + note);
+    std::vector<std::vector<std::string>> of_body(scene.bodies.size());
+    const auto make = [&](std::size_t b, const std::vector<std::array<Vec3, 3>>& meeting) {
+        const auto& [name, body] = scene.bodies[b];
+        try {
+            if (body.rigid_surface) return;
+            of_body[b].clear();
+            meshes[b] = generate(body, scene.directory, sources, of_body[b], meeting);
         } catch (const mesh::MeshError& error) {
             for (const std::string& reason : error.reasons())
                 faults.push_back(fault("bodies." + name + ".mesh", "a mesh fit for use", reason));
         } catch (const std::exception& error) {
             faults.push_back(fault("bodies." + name + ".mesh", "a mesh that can be made", error.what()));
         }
+    };
+    for (std::size_t b = 0; b < meshes.size(); ++b) make(b, {});
     if (faults.empty()) add_shells(scene, meshes, faults);
+    if (faults.empty()) {
+        const std::vector<std::vector<std::array<Vec3, 3>>> meeting = contact_triangles(scene, meshes, faults);
+        for (std::size_t b = 0; b < meshes.size(); ++b)
+            if (!meeting[b].empty()) make(b, meeting[b]);
+    }
     if (!faults.empty()) throw SceneError(std::move(faults));
+    for (std::size_t b = 0; b < meshes.size() && notes != nullptr; ++b)
+        for (const std::string& note : of_body[b]) notes->push_back("body " + scene.bodies[b].first + ": " + note);
     return meshes;
 }
 

@@ -19,10 +19,29 @@ bool takes_part(const model::Model& model, const ContactPair& pair, const Body& 
     return body_of(model, pair.slaves().node.front()) == &body || body_of(model, pair.master_nodes().front()) == &body;
 }
 
+/// Whether the loads of the attempt push a body against what it touched at the last accepted state.
+bool is_pushed(const FailedAttempt& failed, const equilibrium::Equilibrium& equilibrium, const Body& body) {
+    constexpr double mostly = 0.5; // cosine
+    Vec3 load = Vec3::Zero(), contact = Vec3::Zero();
+    const Field& external = equilibrium.external_force();
+    for (Index node = 0; node < failed.model.nodes() && !external.empty(); ++node)
+        if (body_of(failed.model, node) == &body) load += external[node];
+    for (const model::RigidBody& rigid : failed.model.rigid)
+        if (&failed.model.bodies[static_cast<std::size_t>(rigid.body)] == &body && !external.empty())
+            load += external[rigid.reference];
+    for (const model::ContactHistory& history : failed.last.contact) {
+        const bool slave = body_of(failed.model, history.pair->slaves().node.front()) == &body,
+                   master = body_of(failed.model, history.pair->master_nodes().front()) == &body;
+        if (slave == master) continue;
+        for (const Vec3& lambda : history.lambda) contact += slave ? lambda : Vec3(-lambda);
+    }
+    return load.dot(contact) < -mostly * load.norm() * contact.norm();
+}
+
 /// Whether a body that supports leave free in statics, where inertia holds nothing, is not held by contact either.
 bool is_loose(const FailedAttempt& failed, const BodyHold& hold) {
     if (failed.stage.dynamics || hold.free_by_supports == 0) return false;
-    if (hold.touching == 0) return true;
+    if (hold.touching == 0) return !thrown_off(hold);
     switch (failed.result.outcome) {
     case solve::KinsolOutcome::singular:
     case solve::KinsolOutcome::unsolved: return hold.free_with_contact > 0;
@@ -90,6 +109,7 @@ void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equil
                     for (int k = 0; k < 3; ++k)
                         if (const auto* c = constraints.constraint(node, k)) hold.hold(rigid, *c, x);
         one.free_by_supports = hold.free();
+        one.pushed = is_pushed(failed, equilibrium, body);
         for (std::size_t p = 0; p < state.contact.size(); ++p) {
             const model::ContactEvaluation& evaluation = equilibrium.contact()[p];
             const ContactPair& pair = evaluation.pair();
@@ -112,6 +132,10 @@ void hold_now(const FailedAttempt& failed, const equilibrium::Equilibrium& equil
             one.free_motions.clear();
         }
     }
+}
+
+bool thrown_off(const BodyHold& hold) {
+    return hold.free_by_supports > 0 && hold.touching == 0 && hold.touched > 0 && hold.pushed;
 }
 
 const BodyHold* loose_body(const FailedAttempt& failed, const PostMortem& found) {

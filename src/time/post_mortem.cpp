@@ -80,6 +80,7 @@ Cause cause_of_solve(const FailedAttempt& failed, const PostMortem& found) {
     // contact at an iterate that ran away says nothing of what holds the bodies
     if (failed.result.astray) return Cause::diverged;
     if (loose_body(failed, found) != nullptr) return Cause::unsupported_body;
+    if (std::ranges::any_of(found.bodies, thrown_off)) return Cause::diverged;
     switch (failed.result.outcome) {
     case KinsolOutcome::singular: return Cause::singular_tangent;
     case KinsolOutcome::unsolved: return Cause::linear_system;
@@ -116,8 +117,13 @@ void find_place(const FailedAttempt& failed, const equilibrium::Equilibrium& equ
         found.body = worst.body;
         found.node = worst.node;
     }
-    if (found.cause != Cause::unsupported_body || failed.result.adrift >= 0) return;
-    if (const BodyHold* const loose = loose_body(failed, found); loose->body != found.body) {
+    if (failed.result.adrift >= 0) return;
+    const BodyHold* loose = nullptr;
+    if (found.cause == Cause::unsupported_body) loose = loose_body(failed, found);
+    if (const auto thrown = std::ranges::find_if(found.bodies, thrown_off);
+        found.cause == Cause::diverged && thrown != found.bodies.end())
+        loose = &*thrown;
+    if (loose != nullptr && loose->body != found.body) {
         found.body = loose->body;
         found.node = -1;
     }

@@ -1,5 +1,6 @@
 #include "osculate/app/compile.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/file_content.hpp"
 #include "osculate/mesh/surface_faces.hpp"
 #include "osculate/scene/reader.hpp"
 #include "osculate/scene/writer.hpp"
@@ -147,55 +148,38 @@ double mean_edge(const mesh::Mesh& m, const Vec3& n, double d) {
 
 TEST_F(MeshFilesOfScenes, GeometryIsMeshedMoreFinelyWhereItMeetsOthers) {
     if (!OSCULATE_HAS_GMSH) GTEST_SKIP() << "built without Gmsh's library";
-    std::filesystem::copy_file(support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep", "part.brep");
-    const auto scene = [](const std::string& contact, const std::string& pair, const std::string& placed = "") {
-        return scene::parse_scene(
-            "bodies:\n"
-            "  b: {mesh: {cad: {path: part.brep, size: 0.3 m" +
-                contact + "}" + placed +
-                "}, material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"
-                "  table: {mesh: {block: {origin: [-9, -9, -1], size: [18, 18, 1], divisions: [2, 2, 1]}}, "
-                "material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\n"
-                "sets:\n"
-                "  foot: {body: b, plane: {point: [0, 0, 0], normal: [0, 0, 1]}}\n"
-                "  air: {body: b, plane: {point: [0, 0, 0.123], normal: [0, 0, 1]}}\n"
-                "  top: {body: table, surface: z_max}\n"
-                "contact:\n  pair: " +
-                pair + "\nstages:\n  rest: {}\n",
-            "scene.yaml");
+    const std::string data = support::source_tree() + "/tests/mesh/data/",
+                      whole = file_content(data + "foot_on_table.yaml");
+    std::filesystem::copy_file(data + "quarter_cylinder.brep", "quarter_cylinder.brep");
+    const auto scene = [&](std::vector<std::pair<std::string, std::string>> changes) {
+        std::string text = whole;
+        for (const auto& [from, to] : changes) text.replace(text.find(from), from.size(), to);
+        return scene::parse_scene(text, "scene.yaml");
     };
-    const std::string fine = ", contact: {size: 0.05 m, growth: 1.5}";
-    const mesh::Mesh m = build_meshes(scene(fine, "{between: [foot, top]}"))[0];
-    EXPECT_NEAR(mean_edge(m, Vec3::UnitZ(), 0), 0.05, 0.25 * 0.05);
-    EXPECT_GT(mean_edge(m, Vec3::UnitZ(), 1), 3 * 0.05) << "away from contact";
+    constexpr double size = 0.025;
+    const mesh::Mesh m = build_meshes(scene({}))[0];
+    EXPECT_NEAR(mean_edge(m, Vec3::UnitZ(), 0), size, 0.25 * size);
+    EXPECT_GT(mean_edge(m, Vec3::UnitZ(), 1), 3 * size) << "away from contact";
     // as slave, as master, and placed elsewhere: the same mesh
-    EXPECT_EQ(build_meshes(scene(fine, "{slave: foot, master: {set: top}}"))[0].nodes, m.nodes);
-    EXPECT_EQ(build_meshes(scene(fine, "{slave: top, master: {set: foot}}"))[0].nodes, m.nodes);
-    const mesh::Mesh placed =
-        build_meshes(scene(fine, "{between: [foot, top]}",
-                           ", scale: 2, rotate: {axis: [0, 0, 1], angle: 90 deg}, translate: [1, 2, 0]"))[0];
+    const std::string pair = "{between: [sole, top]}";
+    EXPECT_EQ(build_meshes(scene({{pair, "{slave: sole, master: {set: top}}"}}))[0].nodes, m.nodes);
+    EXPECT_EQ(build_meshes(scene({{pair, "{slave: top, master: {set: sole}}"}}))[0].nodes, m.nodes);
+    const mesh::Mesh placed = build_meshes(
+        scene({{"1.5}}}", "1.5}}, scale: 2, rotate: {axis: [0, 0, 1], angle: 90 deg}, translate: [1, 2, 0]}"}}))[0];
     ASSERT_EQ(placed.nodes.size(), m.nodes.size());
     for (std::size_t i = 0; i < m.nodes.size(); ++i) {
         const Vec3& X = m.nodes[i];
         EXPECT_LT((placed.nodes[i] - Vec3(1 - 2 * X.y(), 2 + 2 * X.x(), 2 * X.z())).norm(), 1e-6);
     }
-    const auto fault_of = [](const scene::Scene& one) -> std::string {
-        try {
-            (void)build_meshes(one);
-        } catch (const SceneError& error) {
-            return error.what();
-        }
-        return "";
-    };
-    EXPECT_THAT(fault_of(scene(fine, "{slave: air, master: {set: top}}")),
-                AllOf(HasSubstr("bodies.b.mesh.cad.contact.size"), HasSubstr("set 'air'")));
-    EXPECT_THAT(
-        fault_of(scene::parse_scene("bodies:\n  b: {mesh: {cad: {path: part.brep" + fine +
-                                        "}}, material: {linear_elastic: {E: 1 MPa, nu: 0.2}}}\nstages:\n  rest: {}\n",
-                                    "scene.yaml")),
-        HasSubstr("a contact pair with a set of the body"));
-    for (const char* size : {", contact: {size: 0.3 m}", ", smallest: 0.1 m, contact: {size: 0.05 m}"})
-        EXPECT_THROW((void)scene(size, "{between: [foot, top]}"), SceneError) << size;
+    try {
+        (void)build_meshes(scene({{"contact:\n  stands: " + pair + "\n", ""}}));
+        FAIL() << "it meets nothing";
+    } catch (const SceneError& error) {
+        EXPECT_THAT(error.what(), AllOf(HasSubstr("bodies.foot.mesh.cad.contact.size"),
+                                        HasSubstr("a contact pair with a set of the body")));
+    }
+    EXPECT_THROW((void)scene({{"0.025 m", "0.1 m"}}), SceneError) << "as large as all others";
+    EXPECT_THROW((void)scene({{"size: 0.1 m,", "size: 0.1 m, smallest: 0.05 m,"}}), SceneError) << "forbidden";
 }
 
 } // namespace

@@ -318,14 +318,14 @@ TEST_F(GmshFiles, ElementsAreSmallAroundAFocusAndGrowAwayFromIt) {
 
 TEST_F(GmshFiles, ElementsAreSmallAtSurfacesInContactAndGrowAwayFromThem) {
     const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep";
-    CadOptions options{brep, 0.25};
+    CadOptions options{brep, 0.1};
     const std::size_t even = make_mesh(mesh_cad(options)).nodes.size();
-    options.contact = {.size = 0.04, .growth = 1.4};
+    options.contact = {.size = 0.02, .growth = 1.4};
     EXPECT_EQ(make_mesh(mesh_cad(options)).nodes.size(), even) << "nothing is met";
-    options.meeting = {{Vec3(0, 0, 0), Vec3(0.4, 0, 0), Vec3(0.4, 0.4, 0)},
-                       {Vec3(0, 0, 0), Vec3(0.4, 0.4, 0), Vec3(0, 0.4, 0)}};
+    options.meeting = {{Vec3(0, 0, 0), Vec3(0.2, 0, 0), Vec3(0.2, 0.2, 0)},
+                       {Vec3(0, 0, 0), Vec3(0.2, 0.2, 0), Vec3(0, 0.2, 0)}};
     const auto asked = [&](const Vec3& x) { // the distance from a square
-        const Vec3 foot(std::clamp(x.x(), 0.0, 0.4), std::clamp(x.y(), 0.0, 0.4), 0);
+        const Vec3 foot(std::clamp(x.x(), 0.0, 0.2), std::clamp(x.y(), 0.0, 0.2), 0);
         return std::min(options.size, options.contact.size + (options.contact.growth - 1) * (x - foot).norm());
     };
     const Mesh mesh = make_mesh(mesh_cad(options));

@@ -254,6 +254,19 @@ TEST_F(BodyInItself, IsKeptOutByTheGeneralContactThatIsAdvised) {
     EXPECT_EQ(osculate(mended).code, 0);
 }
 
+class GivenWay : public Program {};
+
+/// Where its last iterates lie is by chance: here they are near, and touch nothing.
+TEST_F(GivenWay, IsNoLackOfSupportsWhileTheLoadPushesTheBodyAgainstAnother) {
+    const Outcome outcome = osculate({"run", scene_file("tests/scenes/failures/given_way.yaml"), "-o", "run", "--quiet",
+                                      "--set", "solver.tolerance=1e-10"});
+    EXPECT_EQ(outcome.code, 3);
+    const json post_mortem = json::parse(content(folder / "run/post_mortem.json"));
+    EXPECT_EQ(post_mortem["cause"], "diverged");
+    EXPECT_EQ(post_mortem["body"], "block");
+    for (const json& one : post_mortem["advice"]) EXPECT_NE(one["key"], "supports");
+}
+
 class FailedIterate : public Program {};
 
 TEST_F(FailedIterate, IsNotWrittenWhereTheSceneDoesNotWantIt) {

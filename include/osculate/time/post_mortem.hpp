@@ -51,6 +51,7 @@ struct BodyHold {
     Index touching = 0;                ///< closed slave nodes on either side of it, at the last iterate
     Index pressed = 0;                 ///< number of these without tensile contact force
     Index touched = 0;                 ///< closed slave nodes at the last accepted state
+    bool pushed = false;               ///< its loads push it against what it touched there
     std::string nearest_pair;          ///< of the smallest gap at the last accepted state; empty: no partner
     double nearest_gap = 0, facet = 0; ///< that gap and the facet's size, m
 };

@@ -20,8 +20,11 @@ solve::KinsolOptions kinsol_options(equilibrium::Equilibrium& equilibrium, Index
 /// Whether nothing holds a body of this solution, though round-off kept the tangent from being singular.
 bool nothing_holds(const equilibrium::Equilibrium& equilibrium, const Vector& z, const LadderOptions& options) {
     constexpr double absurd = 1000; // times where an iterate counts as astray
-    return options.stabilisation.share && !equilibrium.contact().empty() &&
-           !(largest_component(equilibrium.displacements(z)) <= absurd * options.farthest);
+    if (!options.stabilisation.share || equilibrium.contact().empty()) return false;
+    const double moved = largest_component(equilibrium.displacements(z));
+    if (moved <= absurd * options.farthest) return false;
+    const double driven = largest_component(equilibrium.displacements(Vector::Zero(z.size())));
+    return !(moved <= absurd * (options.farthest + driven));
 }
 
 } // namespace

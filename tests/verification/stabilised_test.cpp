@@ -201,6 +201,40 @@ sets:
     EXPECT_NEAR(outcome.contact_force(1).z(), of_hat, same_force * weight);
 }
 
+/// The tangent is not singular to the last digit, and its solution 500 km below the slab.
+TEST(Stabilised, ABodyOnAThreadOfNextToNoStiffnessLandsUnderItsLoad) {
+    const Outcome outcome(R"(
+bodies:
+  slab:
+    mesh: {block: {size: [20 mm, 20 mm, 10 mm], divisions: [4, 4, 2]}}
+    material: {linear_elastic: {E: 70 GPa, nu: 0.33}}
+  block:
+    mesh: {block: {origin: [5 mm, 5 mm, 13 mm], size: [10 mm, 10 mm, 20 mm], divisions: [3, 3, 4]}}
+    material: {linear_elastic: {E: 210 GPa, nu: 0.3}}
+    sections:
+      thread: {box: {min: [0 mm, 0 mm, 23 mm], max: [1 m, 1 m, 1 m]}, material: {linear_elastic: {E: 0.01 Pa, nu: 0}}}
+sets:
+  bed: {body: slab, surface: z_min}
+  ground: {body: slab, surface: z_max}
+  hook: {body: block, surface: z_max}
+  sole: {body: block, surface: z_min}
+  guided: {body: block, box: {min: [0 mm, 0 mm, 12 mm], max: [1 m, 1 m, 22 mm]}}
+supports:
+  bed: {fix: [x, y, z]}
+  hook: {fix: [x, y, z]}
+  guided: {fix: [x, y]}
+contact:
+  joint: {slave: sole, master: {set: ground}, friction: 0.15}
+stages:
+  press: {steps: 2, pressure: {sole: -1 MPa}}
+)");
+    ASSERT_EQ(outcome.failure, "");
+    EXPECT_EQ(outcome.attempts.size(), 2u);
+    EXPECT_EQ(outcome.stabilised, 1);
+    EXPECT_LE(outcome.left_over, 1);
+    EXPECT_NEAR(outcome.contact_force(0).z(), 100, same_force * 100); // 1 MPa on a square of 10 mm
+}
+
 TEST(Stabilised, RejectedAttemptsAndThreadsLeaveNoTrace) {
     auto changes = above(0.05);
     changes.push_back({"stages.rest.steps", "3"});

@@ -346,7 +346,9 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
         gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
         for (int d = 0; d < 3; ++d) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
         diagonal = std::sqrt(diagonal);
-        const double size = options->size > 0 ? options->size / unit : 0.1 * diagonal;
+        const double usual = 0.1 * diagonal; // Gmsh takes none larger but for its factor of all sizes
+        const double size = options->size > 0 ? options->size / unit : usual;
+        const double factor = std::max(1.0, std::ceil(size / usual));
         const Eigen::AlignedBox3d box(Vec3(low[0], low[1], low[2]), Vec3(high[0], high[1], high[2]));
         const Vec3 point = options->focus.point / unit;
         const auto size_at = [&, focus = options->focus](double distance) {
@@ -360,11 +362,12 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
                                                std::to_string(diagonal * unit) + " m across");
         const SizeCallback sizes([&](const Vec3& x) {
             const double all = size_at((x - point).norm());
-            return contact ? contact->at(x * unit, all * unit) / unit : all;
+            return (contact ? contact->at(x * unit, all * unit) / unit : all) / factor;
         });
-        gmsh::option::setNumber("Mesh.MeshSizeMax", size);
-        gmsh::option::setNumber("Mesh.MeshSizeMin", options->smallest / unit);
-        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", options->per_circle);
+        gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
+        gmsh::option::setNumber("Mesh.MeshSizeMax", size / factor);
+        gmsh::option::setNumber("Mesh.MeshSizeMin", options->smallest / unit / factor);
+        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", options->per_circle * factor);
         gmsh::option::setNumber("Mesh.Algorithm", 6);   // frontal Delaunay
         gmsh::option::setNumber("Mesh.Algorithm3D", 1); // Delaunay; HXT works with threads
         gmsh::option::setNumber("Mesh.RandomSeed", 1);

@@ -22,8 +22,10 @@ public:
 
 private:
     std::string before_;
-    std::array<std::pair<const char*, double>, 3> options_{
-        {{"General.Terminal", 0}, {"General.NumThreads", 1}, {"General.AbortOnError", 2}}}; // which throws
+    std::array<std::pair<const char*, double>, 4> options_{{{"General.Terminal", 0},
+                                                            {"General.NumThreads", 1},
+                                                            {"General.AbortOnError", 2}, // which throws
+                                                            {"Mesh.MeshSizeFactor", 1}}};
 };
 
 /// What Gmsh throws, as MeshError.

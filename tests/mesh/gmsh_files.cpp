@@ -316,6 +316,22 @@ TEST_F(GmshFiles, ElementsAreSmallAroundAFocusAndGrowAwayFromIt) {
     EXPECT_GT(ratio / near, 1 / mean);
 }
 
+TEST_F(GmshFiles, ElementsLargerThanATenthOfTheGeometryAreMadeWhereCurvesLetThem) {
+    const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep"; // 1.22 across
+    const auto nodes = [&](double size, int per_circle) {
+        const Mesh mesh = make_mesh(mesh_cad({brep, size, 0, per_circle}));
+        EXPECT_THAT(faults(mesh), IsEmpty());
+        return mesh.nodes;
+    };
+    const std::size_t usual = nodes(0, 0).size(), larger = nodes(0.25, 0).size();
+    EXPECT_LT(larger, usual / 2);
+    EXPECT_LT(nodes(0.4, 0).size(), larger);
+    int on_arc = 0;
+    for (const Vec3& x : nodes(0.4, 48)) on_arc += std::abs(x.z()) < 1e-9 && std::abs(x.head<2>().norm() - 0.5) < 1e-6;
+    EXPECT_GE(on_arc, 48 / 4 + 1);
+    EXPECT_LE(on_arc, 2 * 48 / 4 + 1);
+}
+
 TEST_F(GmshFiles, ElementsAreSmallAtSurfacesInContactAndGrowAwayFromThem) {
     const std::string brep = support::source_tree() + "/tests/mesh/data/quarter_cylinder.brep";
     CadOptions options{brep, 0.1};

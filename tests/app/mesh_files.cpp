@@ -171,6 +171,12 @@ TEST_F(MeshFilesOfScenes, GeometryIsMeshedMoreFinelyWhereItMeetsOthers) {
         const Vec3& X = m.nodes[i];
         EXPECT_LT((placed.nodes[i] - Vec3(1 - 2 * X.y(), 2 + 2 * X.x(), 2 * X.z())).norm(), 1e-6);
     }
+    // a part of the same geometry that meets nothing is meshed with it
+    const mesh::Mesh twin =
+        build_meshes(scene({{"  table:\n", "  twin:\n    mesh: {cad: {path: quarter_cylinder.brep, size: 0.1 m, "
+                                           "contact: {size: 0.025 m, growth: 1.5}}}\n"
+                                           "    material: {linear_elastic: {E: 1 MPa, nu: 0.2}}\n  table:\n"}}))[1];
+    EXPECT_EQ(twin.nodes, m.nodes);
     try {
         (void)build_meshes(scene({{"contact:\n  stands: " + pair + "\n", ""}}));
         FAIL() << "it meets nothing";

@@ -50,39 +50,31 @@ std::vector<Triangles> contact_triangles(const scene::Scene& scene, const std::v
     if (!draft.faults.empty()) return triangles; // compile() meets them again, and names them
     const std::set<std::string> in_contact = sets_in_contact(scene);
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-        const auto& [name, body] = scene.bodies[b];
-        if (refined(body) == nullptr) continue;
-        const std::string key = "bodies." + name + ".mesh.cad.contact.size";
+        const scene::CadMesh* cad = refined(scene.bodies[b].second);
+        if (cad == nullptr) continue;
+        const std::string key = "bodies." + scene.bodies[b].first + ".mesh.cad.contact.size";
         bool meets = false;
-        for (const model::Set& set : draft.plan.model.sets) {
-            if (set.body != static_cast<Index>(b) || !in_contact.contains(set.name)) continue;
+        for (const model::Set& set :
+             draft.plan.model.sets) { // of all parts of the geometry, in one order: it is meshed once
+            const scene::Body& body = scene.bodies[static_cast<std::size_t>(set.body)].second;
+            const scene::CadMesh* other = refined(body);
+            if (other == nullptr || !alike(*cad, *other) || !in_contact.contains(set.name)) continue;
             meets = true;
             if (set.facets.empty())
                 faults.push_back(
                     fault(key, "elements of 'size' that are small enough to show facets of set '" + set.name + "'",
                           "a mesh without any"));
-            for (const mesh::Facet& facet : set.facets) {
-                const int corners = facet.count == 3 || facet.count == 6 ? 3 : 4;
-                const auto corner = [&](int c) {
-                    return unplaced(body.mesh.placement, draft.plan.model.X[facet.nodes[static_cast<std::size_t>(c)]] +
-                                                             draft.plan.model.origin);
-                };
-                for (int c = 1; c + 1 < corners; ++c) triangles[b].push_back({corner(0), corner(c), corner(c + 1)});
+            for (const mesh::Facet& facet : set.facets) { // of tetrahedra: the first three nodes are corners
+                std::array<Vec3, 3>& corners = triangles[b].emplace_back();
+                for (std::size_t c = 0; c < 3; ++c)
+                    corners[c] =
+                        unplaced(body.mesh.placement, draft.plan.model.X[facet.nodes[c]] + draft.plan.model.origin);
             }
         }
         if (!meets)
             faults.push_back(
                 fault(key, "a contact pair with a set of the body; elsewhere 'focus' makes small elements", "none"));
     }
-    for (std::size_t a = 0; a < triangles.size(); ++a)
-        for (std::size_t b = 0; b < a; ++b) {
-            const scene::CadMesh *first = refined(scene.bodies[a].second), *second = refined(scene.bodies[b].second);
-            if (first == nullptr || second == nullptr || !alike(*first, *second)) continue;
-            const std::size_t own = triangles[a].size();
-            triangles[a].insert(triangles[a].end(), triangles[b].begin(), triangles[b].end());
-            triangles[b].insert(triangles[b].end(), triangles[a].begin(),
-                                triangles[a].begin() + static_cast<std::ptrdiff_t>(own));
-        }
     return triangles;
 }
 

@@ -7,11 +7,9 @@ endfunction()
 # include/osculate/NAME, installed as osculate::NAME. A module without sources becomes an interface library.
 osculate_precompiled(osculate_precompiled HEADERS ${OSCULATE_PRECOMPILED} LINKS osculate_options Eigen3::Eigen)
 osculate_position_independent(osculate_precompiled)
-# Several files a compiler run, which saves more than half of the time; not the kernels of elements, which processors are to share out.
-# Off in the preset `dev`, where every file has to include what it needs.
+# Several files a compiler run, which saves more than half of the time. Off in the preset `dev`, where every file has to include what it needs.
 option(OSCULATE_UNITY "Compile several source files at a time" ON)
-set(OSCULATE_APART fe)
-set(OSCULATE_LARGE contact solve) # files, so that fewer are compiled at a time
+set(OSCULATE_LARGE fe) # files, so that fewer are compiled at a time, and processors share them out
 set(OSCULATE_HEADER_ONLY CLI11::CLI11 nlohmann_json::nlohmann_json) # in private use: whoever links a module needs none
 function(osculate_module name)
   cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS" ${ARGN})
@@ -32,10 +30,10 @@ function(osculate_module name)
     target_compile_features(${target} PUBLIC cxx_std_20)
     osculate_position_independent(${target})
     target_precompile_headers(${target} REUSE_FROM osculate_precompiled)
-    if(OSCULATE_UNITY AND NOT name IN_LIST OSCULATE_APART)
+    if(OSCULATE_UNITY)
       set(batch 6)
       if(name IN_LIST OSCULATE_LARGE)
-        set(batch 4)
+        set(batch 3)
       endif()
       set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
     endif()

@@ -4,7 +4,6 @@
 #include "osculate/core/dense_algebra.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <limits>
 #include <numbers>
 
@@ -88,11 +87,11 @@ Matrix determined_polynomials(const MatrixX2& u) {
     const Matrix D = polynomial_matrix(centred * A, 6);
     Matrix quadratic = D.rightCols<3>();
     quadratic.col(1) *= std::numbers::sqrt2; // turns of the axes turn the three then
-    quadratic -= D.leftCols<3>() * D.leftCols<3>().householderQr().solve(quadratic).eval();
+    quadratic -= D.leftCols<3>() * fit_columns(D.leftCols<3>(), quadratic);
     const Mat3 variances = quadratic.transpose() * quadratic / n;
-    const Eigen::SelfAdjointEigenSolver<Mat3> modes(variances); // ascending
+    const auto [sizes, modes] = principal_axes(variances); // ascending
     int k = 0;
-    while (k < 3 && modes.eigenvalues()(2 - k) > determined * determined) ++k;
+    while (k < 3 && sizes(2 - k) > determined * determined) ++k;
     constexpr Index linear = 3;
     if (k == 3) return Matrix::Identity(6, u.rows() > 6 ? 6 : linear);
     if (u.rows() < linear + k + 1) k = 0; // as many terms as nodes only follow them
@@ -103,8 +102,7 @@ Matrix determined_polynomials(const MatrixX2& u) {
     in_u.row(2) << A(1, 0) * A(1, 0), 2 * A(1, 0) * A(1, 1), A(1, 1) * A(1, 1);
     Matrix Z = Matrix::Zero(6, linear + k);
     Z.topLeftCorner<3, 3>().setIdentity();
-    for (int j = 0; j < k; ++j)
-        Z.col(linear + j).tail<3>() = (in_u.transpose() * modes.eigenvectors().col(2 - j)).normalized();
+    for (int j = 0; j < k; ++j) Z.col(linear + j).tail<3>() = (in_u.transpose() * modes.col(2 - j)).normalized();
     return Z;
 }
 
@@ -147,7 +145,7 @@ std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& b
         for (Index j = 0; j < n; ++j) G(i, j) = basis((t.row(i) - t.row(j)).squaredNorm()).f;
     G.topRightCorner(n, terms) = D;
     G.bottomLeftCorner(terms, n) = D.transpose();
-    const Matrix H = G.partialPivLu().solve(Matrix::Identity(n + terms, n));
+    const Matrix H = solve_square(G, Matrix::Identity(n + terms, n));
     if (!H.allFinite()) return std::nullopt;
     const Index size = kernels::padded(n);
     patch.t_.setZero(2, kernels::padded(n + patch.m_));
@@ -158,7 +156,7 @@ std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& b
     patch.D_.setZero(patch.m_, size);
     patch.D_.leftCols(n) = all.transpose();
     patch.fit_.setZero(patch.m_, size);
-    patch.fit_.leftCols(n) = Z * D.householderQr().solve(Matrix::Identity(n, n));
+    patch.fit_.leftCols(n) = Z * fit_columns(D, Matrix::Identity(n, n));
     return patch;
 }
 

@@ -1,9 +1,9 @@
 #include "osculate/contact/surface_audit.hpp"
 
 #include "contact/box_tree.hpp"
+#include "osculate/core/dense_algebra.hpp"
 #include "osculate/mesh/triangle.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -106,12 +106,9 @@ SurfaceAudit::Shell::Shell(const std::vector<mesh::Facet>& outer, const std::vec
 double SurfaceAudit::Shell::change_of_shape(const std::vector<Vec3>& x) const {
     Vec3 centre = Vec3::Zero();
     for (const Index node : nodes) centre += x[node] / static_cast<double>(nodes.size());
-    Mat3 A = Mat3::Zero(); // R maximises tr(R^T A): R = U V^T of A = U S V^T, a reflection undone     [Kabsch 1976]
+    Mat3 A = Mat3::Zero();
     for (std::size_t k = 0; k < nodes.size(); ++k) A += (x[nodes[k]] - centre) * drawn[k].transpose();
-    const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 U = svd.matrixU();
-    if (U.determinant() * svd.matrixV().determinant() < 0) U.col(2) *= -1;
-    const Mat3 R = U * svd.matrixV().transpose();
+    const Mat3 R = nearest_rotation(A);
     double farthest = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k)
         farthest = std::max(farthest, (x[nodes[k]] - centre - R * drawn[k]).squaredNorm());

@@ -1,6 +1,7 @@
 #include "osculate/equilibrium/coupling_start.hpp"
 
-#include <Eigen/QR>
+#include "osculate/core/dense_algebra.hpp"
+
 #include <algorithm>
 
 namespace osculate::equilibrium {
@@ -115,7 +116,7 @@ void start_couplings(const model::Model& model, const linear::Constraints& const
                 -cross_matrix(arm(model, body, motion, body.nodes[i])) / body.radius;
             v.segment<3>(at) = state.v[place_of(body.nodes[i])];
         }
-        const Vector fit = rows.completeOrthogonalDecomposition().solve(v); // the smallest
+        const Vector fit = least_squares(rows, v); // the smallest
         const auto less_held = [&](Index node, const Vec3& free) {
             Vec3 local = constraints.to_local(node, free);
             for (int k = 0; k < 3; ++k)

@@ -1,8 +1,8 @@
 #include "osculate/equilibrium/rigid_term.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
 #include "osculate/equilibrium/coupling_start.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <numbers>
 
@@ -353,7 +353,7 @@ void start_rigid_motion(const model::Model& model, const linear::Constraints& co
         if (n > 0) {
             const Matrix reduced = columns.transpose() * A * columns;
             const Vector right = columns.transpose() * b;
-            a = columns * reduced.completeOrthogonalDecomposition().solve(right);
+            a = columns * least_squares(reduced, right);
         }
         const Vec3 rate = a.tail<3>();
         motion.acceleration = a.head<3>() + rate.cross(arm) + centripetal;

@@ -1,6 +1,7 @@
 #include "osculate/linear/contact_preconditioner.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "osculate/core/dense_algebra.hpp"
+
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -13,8 +14,8 @@ constexpr double softness_factorised = 0.1, softness_multigrid = 1;
 
 /// Nearest positive semidefinite matrix to the symmetric part of M.
 Mat3 positive_part(const Mat3& M) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(0.5 * (M + M.transpose()));
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+    const auto [values, vectors] = principal_axes(0.5 * (M + M.transpose()));
+    return vectors * values.cwiseMax(0).asDiagonal() * vectors.transpose();
 }
 } // namespace
 

@@ -1,8 +1,8 @@
 #include "osculate/model/rigid_body.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
 #include "osculate/model/model.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <numeric>
 
@@ -78,7 +78,7 @@ std::vector<double> weights_about(const std::vector<Vec3>& nodes, const Vec3& po
     Mat3 second = Mat3::Zero();
     for (const Vec3& X : nodes) second += (X - mean) * (X - mean).transpose() / (size * size);
     const Vec3 wanted = (point - mean) / size;
-    const Vec3 b = second.completeOrthogonalDecomposition().solve(wanted);
+    const Vec3 b = least_squares(second, wanted);
     constexpr double fit = 1e-9;
     if ((second * b - wanted).norm() > fit) return {};
     std::vector<double> weights;

@@ -1,10 +1,10 @@
 #include "osculate/output/fields.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 #include "output/nodal_strain.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -124,7 +124,7 @@ template <int k> Values principal(const Snapshot& snapshot, Index body) {
         const Vec6 s = sigma.row(i);
         Mat3 tensor;
         tensor << s(0), s(3), s(5), s(3), s(1), s(4), s(5), s(4), s(2);
-        values.push_back(Eigen::SelfAdjointEigenSolver<Mat3>(tensor, Eigen::EigenvaluesOnly).eigenvalues()(k));
+        values.push_back(principal_axes(tensor).values(k));
     }
     return values;
 }

@@ -14,23 +14,37 @@ namespace {
 
 constexpr double at_the_edge = 1e-9; ///< natural coordinates
 
+/// Of an element type, behind one interface: this is not where time goes, and compiling all of it for every type is.
+struct ShapeFunctions {
+    Vec3 middle;
+    Vector (*N)(const Vec3& xi);
+    Eigen::MatrixX3d (*dN)(const Vec3& xi);
+    bool (*contains)(const Vec3& xi, double tolerance);
+};
+
+ShapeFunctions shape_functions(mesh::CellType type) {
+    return fe::with_element(type, []<class E>() {
+        return ShapeFunctions{E::node_positions().rowwise().mean(),
+                              [](const Vec3& xi) -> Vector { return E::shape(xi); },
+                              [](const Vec3& xi) -> Eigen::MatrixX3d { return E::gradient(xi); }, &E::contains};
+    });
+}
+
 /// Natural coordinates of X by Newton's method from the element's middle; none where they lie outside.
-template <class E>
-std::optional<Vec3> natural_coordinates(const Eigen::Matrix<double, 3, E::nodes>& nodes, const Vec3& X) {
+std::optional<Vec3> natural_coordinates(const ShapeFunctions& element, const Eigen::Matrix3Xd& nodes, const Vec3& X) {
     constexpr int most_iterations = 30;
     constexpr double far = 4; // of the middle: outside
-    const Vec3 middle = E::node_positions().rowwise().mean();
-    Vec3 xi = middle;
+    Vec3 xi = element.middle;
     const WithoutTraps strange_elements;
     for (int k = 0; k < most_iterations; ++k) {
-        const Vec3 miss = X - nodes * E::shape(xi);
-        const Mat3 J = nodes * E::gradient(xi);
+        const Vec3 miss = X - nodes * element.N(xi);
+        const Mat3 J = nodes * element.dN(xi);
         const Vec3 step = J.partialPivLu().solve(miss);
-        if (!step.allFinite() || (xi + step - middle).norm() > far) return {};
+        if (!step.allFinite() || (xi + step - element.middle).norm() > far) return {};
         xi += step;
         if (step.norm() < 1e-14) break;
     }
-    return E::contains(xi, at_the_edge) ? std::optional(xi) : std::nullopt;
+    return element.contains(xi, at_the_edge) ? std::optional(xi) : std::nullopt;
 }
 
 } // namespace
@@ -47,9 +61,9 @@ LocatedPoint locate_point(const model::Body& body, const Vec3& X) {
         const Vec3 air = Vec3::Constant(at_the_edge * box.diagonal().norm());
         box = Eigen::AlignedBox3d(box.min() - air, box.max() + air);
         if (!box.contains(X)) return;
-        fe::with_element(body.mesh.blocks[static_cast<std::size_t>(element.block)].type, [&]<class E>() {
-            if (const auto xi = natural_coordinates<E>(positions, X)) found.place = {nodes, E::shape(*xi)};
-        });
+        const ShapeFunctions functions =
+            shape_functions(body.mesh.blocks[static_cast<std::size_t>(element.block)].type);
+        if (const auto xi = natural_coordinates(functions, positions, X)) found.place = {nodes, functions.N(*xi)};
     });
     return found;
 }

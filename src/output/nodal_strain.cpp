@@ -1,8 +1,9 @@
 #include "output/nodal_strain.hpp"
 
 #include "osculate/fe/extrapolation.hpp"
-#include "osculate/fe/isoparametric_map.hpp"
 #include "output/elements.hpp"
+
+#include <Eigen/LU>
 
 namespace osculate::output {
 
@@ -28,21 +29,35 @@ private:
     Vector volume_;
 };
 
+/// Of an element type: natural gradients of its shape functions at the points of its quadrature rule, and the extrapolation from
+/// there to its nodes (nodes x points).
+struct StrainPoints {
+    std::vector<Eigen::MatrixX3d> dN;
+    Matrix to_nodes;
+};
+
+const StrainPoints& strain_points(mesh::CellType type) {
+    return fe::with_element(type, []<class E>() -> const StrainPoints& {
+        static const StrainPoints points = [] {
+            StrainPoints all;
+            for (const fe::QuadraturePoint& point : E::quadrature()) all.dN.emplace_back(E::gradient(point.xi));
+            all.to_nodes = fe::extrapolation<E>();
+            return all;
+        }();
+        return points;
+    });
+}
+
 /// (6 x nodes of the element)
-template <fe::ReferenceElement E>
-Eigen::Matrix<double, 6, E::nodes> element_strain(const Eigen::Matrix<double, 3, E::nodes>& X,
-                                                  const Eigen::Matrix<double, 3, E::nodes>& u, bool finite) {
-    static const fe::ShapeTable<E> table(E::quadrature());
-    static const Eigen::Matrix<double, E::nodes, E::points> to_nodes = fe::extrapolation<E>();
-    const fe::ElementPoints<E> points(table, X);
-    Eigen::Matrix<double, 6, E::points> strain;
-    for (int q = 0; q < E::points; ++q) {
-        const Mat3 H = u * points.gradients[static_cast<std::size_t>(q)];
+Matrix element_strain(const StrainPoints& points, const Eigen::Matrix3Xd& X, const Eigen::Matrix3Xd& u, bool finite) {
+    Matrix strain(6, static_cast<Index>(points.dN.size()));
+    for (std::size_t q = 0; q < points.dN.size(); ++q) {
+        const Mat3 J = X * points.dN[q], H = u * points.dN[q] * J.inverse();
         Mat3 e = (H + H.transpose()) / 2;
         if (finite) e += H.transpose() * H / 2;
-        strain.col(q) << e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(1, 2), e(2, 0);
+        strain.col(static_cast<Index>(q)) << e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(1, 2), e(2, 0);
     }
-    return strain * to_nodes.transpose();
+    return strain * points.to_nodes.transpose();
 }
 
 } // namespace
@@ -55,10 +70,9 @@ std::vector<double> nodal_strain(const model::Body& body, const Field& u) {
         const std::vector<Index> nodes = nodes_of(body, element);
         const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, u);
         const double volume = kernel.volume(X);
-        fe::with_element(body.mesh.blocks[block].type, [&]<class E>() {
-            const auto strain = element_strain<E>(X, ue, kernel.finite_strain());
-            for (int i = 0; i < E::nodes; ++i) mean.add(nodes[static_cast<std::size_t>(i)], strain.col(i), volume);
-        });
+        const Matrix strain =
+            element_strain(strain_points(body.mesh.blocks[block].type), X, ue, kernel.finite_strain());
+        for (std::size_t i = 0; i < nodes.size(); ++i) mean.add(nodes[i], strain.col(static_cast<Index>(i)), volume);
     });
     return mean.values();
 }

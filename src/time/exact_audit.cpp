@@ -1,7 +1,8 @@
 #include "osculate/time/exact_audit.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
+
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -116,11 +117,8 @@ Eigen::Isometry3d placement(const model::Model& model, const model::RigidBody& r
     Mat3 A = Mat3::Zero();
     for (const Index node : rigid.nodes)
         A += (x[static_cast<std::size_t>(node)] - now) * (model.X[static_cast<std::size_t>(node)] - drawn).transpose();
-    const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 U = svd.matrixU();
-    if (U.determinant() * svd.matrixV().determinant() < 0) U.col(2) *= -1;
     Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
-    place.linear() = U * svd.matrixV().transpose();
+    place.linear() = nearest_rotation(A);
     place.translation() = now - place.linear() * drawn;
     return place;
 }

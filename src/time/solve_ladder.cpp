@@ -101,8 +101,9 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
     constexpr double near = 0.1; // of a stride: worth trying without springs
 
     const StabilisationOptions& how = options.stabilisation;
-    // a smaller step is cheaper than a long search
-    const int most_iterations = options.last_chance ? std::numeric_limits<int>::max() : 4 * options.max_iterations;
+    // a smaller step is cheaper than a long search, and where nothing can come into contact there is nothing to search for
+    const bool at_any_cost = options.last_chance && !statuses.empty();
+    const int most_iterations = at_any_cost ? std::numeric_limits<int>::max() : 4 * options.max_iterations;
     LadderResult result;
     result.rung = "stabilised";
     result.outcome = KinsolOutcome::stopped;

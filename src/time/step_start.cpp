@@ -1,12 +1,12 @@
 #include "time/step_start.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/core/rounded_sum.hpp"
 #include "osculate/equilibrium/coupling_start.hpp"
 #include "osculate/time/post_mortem.hpp"
 #include "time/number.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -90,10 +90,10 @@ void predict(const model::Model& model, const linear::Constraints& constraints, 
         double largest = 0;
         for (const double delta : increments) largest = std::max(largest, std::abs(delta));
         if (largest == 0) continue;
-        Eigen::Matrix<double, Eigen::Dynamic, 6> M(static_cast<Index>(rows.size()), 6);
+        Matrix M(static_cast<Index>(rows.size()), 6);
         for (std::size_t i = 0; i < rows.size(); ++i) M.row(static_cast<Index>(i)) = rows[i];
         const Vector delta = Eigen::Map<const Vector>(increments.data(), static_cast<Index>(increments.size()));
-        const Vector motion = M.completeOrthogonalDecomposition().solve(delta); // the smallest that fits
+        const Vector motion = least_squares(M, delta); // the smallest that fits
         constexpr double fit = 1e-8;
         if ((M * motion - delta).cwiseAbs().maxCoeff() > fit * largest) continue;
         const Vec3 t = motion.head<3>(), w = motion.tail<3>() / size;

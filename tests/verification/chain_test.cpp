@@ -81,8 +81,8 @@ TEST(LinkingNumber, CountsHowOftenOneRingGoesThroughAnother) {
 TEST(Chain, NoLinkLeavesAnother) {
     support::SceneRun run;
     support::run_scene(run, support::shipped("tutorials/chain.yaml"),
-                       {{"stages.swing.duration", "0.02 s"}, {"stages.swing.steps", "20"}});
-    ASSERT_GE(run.steps.size(), 20U);
+                       {{"stages.swing.duration", "0.012 s"}, {"stages.swing.steps", "12"}});
+    ASSERT_GE(run.steps.size(), 12U);
     double nearest = std::numeric_limits<double>::infinity();
     for (const support::RunStep& step : run.steps) {
         std::vector<Polygon> lines;

@@ -16,7 +16,7 @@ std::string ball_on_layer(double E, double friction, double speed, const std::st
     return R"(
 bodies:
   layer:
-    mesh: {block: {origin: [-0.05 m, -0.03 m, -0.02 m], size: [0.36 m, 0.06 m, 0.02 m], divisions: [48, 8, 1]}}
+    mesh: {block: {origin: [-0.05 m, -0.03 m, -0.02 m], size: [0.36 m, 0.06 m, 0.02 m], divisions: [36, 6, 1]}}
     material: {linear_elastic: {E: )" +
            std::to_string(E) + R"(, nu: 0, density: 100}}
   ball:

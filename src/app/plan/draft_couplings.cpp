@@ -2,8 +2,8 @@
 
 #include "app/fault.hpp"
 #include "app/plan/draft.hpp"
+#include "osculate/core/dense_algebra.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <fmt/format.h>
 #include <map>
@@ -21,7 +21,7 @@ bool on_one_line(const std::vector<Vec3>& points) {
     for (const Vec3& X : points) mean += X / static_cast<double>(points.size());
     Mat3 second = Mat3::Zero();
     for (const Vec3& X : points) second += (X - mean) * (X - mean).transpose();
-    const Vec3 squares = Eigen::SelfAdjointEigenSolver<Mat3>(second, Eigen::EigenvaluesOnly).eigenvalues();
+    const Vec3 squares = principal_axes(second).values;
     return !(squares(1) > thin * thin * squares(2));
 }
 

@@ -1,8 +1,8 @@
 #include "app/plan/load_spread.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
 #include "osculate/fe/facet_quadrature.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <map>
 
@@ -41,14 +41,11 @@ LoadSpread::LoadSpread(const std::vector<mesh::SurfaceFace>& faces, const std::v
         if (faces.empty()) one.first = place(node) - centre;
         second += one.first * (place(node) - centre).transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Mat3> axes(0.5 * (second + second.transpose()));
     constexpr double line = 1e-10; // of second moments: a part of 1e-5 across
-    const Vec3 extent = axes.eigenvalues();
+    const auto [extent, axes] = principal_axes(0.5 * (second + second.transpose()));
     spatial_ = extent(2) > 0 && extent(1) > line * extent(2);
     if (spatial_)
-        inverse_ = (extent.sum() * Mat3::Identity() -
-                    axes.eigenvectors() * extent.asDiagonal() * axes.eigenvectors().transpose())
-                       .inverse();
+        inverse_ = (extent.sum() * Mat3::Identity() - axes * extent.asDiagonal() * axes.transpose()).inverse();
     if (point != nullptr) arm_ = *point - centre;
     for (const auto& [node, one] : shares) shares_.push_back(one);
 }

@@ -1,5 +1,7 @@
 #include "osculate/app/rotation_check.hpp"
 
+#include "osculate/core/dense_algebra.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -66,10 +68,10 @@ double turn(const Mat3& H) {
     const Mat3 F = Mat3::Identity() + H;
     if (!(F.determinant() > 0)) return 0;
     // U^2 = 1 + C with C = H + H^T + H^T H
-    const Eigen::SelfAdjointEigenSolver<Mat3> axes(Mat3(H + H.transpose() + H.transpose() * H));
-    const Vec3 U = (axes.eigenvalues().array() + 1).max(0.0).sqrt();
+    const auto [squares, axes] = principal_axes(H + H.transpose() + H.transpose() * H);
+    const Vec3 U = (squares.array() + 1).max(0.0).sqrt();
     if (!(U.minCoeff() > 0)) return 0;
-    const Mat3 R = F * axes.eigenvectors() * U.cwiseInverse().asDiagonal() * axes.eigenvectors().transpose();
+    const Mat3 R = F * axes * U.cwiseInverse().asDiagonal() * axes.transpose();
     return Eigen::AngleAxisd(R).angle();
 }
 

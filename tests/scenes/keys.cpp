@@ -256,6 +256,20 @@ TEST_F(Keys, InitialOverlapLimitIsOfTheFacetSize) {
     EXPECT_THAT(refused.err, HasSubstr("overlap by less than 0.05 of the facet size"));
 }
 
+/// However far: beyond some depth no node is near enough to a surface for contact to see it.
+TEST_F(Keys, GeneralContactRefusesBodiesThatAreInsideOneAnother) {
+    const std::string press = scene_file("tests/scenes/press.yaml");
+    for (const double sunk : {0.02, 0.3, 0.6, 0.8}) {
+        const Outcome checked =
+            osculate({"check", press, "--set", "contact={general: {}}", "--set",
+                      "bodies.cap.mesh.block.origin=[0.3, 0.45, " + std::to_string(1 - sunk) + "]"});
+        EXPECT_EQ(checked.code, sunk < 0.05 ? 0 : 2) << sunk << '\n' << checked.err;
+        if (checked.code != 0) {
+            EXPECT_THAT(checked.err, HasSubstr("contact.general: expected bodies that ")) << sunk;
+        }
+    }
+}
+
 TEST_F(Keys, DescriptionAndFieldsReachTheFiles) {
     const auto files =
         run(scene_file("tests/scenes/press.yaml"), {"description=Pressed, then pulled.", "output.slave_fields=[area]"});

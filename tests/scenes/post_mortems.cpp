@@ -163,7 +163,7 @@ TEST_P(PostMortem, OverridesThatAreAdvisedWorkOrThereAreNone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Fifteen, PostMortem,
+    Deliberate, PostMortem,
     testing::Values(
         Failure{"no_support", "unsupported_body", "cap", 0, "stages.draw", {"stages.draw.pressure.top=10 kPa"}},
         Failure{"torn_off", "unsupported_body", "cap", 3, "stages.pull", {"stages.pull.pressure.top=5 kPa"}},
@@ -181,6 +181,13 @@ INSTANTIATE_TEST_SUITE_P(
                 {"stages.drive.displacement={top: {x: 0 m, y: 0 m, z: -0.1 m}}"},
                 true},
         Failure{"given_way", "diverged", "block", -1, "stages.press", {"stages.press.pressure.top=1 MPa"}, true},
+        Failure{"limit_point",
+                "stalled",
+                "arch",
+                0.755859375,
+                "stages.push",
+                {"stages.push.nodal_force={}", "stages.push.displacement={crown: {y: -20 mm}}"},
+                true},
         Failure{"edges_unseen",
                 "unseen_contact",
                 "upper",

@@ -7,6 +7,7 @@
 #include "app/plan/loose_slaves.hpp"
 #include "app/plan/rigid_surface.hpp"
 #include "osculate/model/general_contact.hpp"
+#include "osculate/time/audit.hpp"
 
 #include <fmt/format.h>
 #include <stdexcept>
@@ -96,7 +97,23 @@ void add_general_contact(Draft& draft) {
     draft.plan.near_at_start = general.near(scope, {});
 }
 
+namespace {
+/// General contact finds nodes that are near a surface. Of a body drawn deeper inside another it sees nothing; the audit does.
+void check_depths(Draft& draft) {
+    const double limit = draft.plan.general->initial_overlap_limit;
+    time::Audit audit(draft.plan.model);
+    audit.examine(Field(draft.plan.model.X.size()));
+    const std::optional<contact::Intrusion> deepest = audit.deepest();
+    if (!deepest || deepest->relative() <= limit) return;
+    draft.faults.push_back(fault(
+        "contact.general",
+        fmt::format("bodies that are inside one another by less than {:.3g} of the facet size at the start", limit),
+        fmt::format("{:.3g} of the facet size: {}", deepest->relative(), time::in_words(*deepest, draft.plan.model))));
+}
+} // namespace
+
 void check_gaps(Draft& draft) {
+    const std::size_t before = draft.faults.size();
     const auto check = [&](const model::ContactPair& pair, double limit, const std::string& key) {
         model::ContactEvaluation evaluation(pair);
         const PairGaps gaps = initial_gaps(evaluation, draft.plan.model.X, draft.timings, draft.threads);
@@ -111,6 +128,7 @@ void check_gaps(Draft& draft) {
               "contact." + draft.plan.contact[p].first);
     for (const model::ContactHistory& history : draft.plan.near_at_start)
         check(*history.pair, draft.plan.general->initial_overlap_limit, "contact.general");
+    if (draft.plan.general && draft.audited() && draft.faults.size() == before) check_depths(draft);
 }
 
 } // namespace osculate::app

@@ -192,12 +192,17 @@ private:
             add("contact." + found_.contact->pair + ".slave", "leave out nodes that are held or driven");
     }
 
-    void diverged() {
-        // where so many cuts changed nothing, in this step or before, more of them do not help
+    /// Whether the step was cut so often, in this step or before, that more of it would change nothing.
+    [[nodiscard]] bool cut_enough() const {
         constexpr std::size_t few = 3; // attempts
         constexpr double cut = 0.125;
-        if (found_.attempts.size() < few && found_.dt > cut * whole_step())
-            smaller_steps("Newton starts nearer to the solution");
+        return found_.attempts.size() >= few || found_.dt <= cut * whole_step();
+    }
+    void diverged() {
+        if (!cut_enough()) smaller_steps("Newton starts nearer to the solution");
+        less_load();
+    }
+    void less_load() {
         add(stage_, "less load than at " + number(found_.last_time) +
                         " s, the last equilibrium, or a displacement instead of the load: a displacement can move a "
                         "body past the point where it gives way under a load");
@@ -257,7 +262,11 @@ private:
     }
 
     void stall() {
-        smaller_steps("Newton starts nearer to the solution");
+        // without contact a residual that stops falling, however short the step, has no equilibrium to fall towards
+        if (failed_.last.contact.empty() && !failed_.stage.dynamics && cut_enough())
+            less_load();
+        else
+            smaller_steps("Newton starts nearer to the solution");
         larger_tolerance();
         if (found_.contact)
             add(key_of(*pair(found_.contact->pair)) + ".friction",

@@ -9,6 +9,7 @@
 #include "osculate/model/general_contact.hpp"
 #include "osculate/time/audit.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
 
@@ -100,7 +101,8 @@ void add_general_contact(Draft& draft) {
 namespace {
 /// General contact finds nodes that are near a surface. Of a body drawn deeper inside another it sees nothing; the audit does.
 void check_depths(Draft& draft) {
-    const double limit = draft.plan.general->initial_overlap_limit;
+    double limit = draft.plan.general->initial_overlap_limit;
+    for (const auto& [name, pair] : draft.plan.contact) limit = std::max(limit, pair.initial_overlap_limit);
     time::Audit audit(draft.plan.model);
     audit.examine(Field(draft.plan.model.X.size()));
     const std::optional<contact::Intrusion> deepest = audit.deepest();

@@ -249,6 +249,12 @@ BodyWork BodyForces::work(const model::State& state) const {
         add_step(0);
         work.damping -= dot(Du, f);
     }
+    work.stiffness_damping = work.damping;
+    if (const double by_M = dynamics_->mass_damping; by_M > 0) {
+        f.reset(f.size());
+        mass().multiply_add(weighted(1 - w.alpha_f, state.v, w.alpha_f, v_start_), f, threads_);
+        work.stiffness_damping -= by_M * dot(Du, f);
+    }
     return work;
 }
 

@@ -45,9 +45,9 @@ std::vector<contact::RefittedPatch> refitted_patches(const Json& json) {
 }
 
 constexpr double time::Ledger::*ledger_numbers[] = {
-    &time::Ledger::kinetic,  &time::Ledger::strain,  &time::Ledger::external,
-    &time::Ledger::friction, &time::Ledger::damping, &time::Ledger::algorithmic,
-    &time::Ledger::contact,  &time::Ledger::balance, &time::Ledger::interface};
+    &time::Ledger::kinetic,   &time::Ledger::strain,      &time::Ledger::external, &time::Ledger::friction,
+    &time::Ledger::damping,   &time::Ledger::algorithmic, &time::Ledger::contact,  &time::Ledger::balance,
+    &time::Ledger::interface, &time::Ledger::settling};
 
 Json to_json(const time::Ledger& ledger) {
     std::vector<double> values;

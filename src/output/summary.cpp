@@ -47,6 +47,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
         if (checks.energy_balance) list["energy_balance"] = *checks.energy_balance;
         if (checks.energy_growth) list["energy_growth"] = *checks.energy_growth;
         if (checks.closing_loss) list["closing_loss"] = *checks.closing_loss;
+        if (checks.settling_loss) list["settling_loss"] = *checks.settling_loss;
         if (checks.rotation_strain) list["rotation_strain"] = *checks.rotation_strain;
         list["penetration"] = checks.penetration;
         list["penetration_m"] = checks.penetration_m;

@@ -82,6 +82,7 @@ std::string checks_section(const RunFiles& files) {
         {"energy_balance", "What the energies do not add up to, of the largest energy"},
         {"energy_growth", "Kinetic plus strain energy beyond external work, of the largest energy"},
         {"closing_loss", "Energy that gaps took when they closed, of the largest energy"},
+        {"settling_loss", "Energy that impacts and stiffness damping took by default, of the largest energy"},
         {"rotation_strain", "Strain that rotations add to bodies at small strain"},
         {"penetration", "Deepest place of a body inside another, in facet sizes"},
         {"penetration_m", "The same as a length"}};

@@ -128,7 +128,9 @@ Ledger advanced(const Ledger& ledger, const model::Model& model, const equilibri
     next.external += external;
     next.friction += friction;
     // an impact is inelastic on purpose
-    next.damping += work.damping + (impact ? algorithmic - contact - friction - taken : plastic + law.damping);
+    const double of_impact = impact ? algorithmic - contact - friction - taken : 0;
+    next.damping += work.damping + (impact ? of_impact : plastic + law.damping);
+    next.settling += work.stiffness_damping + (impact ? of_impact - plastic : 0);
     const double late = algorithmic - plastic + law.algorithmic;
     // what a step too long for it takes of an impact on an interface is lost in closing gaps, as with exact contact
     const double closing = closes_softly(from, to) ? std::max(0.0, late) : 0;

@@ -254,6 +254,38 @@ TEST(RunChecks, MeasureEnergiesAgainstTheLargest) {
     });
 }
 
+TEST(RunChecks, WarnOfInelasticImpactsThatARuleChose) {
+    run(columns, [](const time::AcceptedStep& step, Plan& plan) {
+        time::Stage inelastic = step.stage, resolved = step.stage;
+        inelastic.limits.inelastic_impacts = true;
+        const auto with = [&](const time::Ledger& ledger, const time::Stage& stage) {
+            return time::AcceptedStep{step.state, step.equilibrium, step.dt, step.iterations, stage, &ledger};
+        };
+        time::Ledger fallen, landed; // 10 J, of which an impact takes 9, friction the rest
+        fallen.kinetic = 10;
+        landed.damping = landed.settling = 9;
+        landed.friction = 1;
+        RunChecks by_rule(plan.model, {}, true), told(plan.model, {}, false), follows(plan.model, {}, true);
+        for (const time::Ledger* ledger : {&fallen, &landed}) {
+            by_rule.accepted(with(*ledger, inelastic));
+            told.accepted(with(*ledger, inelastic));
+            follows.accepted(with(*ledger, resolved)); // damping that the scene asks for
+        }
+        EXPECT_NEAR(by_rule.checks().settling_loss.value(), 0.9, round_off);
+        EXPECT_THAT(by_rule.warnings(), ElementsAre(HasSubstr("took 0.9 of the largest energy")));
+        EXPECT_FALSE(told.checks().settling_loss);
+        EXPECT_THAT(told.warnings(), IsEmpty());
+        EXPECT_EQ(follows.checks().settling_loss.value(), 0);
+        EXPECT_THAT(follows.warnings(), IsEmpty());
+        RunChecks resumed(plan.model, {}, false); // the scene of a run's folder says `inelastic`
+        resumed.recall(by_rule.memory());
+        EXPECT_EQ(resumed.warnings(), by_rule.warnings());
+        landed.settling = 9.5;
+        resumed.accepted(with(landed, inelastic));
+        EXPECT_NEAR(resumed.checks().settling_loss.value(), 0.95, round_off);
+    });
+}
+
 TEST(RunChecks, JudgeHowARunEnded) {
     const model::Model none;
     const auto misses = [&](const scene::Expectation& expect, const std::string& failure) {

@@ -58,7 +58,7 @@ TEST_F(SummaryFile, HoldsEveryMemberUnderItsName) {
 
 TEST_F(SummaryFile, HoldsChecksAndWhatWasExpected) {
     Summary summary = example();
-    summary.checks = Summary::Checks{1e-12, 0.5, 0.25, {}, {}, {}, {}};
+    summary.checks = Summary::Checks{1e-12, 0.5, 0.25, {}, {}, {}, {}, {}};
     summary.expectation = Summary::Expectation{{"gave up but should complete"}};
     write_summary(folder / "summary.json", summary);
     json read = json::parse(content(folder / "summary.json"));
@@ -68,6 +68,7 @@ TEST_F(SummaryFile, HoldsChecksAndWhatWasExpected) {
     summary.checks->energy_balance = 1e-10;
     summary.checks->energy_growth = 1e-3;
     summary.checks->closing_loss = 0.1;
+    summary.checks->settling_loss = 0.3;
     summary.checks->rotation_strain = 0.2;
     summary.warnings = {"a tenth went"};
     summary.expectation->misses.clear();

@@ -46,6 +46,12 @@ TEST(Ledger, AddsUpUnderFriction) {
     const Ledger& end = record.steps.back().ledger;
     EXPECT_GT(end.friction, 0.3 * kinetic);
     EXPECT_GT(end.damping, 0.1 * kinetic);
+    double by_mass = 0, before = kinetic; // mass_damping 2T dt, the block hardly vibrates
+    for (const auto& [state, unbalanced, iterations, now] : record.steps) {
+        by_mass += slide.dynamics->mass_damping * (before + now.kinetic) * (slide.duration / slide.steps);
+        before = now.kinetic;
+    }
+    EXPECT_NEAR(end.damping - end.settling, by_mass, 0.02 * by_mass) << "stiffness damping apart";
     // nothing lifts off: normal forces act along no way, but for gaps within the solver's tolerance
     EXPECT_LT(std::abs(end.contact), 1e-9 * end.friction);
     EXPECT_LT(std::abs(end.balance), 1e-9 * end.friction);

@@ -85,6 +85,7 @@ TEST(Settling, AllEnergyOfTheFallIsDampedAndTheLedgerCloses) {
     EXPECT_NEAR(end.external, fallen, 1e-3 * fallen) << "and a little of the floor's strain";
     EXPECT_NEAR(end.damping + end.algorithmic, fallen, 1e-3 * fallen);
     EXPECT_LT(end.algorithmic, 0.01 * fallen) << "where gravity sets in";
+    EXPECT_DOUBLE_EQ(end.settling, end.damping);
     EXPECT_LT(std::abs(end.contact), 1e-6 * fallen);
     const double change = end.kinetic + end.strain; // both are 0 at the start
     EXPECT_NEAR(change, end.external + end.contact - end.friction - end.damping - end.algorithmic + end.balance,

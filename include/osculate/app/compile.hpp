@@ -57,6 +57,7 @@ struct Plan {
     std::vector<PlanItem> items;
     std::vector<std::string> mesh_notes; ///< of build_meshes
 
+    bool settles_by_rule = false; ///< a rule, not the scene, made impacts of some stage inelastic
     /// The scene's pairs, then those that general contact finds at the start.
     [[nodiscard]] model::ContactPairs pairs_at_start() const;
     /// Scope of the latter, null without general contact.

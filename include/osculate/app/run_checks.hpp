@@ -21,13 +21,15 @@ namespace osculate::app {
 ///   penetration     deepest slave node below its master, open or closed, in sizes of its facet; or deepest node or
 ///                   edge inside another body or its own according to the audit of geometry
 ///   closing_loss    energy lost in closing gaps: exact contact returns none of it, see docs/theory.md
+///   settling_loss   energy lost in inelastic impacts and to stiffness damping, where a rule chose these
 ///   rotation_strain what rotations add to strains at small strain, see RotationCheck
 /// All energies are fractions of the largest energy: kinetic plus strain, or the work of external forces.
 class RunChecks {
 public:
     /// The model must outlive this object.
-    RunChecks(const model::Model& model, std::optional<scene::Expectation> expect)
-        : model_(model), expect_(std::move(expect)), rotations_(model) {}
+    /// @param settles_by_rule  see Plan
+    RunChecks(const model::Model& model, std::optional<scene::Expectation> expect, bool settles_by_rule = false)
+        : model_(model), expect_(std::move(expect)), settles_by_rule_(settles_by_rule), rotations_(model) {}
 
     void accepted(const time::AcceptedStep& step);
     /// Results so far, as plain numbers; recall() continues from them.
@@ -49,10 +51,11 @@ private:
     void add_audit(const time::AcceptedStep& step);
     /// Finds slaves that have left the master over the end of its sector.
     void add_crossing(const time::AcceptedStep& step);
-    void add_energies(const time::Ledger& ledger);
+    void add_energies(const time::Ledger& ledger, const time::Stage& stage);
 
     const model::Model& model_;
     const std::optional<scene::Expectation> expect_;
+    bool settles_by_rule_;
     RotationCheck rotations_;
     contact::Intrusion deepest_;                    ///< body -1: none
     double deepest_time_ = 0;                       ///< s
@@ -64,6 +67,7 @@ private:
     bool dynamic_ = false;                          ///< a ledger was seen
     double energy_ = 0, balance_ = 0, growth_ = 0;  ///< J
     double contact_ = 0, closing_ = 0;              ///< J, Ledger::contact of the last step; sum of its decreases
+    double settling_ = 0, settled_ = 0; ///< J, likewise Ledger::settling, sum of its increases where they count
 };
 
 } // namespace osculate::app

@@ -16,7 +16,8 @@ namespace osculate::equilibrium {
 /// Work of the body forces over the displacements of a step, J.
 struct BodyWork {
     double inertia = 0, internal = 0, damping = 0;
-    double follower = 0; ///< work of the follower pressures on the bodies
+    double stiffness_damping = 0; ///< the part of `damping` that is not proportional to mass
+    double follower = 0;          ///< work of the follower pressures on the bodies
 };
 
 /// A pressure that follows its faces over a step.

@@ -38,7 +38,8 @@ struct Summary {
         double penetration = 0, penetration_m = 0;           ///< in facet sizes; m
         std::optional<double> energy_balance, energy_growth; ///< of the largest energy; none without dynamic step
         std::optional<double> closing_loss;                  ///< likewise: lost in closing gaps
-        std::optional<double> rotation_strain;               ///< that rotations add; none without small strain
+        std::optional<double> settling_loss;   ///< likewise: by what a rule chose to let bodies come to rest
+        std::optional<double> rotation_strain; ///< that rotations add; none without small strain
     };
     /// The deepest place at which a body was inside another in an accepted step, see contact::SurfaceAudit.
     struct Audit {

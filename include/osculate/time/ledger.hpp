@@ -16,7 +16,8 @@ struct Ledger {
     double interface = 0;           ///< ... which is this part of it
     double external = 0;            ///< loads, supports, driven motions and changes of laws
     double friction = 0;            ///< dissipated, >= 0
-    double damping = 0;             ///< dissipated, by damping, by inelastic impacts and by plastic flow
+    double damping = 0;             ///< dissipated, by damping, by inelastic impacts and by plastic flow ...
+    double settling = 0;            ///< ... of which stiffness damping and inelastic impacts took this
     double algorithmic =
         0; ///< dissipated by the integrator: work of inertia and stiffness beyond their energies' change
     /// Work of normal contact forces beyond what interfaces store, and what the integrator takes of the energy where nodes of

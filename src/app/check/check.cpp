@@ -201,8 +201,15 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
         if (tie.left_out > 0) fmt::format_to(out, "; {} nodes are too far from the master, or beside it", tie.left_out);
         fmt::format_to(out, "\n");
     }
-    for (const time::Stage& stage : plan.stages)
+    for (const time::Stage& stage : plan.stages) {
         fmt::format_to(out, "stage {}: {} step(s) in {:.6g} s\n", stage.name, stage.steps, stage.duration);
+        if (stage.limits.inelastic_impacts)
+            fmt::format_to(out,
+                           "  impacts are inelastic{}, with a stiffness damping of {:.3g} s: bodies rebound little or "
+                           "not at all; impacts: resolved follows rebounds\n",
+                           plan.settles_by_rule ? ", the default with general contact" : "",
+                           stage.dynamics->stiffness_damping);
+    }
     for (std::size_t i = 0; i < check.free.size();) { // a line for what is said of the same bodies
         const FreeMotion& first = check.free[i];
         std::string motions;

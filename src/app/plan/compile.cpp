@@ -68,7 +68,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft);
     add_cyclic_symmetry(draft);
     throw_faults(draft);
-    settle_dynamics(draft.scene);
+    draft.plan.settles_by_rule = settle_dynamics(draft.scene);
     settle_pairs(draft);
     adjust_slaves(draft);
     throw_faults(draft);
@@ -113,7 +113,7 @@ Plan compile(scene::Scene& scene, int threads, Timings& timings, std::shared_ptr
     plan.mesh_notes = std::move(notes);
     scene.contact = plan.contact;
     scene.general = plan.general;
-    settle_dynamics(scene);
+    (void)settle_dynamics(scene);
     return plan;
 }
 

@@ -27,19 +27,22 @@ double recovery_time(double whole_step) {
     return steps * whole_step;
 }
 
-void settle_dynamics(scene::Scene& scene) {
+bool settle_dynamics(scene::Scene& scene) {
+    bool by_rule = false;
     for (auto& [name, stage] : scene.stages) {
         auto* analysis = std::get_if<scene::DynamicAnalysis>(&stage.analysis);
         if (analysis == nullptr) continue;
         if (analysis->impacts == scene::Impacts::automatic) {
             const bool settles = scene.general && !keeps_energy(*analysis) && !stage.control.error_tolerance;
             analysis->impacts = settles ? scene::Impacts::inelastic : scene::Impacts::resolved;
+            by_rule = by_rule || settles;
         }
         if (!analysis->stiffness_damping)
             analysis->stiffness_damping = analysis->impacts == scene::Impacts::inelastic
                                               ? automatic_stiffness_damping(stage.duration / stage.steps)
                                               : 0;
     }
+    return by_rule;
 }
 
 } // namespace osculate::app

@@ -7,7 +7,8 @@ namespace osculate::app {
 
 /// Decides how impacts are taken, and the stiffness damping, in dynamic stages that leave it open. Impacts are inelastic
 /// with general contact, unless the integrator keeps all energy or an error in time is bounded.
-void settle_dynamics(scene::Scene& scene);
+/// @returns whether this rule made those of any stage inelastic
+bool settle_dynamics(scene::Scene& scene);
 
 /// Rayleigh damping by which vibrations that steps cannot follow die out, s: a tenth of the stage's step. A vibration
 /// of n steps a period has the damping ratio pi/(10 n).

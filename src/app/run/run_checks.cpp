@@ -26,9 +26,9 @@ void RunChecks::accepted(const time::AcceptedStep& step) {
     if (!model_.cyclic.empty() && crossed_ < 0) add_crossing(step);
     rotations_.accepted(step.state, step.equilibrium.constraints());
     if (step.ledger == nullptr)
-        contact_ = 0; // the next dynamic stage opens a ledger of its own
+        contact_ = settling_ = 0; // the next dynamic stage opens a ledger of its own
     else
-        add_energies(*step.ledger);
+        add_energies(*step.ledger, step.stage);
 }
 
 void RunChecks::add_crossing(const time::AcceptedStep& step) {
@@ -117,7 +117,7 @@ output::Summary::Audit RunChecks::audit() const {
     return found;
 }
 
-void RunChecks::add_energies(const time::Ledger& ledger) {
+void RunChecks::add_energies(const time::Ledger& ledger, const time::Stage& stage) {
     dynamic_ = true;
     const double dissipated = ledger.friction + ledger.damping + ledger.algorithmic;
     const double rise = ledger.contact + ledger.balance - dissipated, energy = ledger.kinetic + ledger.strain;
@@ -127,6 +127,8 @@ void RunChecks::add_energies(const time::Ledger& ledger) {
     growth_ = std::max(growth_, rise);
     closing_ += std::max(0.0, contact_ - ledger.contact);
     contact_ = ledger.contact;
+    if (settles_by_rule_ && stage.limits.inelastic_impacts) settled_ += ledger.settling - settling_;
+    settling_ = ledger.settling;
 }
 
 std::vector<double> RunChecks::memory() const {
@@ -155,25 +157,29 @@ std::vector<double> RunChecks::memory() const {
                                 contact_,
                                 closing_,
                                 static_cast<double>(crossed_),
-                                crossed_time_};
+                                crossed_time_,
+                                settles_by_rule_ ? 1.0 : 0.0,
+                                settled_,
+                                settling_};
     const std::vector<double> rotations = rotations_.memory();
     numbers.insert(numbers.end(), rotations.begin(), rotations.end());
     return numbers;
 }
 
 void RunChecks::recall(const std::vector<double>& memory) {
-    double dynamic = 0, body = -1, other = -1, node = -1, crossed = -1;
+    double dynamic = 0, body = -1, other = -1, node = -1, crossed = -1, by_rule = 0;
     contact::Intrusion& d = deepest_;
-    double* const members[] = {&left_over_,    &acting_,  &penetration_, &penetration_m_, &excess_,
-                               &excessive_,    &bound_,   &dynamic,      &energy_,        &balance_,
-                               &growth_,       &body,     &other,        &node,           &d.depth,
-                               &d.excess,      &d.length, &d.place.x(),  &d.place.y(),    &d.place.z(),
-                               &deepest_time_, &contact_, &closing_,     &crossed,        &crossed_time_};
+    double* const members[] = {&left_over_,    &acting_,     &penetration_,  &penetration_m_, &excess_,  &excessive_,
+                               &bound_,        &dynamic,     &energy_,       &balance_,       &growth_,  &body,
+                               &other,         &node,        &d.depth,       &d.excess,       &d.length, &d.place.x(),
+                               &d.place.y(),   &d.place.z(), &deepest_time_, &contact_,       &closing_, &crossed,
+                               &crossed_time_, &by_rule,     &settled_,      &settling_};
     constexpr std::size_t count = std::size(members);
     if (memory.size() < count) throw std::runtime_error("the checkpoint holds no checks of the run");
     for (std::size_t i = 0; i < count; ++i) *members[i] = memory[i];
     rotations_.recall(std::span(memory).subspan(count));
     dynamic_ = dynamic != 0;
+    settles_by_rule_ = settles_by_rule_ || by_rule != 0; // the scene of a run's folder has the rule's choice filled in
     d.body = static_cast<Index>(body);
     d.other = static_cast<Index>(other);
     d.node = static_cast<Index>(node);
@@ -190,6 +196,7 @@ output::Summary::Checks RunChecks::checks() const {
         checks.energy_balance = share(balance_, energy_);
         checks.energy_growth = share(growth_, energy_);
         checks.closing_loss = share(closing_, energy_);
+        if (settles_by_rule_) checks.settling_loss = share(settled_, energy_);
     }
     return checks;
 }
@@ -211,6 +218,13 @@ std::vector<std::string> RunChecks::warnings() const {
             "sector: the next one would bear it, but contact does not see that. Choose ends that nothing slides over",
             crossed_time_, X.x(), X.y(), X.z()));
     }
+    if (dynamic_ && share(settled_, energy_) > much)
+        warnings.push_back(fmt::format(
+            "impacts, which are inelastic by default with general contact, and the stiffness damping that goes with "
+            "them "
+            "took {:.2g} of the largest energy: bodies rebound too little or not at all. Set impacts of the dynamic "
+            "stages to resolved if they should rebound, to inelastic if they should come to rest",
+            share(settled_, energy_)));
     if (dynamic_ && share(closing_, energy_) > much)
         warnings.push_back(
             fmt::format("gaps that closed took {:.2g} of the largest energy, and exact contact takes none: rebounds "

@@ -56,7 +56,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
                          Settings settings)
     : scene_(scene), plan_(plan), stepper_(stepper), timings_(timings), settings_(std::move(settings)),
       progress_(planned(plan), settings_.quiet ? output::Progress::Style::quiet : output::Progress::style_of(stderr)),
-      checks_(plan.model, scene.expect) {
+      checks_(plan.model, scene.expect, plan.settles_by_rule) {
     const scene::Output& out = scene.output;
     const fs::path& folder = directory();
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();

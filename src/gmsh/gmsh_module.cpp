@@ -308,10 +308,11 @@ double cubes(const Eigen::AlignedBox3d& box, const Vec3& point, const std::funct
 class SizeCallback {
 public:
     explicit SizeCallback(std::function<double(const Vec3&)> size_at) {
-        // later versions also give the size so far
-        gmsh::model::mesh::setSizeCallback([at = std::move(size_at)](int, int, double x, double y, double z, auto...) {
-            return at({x, y, z});
-        });
+        // later versions also give the size so far, of curvature, and take what comes back in its place
+        gmsh::model::mesh::setSizeCallback(
+            [at = std::move(size_at)](int, int, double x, double y, double z, auto... so_far) {
+                return std::min({at({x, y, z}), so_far...});
+            });
     }
     ~SizeCallback() {
         try {

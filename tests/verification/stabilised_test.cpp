@@ -218,7 +218,7 @@ sets:
   ground: {body: slab, surface: z_max}
   hook: {body: block, surface: z_max}
   sole: {body: block, surface: z_min}
-  guided: {body: block, box: {min: [0 mm, 0 mm, 12 mm], max: [1 m, 1 m, 22 mm]}}
+  guided: {body: block, box: {min: [0 mm, 0 mm, 14 mm], max: [1 m, 1 m, 22 mm]}}
 supports:
   bed: {fix: [x, y, z]}
   hook: {fix: [x, y, z]}

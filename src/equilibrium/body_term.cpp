@@ -43,7 +43,7 @@ void BodyTerm::add_product(const Direction& d, Field& f, VectorRef) {
 }
 
 void BodyTerm::add_transposed(const Weights& of, Weights& by) const {
-    bodies_.tangent().multiply_add(of.nodes, by.nodes, threads_);
+    bodies_.multiply_add_transposed(of.nodes, by.nodes);
 }
 
 void BodyTerm::complete(const ConstVectorRef&, model::State& state) const {

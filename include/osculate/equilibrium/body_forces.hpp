@@ -91,8 +91,11 @@ public:
     /// them.
     void add_weights_of_motion(const StateWeights& end, Field& by_u) const;
     /// Adds the weights that the state at the start has by weights of forces f (nodes), and by those of velocities and accelerations
-    /// at the end, all at fixed displacements there. @pre dynamics of linear bodies without follower pressures
-    void add_transposed_of_start(const Field& of, const StateWeights& end, StateWeights& start) const;
+    /// at the end, all at fixed displacements u there. @pre dynamics without follower pressures, and where elements are nonlinear without
+    /// stiffness damping
+    void add_transposed_of_start(const Field& u, const Field& of, const StateWeights& end, StateWeights& start) const;
+    /// y += A^T x, A the tangent.
+    void multiply_add_transposed(const Field& x, Field& y) const;
     /// Inertia part of the tangent: d/du of the force in one direction, summed over the row of a node, N/m.
     [[nodiscard]] double inertia(Index node) const;
     /// Work over the step that ended in `state`.

@@ -94,7 +94,7 @@ public:
     /// at its end, all at fixed unknowns.
     void add_transposed_of_start(const Weights& of, const StateWeights& end, StateWeights& start) const {
         contact_.add_transposed_of_start(of, start);
-        if (bodies().dynamic()) bodies().add_transposed_of_start(of.nodes, end, start);
+        if (bodies().dynamic()) bodies().add_transposed_of_start(displacements(last_z_), of.nodes, end, start);
     }
 
     /// z from displacements and contact forces, and the state (without time) from z.

@@ -18,7 +18,7 @@ struct FinalQuantity {
 ///     dq/dp = - sum_n w_n . dF_n/dp
 /// so that one solution a step serves all numbers p. dF_n/dp is a difference of residuals of two changed models, with p - dp and
 /// p + dp, at the unknowns of the run; its error is of order dp^2. In dynamics a state has velocities and accelerations, too, which are
-/// affine in the displacements; bodies are linear there, and all stages dynamic. Bodies have a symmetric stiffness and no memory but
+/// affine in the displacements, and all stages are dynamic. Bodies have a symmetric stiffness and no memory but
 /// that of temperatures. How patches are fitted anew is taken as given.
 class AdjointRun final : public BesideRun {
 public:

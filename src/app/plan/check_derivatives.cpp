@@ -50,9 +50,14 @@ std::string bars_gradients(const scene::Scene& scene, const Plan& plan) {
         if (is_plastic(body)) return "body '" + name + "', whose material has a past";
     if (std::ranges::none_of(plan.stages, dynamic)) return {};
     if (!std::ranges::all_of(plan.stages, dynamic)) return "static and dynamic stages";
-    for (const model::Body& body : model.bodies)
-        if (!std::ranges::all_of(body.kernels, [](const auto& kernel) { return kernel->linear(); }))
-            return "a dynamic stage with finite strains or temperatures, in body '" + body.name + "'";
+    const bool damped =
+        std::ranges::any_of(plan.stages, [](const auto& s) { return s.dynamics->stiffness_damping > 0; });
+    for (const model::Body& body : model.bodies) {
+        if (std::ranges::any_of(body.kernels, [](const auto& kernel) { return kernel->heated(); }))
+            return "a dynamic stage with temperatures, in body '" + body.name + "'";
+        if (damped && !std::ranges::all_of(body.kernels, [](const auto& kernel) { return kernel->linear(); }))
+            return "a dynamic stage with stiffness_damping, and body '" + body.name + "' at finite strain";
+    }
     for (const auto& pair : model.pairs)
         if (pair->options().overclosure || pair->options().tangential_damping > 0)
             return "pair '" + pair->name() + "', whose forces in dynamics are means over a step";
@@ -67,8 +72,8 @@ void check_gradients(const scene::Scene& scene, const Plan& plan, bool shared, s
     if (scene.general) faults.push_back(fault(all, "contact by named pairs", "contact.general, whose pairs change"));
     if (const std::string what = bars_gradients(scene, plan); !what.empty())
         faults.push_back(fault(all,
-                               "stages of elastic bodies, each free of the others but for contact: static ones, or "
-                               "dynamic ones at small strain",
+                               "stages of elastic bodies, each free of the others but for contact, all static or all "
+                               "dynamic",
                                what));
     const std::string resolved = scene::write_scene(scene);
     for (const auto& [name, gradient] : scene.output.gradients) {

@@ -205,8 +205,8 @@ std::string in_words(const LoadedScene& loaded, const Check& check) {
         fmt::format_to(out, "stage {}: {} step(s) in {:.6g} s\n", stage.name, stage.steps, stage.duration);
         if (stage.limits.inelastic_impacts)
             fmt::format_to(out,
-                           "  impacts are inelastic{}, with a stiffness damping of {:.3g} s: bodies rebound little or "
-                           "not at all; impacts: resolved follows rebounds\n",
+                           "  impacts are inelastic{}, with a stiffness damping of {:.3g} s: small or no "
+                           "rebounds, and vibrations die out; impacts: resolved follows rebounds\n",
                            plan.settles_by_rule ? ", the default with general contact" : "",
                            stage.dynamics->stiffness_damping);
     }

@@ -221,9 +221,8 @@ std::vector<std::string> RunChecks::warnings() const {
     if (dynamic_ && share(settled_, energy_) > much)
         warnings.push_back(fmt::format(
             "impacts, which are inelastic by default with general contact, and the stiffness damping that goes with "
-            "them "
-            "took {:.2g} of the largest energy: bodies rebound too little or not at all. Set impacts of the dynamic "
-            "stages to resolved if they should rebound, to inelastic if they should come to rest",
+            "them took {:.2g} of the largest energy: rebounds are too small, and vibrations die out. Set impacts of "
+            "the dynamic stages to resolved where these matter, to inelastic where bodies should come to rest",
             share(settled_, energy_)));
     if (dynamic_ && share(closing_, energy_) > much)
         warnings.push_back(

@@ -77,6 +77,7 @@ TEST_F(SummaryFile, HoldsChecksAndWhatWasExpected) {
     EXPECT_EQ(read["checks"]["energy_balance"], 1e-10);
     EXPECT_EQ(read["checks"]["energy_growth"], 1e-3);
     EXPECT_EQ(read["checks"]["closing_loss"], 0.1);
+    EXPECT_EQ(read["checks"]["settling_loss"], 0.3);
     EXPECT_EQ(read["checks"]["rotation_strain"], 0.2);
     EXPECT_EQ(read["warnings"], json::parse(R"(["a tenth went"])"));
     EXPECT_EQ(read["expectation"]["met"], true);

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -66,23 +68,33 @@ std::vector<Facet> exterior_facets(const Mesh& mesh) {
         }
     }
 
-    // Faces of the same nodes are neighbours once sorted; the place in `faces` restores the order afterwards.
-    std::vector<std::pair<std::array<Index, 4>, std::size_t>> keys(faces.size());
+    // Faces of the same nodes have the same smallest one: only those are compared.
+    using Key = std::array<Index, 4>;
+    std::vector<Key> keys(faces.size());
+    std::vector<std::size_t> begin(mesh.nodes.size() + 2, 0); // by smallest node
+    const auto smallest = [](const Key& key) { return static_cast<std::size_t>(key[0] < 0 ? key[1] : key[0]); };
     for (std::size_t f = 0; f < faces.size(); ++f) {
-        keys[f] = {faces[f].nodes, f};
-        std::sort(keys[f].first.begin(), keys[f].first.end());
+        keys[f] = faces[f].nodes;
+        std::ranges::sort(keys[f]);
+        ++begin[smallest(keys[f]) + 2];
     }
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::size_t> single;
-    for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
-        while (last < keys.size() && keys[last].first == keys[first].first) ++last;
-        if (last - first == 1) single.push_back(keys[first].second);
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<std::size_t> of_node(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) of_node[begin[smallest(keys[f]) + 1]++] = f;
+    std::vector<char> single(faces.size(), 0);
+    for (std::size_t node = 0; node + 2 < begin.size(); ++node) {
+        const std::span list(of_node.begin() + static_cast<std::ptrdiff_t>(begin[node]),
+                             of_node.begin() + static_cast<std::ptrdiff_t>(begin[node + 1]));
+        std::ranges::sort(list, {}, [&](std::size_t f) -> const Key& { return keys[f]; });
+        for (std::size_t first = 0, last = 0; first < list.size(); first = last) {
+            while (last < list.size() && keys[list[last]] == keys[list[first]]) ++last;
+            if (last - first == 1) single[list[first]] = 1;
+        }
     }
-    std::sort(single.begin(), single.end());
 
     std::vector<Facet> exterior;
-    exterior.reserve(single.size());
-    for (const std::size_t f : single) exterior.push_back(faces[f]);
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        if (single[f] != 0) exterior.push_back(faces[f]);
     return exterior;
 }
 

@@ -1,6 +1,7 @@
 #include "multigrid/free_nodes.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace osculate::solve {
 
@@ -17,18 +18,17 @@ FreeNodes::FreeNodes(const NodalUnknowns& unknowns, const NodalMatrix& A) {
     for (Index place = 0; place < n; ++place)
         if (unknowns.owner[place] == rank) add(unknowns, place);
     own_ = static_cast<Index>(node_.size());
-    std::vector<Index> copied;
+    std::vector<Index> copied, place_of(number_.size(), -1); // of nodes of other processes, until one is wanted
+    for (Index place = 0; place < n; ++place)
+        if (unknowns.owner[place] != rank) place_of[unknowns.node[place]] = place;
     const auto want = [&](Index node) {
-        const auto at = std::ranges::lower_bound(unknowns.node, node);
-        if (at == unknowns.node.end() || *at != node) return; // held
-        if (const auto place = static_cast<Index>(at - unknowns.node.begin()); unknowns.owner[place] != rank)
-            copied.push_back(place);
+        if (node >= static_cast<Index>(place_of.size())) return; // held
+        if (const Index place = std::exchange(place_of[node], -1); place >= 0) copied.push_back(place);
     };
     for (Index i = 0; i < own_; ++i)
         for (Index k = A.row_start[node_[i]]; k < A.row_start[node_[i] + 1]; ++k) want(A.column[k]);
     for (const Index node : unknowns.coupled) want(node);
     std::ranges::sort(copied, {}, [&](Index place) { return std::pair(unknowns.owner[place], place); });
-    copied.erase(std::unique(copied.begin(), copied.end()), copied.end());
     std::vector<int> owner;
     for (const Index place : copied) {
         add(unknowns, place);

@@ -71,8 +71,20 @@ double dot(N_Vector a, N_Vector b) {
     return sum;
 }
 
+/// The same sums as by dot(); each part of `a` is read once.
 int dots(int count, N_Vector a, N_Vector* with, double* products) {
-    for (int k = 0; k < count; ++k) products[k] = own_dot(a, with[k]);
+    const auto of = static_cast<std::size_t>(count);
+    const Index parts = (length_of(a) + at_once - 1) / at_once;
+    std::vector<double> part(static_cast<std::size_t>(parts) * of);
+    share(a, [&](Index begin, Index end) {
+        for (Index i = begin; i < end; i += at_once)
+            for (std::size_t k = 0; k < of; ++k)
+                part[static_cast<std::size_t>(i / at_once) * of + k] =
+                    product(values(a) + i, values(with[k]) + i, std::min(at_once, end - i));
+    });
+    std::fill_n(products, count, 0.0);
+    for (Index p = 0; p < parts; ++p)
+        for (std::size_t k = 0; k < of; ++k) products[k] += part[static_cast<std::size_t>(p) * of + k];
     if (content(a).ranks != nullptr) content(a).ranks->sum({products, static_cast<std::size_t>(count)});
     return 0;
 }
@@ -91,6 +103,24 @@ void scale(double c, N_Vector x, N_Vector z) {
     share(x, [=](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) to[i] = c * from[i];
     });
+}
+
+/// z = sum_k c_k x_k, where x_0 may be z; each part of z is written once.
+int combine(int count, double* c, N_Vector* x, N_Vector z) {
+    double* to = content(z).slice.data;
+    share(z, [&](Index begin, Index end) {
+        for (Index first = begin; first < end; first += at_once) {
+            const Index last = std::min(first + at_once, end);
+            const double* from = values(x[0]);
+            for (Index i = first; i < last; ++i) to[i] = c[0] * from[i];
+            for (int k = 1; k < count; ++k) {
+                from = values(x[k]);
+                const double factor = c[k];
+                for (Index i = first; i < last; ++i) to[i] += factor * from[i];
+            }
+        }
+    });
+    return 0;
 }
 
 /// Makes a serial vector one of these. Its own operations free the content by free().
@@ -116,7 +146,10 @@ N_Vector make_gmres_vector(Index length, Ranks* ranks, int threads, SUNContext c
     if (ranks != nullptr) N_VEnableFusedOps_Serial(v, SUNTRUE);
     v->ops->nvclone = clone;
     v->ops->nvdotprod = dot;
-    if (ranks != nullptr) v->ops->nvdotprodmulti = dots;
+    if (ranks != nullptr) {
+        v->ops->nvdotprodmulti = dots;
+        v->ops->nvlinearcombination = combine;
+    }
     v->ops->nvlinearsum = linear_sum;
     v->ops->nvscale = scale;
     return v;

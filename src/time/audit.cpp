@@ -20,8 +20,8 @@ std::vector<std::vector<mesh::Facet>> outer_facets(const model::Model& model) {
 }
 
 /// Without those of exact surfaces, whose facets stand for them only.
-std::vector<std::vector<mesh::Facet>> facets_to_audit(const model::Model& model) {
-    std::vector<std::vector<mesh::Facet>> bodies = outer_facets(model);
+std::vector<std::vector<mesh::Facet>> facets_to_audit(const model::Model& model,
+                                                      std::vector<std::vector<mesh::Facet>> bodies) {
     for (const model::RigidBody& rigid : model.rigid)
         if (rigid.shape) bodies[static_cast<std::size_t>(rigid.body)].clear();
     return bodies;
@@ -33,8 +33,10 @@ std::pair<Index, Index> ordered(Index a, Index b) {
 
 } // namespace
 
-Audit::Audit(const model::Model& model)
-    : model_(model), surfaces_(facets_to_audit(model), model.X), exact_(model, outer_facets(model)) {
+Audit::Audit(const model::Model& model) : Audit(model, outer_facets(model)) {}
+
+Audit::Audit(const model::Model& model, const std::vector<std::vector<mesh::Facet>>& outer)
+    : model_(model), surfaces_(facets_to_audit(model, outer), model.X), exact_(model, outer) {
     const contact::AuditResult first = surfaces_.examine(model.X);
     for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
     // contact lifts what overlaps, but not where curved surfaces are tied

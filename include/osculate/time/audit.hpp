@@ -28,6 +28,9 @@ public:
     void pass_over(std::set<std::pair<Index, Index>> bodies) { apart_ = std::move(bodies); }
 
 private:
+    /// @param outer  facets of every body, global nodes
+    Audit(const model::Model& model, const std::vector<std::vector<mesh::Facet>>& outer);
+
     const model::Model& model_;
     contact::SurfaceAudit surfaces_;
     ExactAudit exact_;

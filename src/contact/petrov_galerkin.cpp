@@ -14,7 +14,7 @@ namespace osculate::contact {
 namespace {
 
 /// Slivers count as long as their dual functions keep enough digits: no part of a pressure is lost.
-constexpr double least_cover = 1e-3;
+constexpr double least_covered = 1e-3;
 
 /// Gaps at the slave nodes, forces by DualWeights:
 ///     gap, normal  those of slave node j over the smooth surface through the filtered vertices, see MasterFilter
@@ -30,7 +30,7 @@ class PetrovGalerkin final : public Discretisation {
 public:
     PetrovGalerkin(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& vertices,
                    const std::vector<SlaveFacet>& facets, const std::vector<Vec3>& S, std::vector<Mat3> in_plane)
-        : surface_(surface), weights_(surface, facets, S, least_cover), nodes_(make_node_discretisation(surface)),
+        : surface_(surface), weights_(surface, facets, S, least_covered), nodes_(make_node_discretisation(surface)),
           past_end_(surface), in_plane_(std::move(in_plane)), raw_(S.size()), ends_(S.size()), area_(S.size(), 0),
           carriers_(S.size(), 0), moving_(S.size(), 0), normal_length_(S.size(), 1.0), outside_(S.size(), 0),
           alone_(S.size(), 0), below_(facets.size(), -1) {

@@ -288,13 +288,13 @@ private:
     int handle_ = memfd_create("mesh", MFD_CLOEXEC);
 };
 
-constexpr double most = 2e7; ///< elements of a geometry
+constexpr double most_elements = 2e7; ///< elements of a geometry
 
 /// How many cubes fill a box, if their edges have the length size_at(distance from the point); counts to a little above
-/// `most`.
+/// `most_elements`.
 double cubes(const Eigen::AlignedBox3d& box, const Vec3& point, const std::function<double(double)>& size_at) {
     double count = 0, left = box.volume(), distance = box.exteriorDistance(point);
-    while (left > 0 && count <= most) { // shells around the point, one cube thick
+    while (left > 0 && count <= most_elements) { // shells around the point, one cube thick
         const double size = size_at(distance), end = distance + size;
         const double shell = std::min(left, 4 * pi / 3 * (std::pow(end, 3) - std::pow(distance, 3)));
         count += shell / std::pow(size, 3);
@@ -358,7 +358,8 @@ extern "C" void osculate_gmsh_mesh_cad(const CadOptions* options, RawMesh* mesh)
         // What would not end is refused before it begins.
         std::optional<ContactSize> contact;
         if (options->contact.size > 0 && !options->meeting.empty()) contact.emplace(options->contact, options->meeting);
-        if (cubes(box, point, size_at) + (contact ? contact->cubes(box.volume() * unit * unit * unit) : 0) > most)
+        if (cubes(box, point, size_at) + (contact ? contact->cubes(box.volume() * unit * unit * unit) : 0) >
+            most_elements)
             throw MeshError(options->file, "elements of that size would be more than 2e7: the geometry is " +
                                                std::to_string(diagonal * unit) + " m across");
         const SizeCallback sizes([&](const Vec3& x) {

@@ -10,6 +10,8 @@ namespace osculate::model {
 namespace {
 /// Slave nodes in contact take more evaluations of variations, and products; the others may have no point at all.
 constexpr int work_closed = 4, work_open = 1;
+/// General contact has many small pairs: with fewer slave nodes, telling takes longer than evaluating all.
+constexpr Index worth_telling = 1000;
 
 class Writer {
 public:
@@ -77,8 +79,8 @@ const double* unpack(const double* numbers, contact::ContactPoint& point) {
 
 const contact::SlaveShare* ContactEvaluation::shared_points() const {
     const SlaveNodes& slaves = pair_->slaves();
-    const bool general = slaves.edges || !slaves.around.empty() || !slaves.along.empty() || slaves.own;
-    return general ? nullptr : share();
+    const bool general = !slaves.around.empty() || !slaves.along.empty() || slaves.own;
+    return slaves.edges || (general && pair_->size() < worth_telling) ? nullptr : share();
 }
 
 void ContactEvaluation::share_out_by_work(const ContactHistory& history) {

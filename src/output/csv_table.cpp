@@ -4,6 +4,7 @@
 #include "output/files.hpp"
 
 #include <cerrno>
+#include <cmath>
 #include <fmt/format.h>
 #include <fstream>
 #include <stdexcept>
@@ -66,6 +67,11 @@ void check_kept(const std::filesystem::path& path, const std::string& head, std:
 }
 
 } // namespace
+
+Cell cell(double value) {
+    if (std::isnan(value)) return std::string();
+    return value;
+}
 
 CsvTable::CsvTable(std::filesystem::path path, const std::vector<std::string>& columns,
                    std::optional<std::uintmax_t> keep)

@@ -1,7 +1,5 @@
 #include "osculate/output/probe_file.hpp"
 
-#include <cmath>
-
 namespace osculate::output {
 
 namespace fs = std::filesystem;
@@ -27,7 +25,7 @@ ProbeFile::ProbeFile(const fs::path& folder, const std::string& name, const Prob
 void ProbeFile::write(const Snapshot& snapshot) {
     for (const std::vector<double>& row : probe_.rows(snapshot)) {
         std::vector<Cell> cells{snapshot.state().time};
-        for (const double value : row) cells.push_back(std::isnan(value) ? Cell{std::string()} : Cell{value});
+        for (const double value : row) cells.push_back(cell(value));
         table_.row(cells);
     }
 }

@@ -14,6 +14,9 @@ namespace osculate::output {
 
 using Cell = std::variant<double, long, std::string>;
 
+/// Nothing for NaN.
+[[nodiscard]] Cell cell(double value);
+
 /// Comma-separated values (RFC 4180, lines end in \n) with one line of column names. Every row reaches the file before
 /// row() returns; a double is written with the fewest digits that read back as the same number.
 class CsvTable {

@@ -11,7 +11,7 @@ namespace osculate::app {
 
 namespace {
 
-constexpr double along = 0.7;        ///< cosine: of the three directions of an element, the one that is meant
+constexpr double same_way = 0.7;     ///< cosine: of the three directions of an element, the one that is meant
 constexpr double share = 0.3;        ///< cosine: what acts at less of an angle than 73 degrees bends
 constexpr double slender = 4;        ///< size over thickness: below, bodies are sheared and squeezed more than bent
 constexpr double worth_saying = 1.5; ///< times too stiff
@@ -130,8 +130,9 @@ private:
     [[nodiscard]] bool held(const mesh::Facet& facet, const Vec3& direction) const {
         return std::all_of(facet.begin(), facet.end(), [&](Index node) {
             const auto at = held_.find(node);
-            return at != held_.end() &&
-                   std::ranges::any_of(at->second, [&](const Vec3& d) { return std::abs(d.dot(direction)) > along; });
+            return at != held_.end() && std::ranges::any_of(at->second, [&](const Vec3& d) {
+                       return std::abs(d.dot(direction)) > same_way;
+                   });
         });
     }
 
@@ -153,7 +154,7 @@ private:
             double length = 0;
             for (const Vec3& side : middle_lines(*t.sides[0])) {
                 const bool crossed = std::ranges::any_of(through, [&](const Through& other) {
-                    return std::abs(other.direction.dot(side.normalized())) > along;
+                    return std::abs(other.direction.dot(side.normalized())) > same_way;
                 });
                 if (!crossed) length = std::max(length, side.norm());
             }

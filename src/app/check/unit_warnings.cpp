@@ -25,9 +25,9 @@ double largest(const scene::Course& course, double duration) {
     return most;
 }
 
-class Warner {
+class UnitWarner {
 public:
-    Warner(const scene::Scene& scene, const Plan& plan) : scene_(scene), plan_(plan) {}
+    UnitWarner(const scene::Scene& scene, const Plan& plan) : scene_(scene), plan_(plan) {}
 
     std::vector<Warning> all() {
         materials();
@@ -185,7 +185,7 @@ private:
 } // namespace
 
 std::vector<Warning> unit_warnings(const scene::Scene& scene, const Plan& plan) {
-    return Warner(scene, plan).all();
+    return UnitWarner(scene, plan).all();
 }
 
 } // namespace osculate::app

@@ -138,11 +138,11 @@ scene::Rows frame_rows(const fs::path& folder, const std::string& part) {
         std::vector<double>& values = rows.columns.emplace_back();
         for (std::size_t i = 0; i < frame.points.size(); ++i) values.push_back(value(i));
     };
-    const auto array = [&](const char* name, const std::vector<std::string>& columns) {
+    const auto array = [&](const char* name, const std::vector<std::string>& components) {
         const output::Array* a = frame.find(name);
         if (a == nullptr) return;
-        for (std::size_t c = 0; c < columns.size(); ++c)
-            add(columns[c], [&](std::size_t i) { return a->values[i * columns.size() + c]; });
+        for (std::size_t c = 0; c < components.size(); ++c)
+            add(components[c], [&](std::size_t i) { return a->values[i * components.size() + c]; });
     };
     for (int k = 0; k < 3; ++k) add(std::string(1, "XYZ"[k]), [&](std::size_t i) { return frame.points[i][k]; });
     array("displacement", {"ux", "uy", "uz"});

@@ -40,11 +40,6 @@ std::vector<std::size_t> by_place(const scene::Study& study, const scene::StudyC
     return order;
 }
 
-output::Cell cell(double value) {
-    if (std::isnan(value)) return std::string();
-    return value;
-}
-
 /// The place of a value, or its name where it has none.
 output::Cell place_cell(const scene::Study& study, const scene::StudyCoordinate& over, std::size_t value) {
     if (const auto place = study.place_of(over, value)) return *place;
@@ -148,7 +143,7 @@ void write_curve_tables(const scene::Study& study, const std::vector<StudyCase>&
             std::vector<output::Cell> cells{place_cell(study, plot.over, value)};
             for (const StudyCurve& curve : curves) {
                 const auto at = std::ranges::find(curve.points, value, &CurvePoint::value);
-                cells.push_back(cell(at == curve.points.end() ? no_value : at->y));
+                cells.push_back(output::cell(at == curve.points.end() ? no_value : at->y));
             }
             table.row(cells);
         }
@@ -161,7 +156,7 @@ void write_curve_tables(const scene::Study& study, const std::vector<StudyCase>&
             for (std::size_t r = 0; r < map.rows.size(); ++r)
                 for (std::size_t c = 0; c < map.columns.size(); ++c)
                     table.row({map.name, place_cell(study, x, map.columns[c]), place_cell(study, y, map.rows[r]),
-                               cell(map.values[r][c])});
+                               output::cell(map.values[r][c])});
     }
 }
 

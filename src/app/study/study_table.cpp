@@ -10,11 +10,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-output::Cell cell(double value) {
-    if (std::isnan(value)) return std::string();
-    return value;
-}
-
 output::Cell count(double value, bool known) {
     if (!known) return std::string();
     return std::lround(value);
@@ -46,21 +41,22 @@ void write_study_table(const scene::Study& study, const std::vector<StudyCase>& 
             for (std::size_t a = 0; a < study.axes.size(); ++a)
                 cells.emplace_back(study.axes[a].values[c.combination[a]].name);
             for (const auto& [name, value] : study.parameters_of(c.combination))
-                if (!name.ends_with("_index")) cells.push_back(cell(value));
+                if (!name.ends_with("_index")) cells.push_back(output::cell(value));
             cells.emplace_back(r.status.empty() ? std::string("waiting") : r.status);
             cells.emplace_back(known ? r.expectation : std::string());
             for (const double value : {r.dofs, r.accepted, r.rejected, r.iterations})
                 cells.push_back(count(value, known));
             for (std::size_t k = 0; k < study.quantities.size(); ++k) {
                 const QuantityResult result = c.results.empty() ? QuantityResult{} : c.results[k];
-                for (const double value : {result.value, result.reference, result.error}) cells.push_back(cell(value));
+                for (const double value : {result.value, result.reference, result.error})
+                    cells.push_back(output::cell(value));
             }
-            cells.push_back(cell(r.median(&StudyRepeat::cpu)));
-            cells.push_back(cell(r.median(&StudyRepeat::wall)));
+            cells.push_back(output::cell(r.median(&StudyRepeat::cpu)));
+            cells.push_back(output::cell(r.median(&StudyRepeat::wall)));
             cells.emplace_back(static_cast<long>(r.repeats.size()));
             cells.emplace_back(std::string(r.repeats.size() < 2 ? "" : r.same ? "yes" : "no"));
             cells.push_back(count(r.median(&StudyRepeat::memory), known && !r.repeats.empty()));
-            for (std::size_t p = 0; p < study_parts.size(); ++p) cells.push_back(cell(r.median_part(p)));
+            for (std::size_t p = 0; p < study_parts.size(); ++p) cells.push_back(output::cell(r.median_part(p)));
             cells.emplace_back(r.reason);
             table.row(cells);
         }

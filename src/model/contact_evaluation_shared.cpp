@@ -79,8 +79,9 @@ const double* unpack(const double* numbers, contact::ContactPoint& point) {
 
 const contact::SlaveShare* ContactEvaluation::shared_points() const {
     const SlaveNodes& slaves = pair_->slaves();
-    const bool general = !slaves.around.empty() || !slaves.along.empty() || slaves.own;
-    return slaves.edges || (general && pair_->size() < worth_telling) ? nullptr : share();
+    const bool general = !slaves.around.empty() || !slaves.along.empty();
+    const bool alike = slaves.edges || slaves.own || (general && pair_->size() < worth_telling);
+    return alike ? nullptr : share();
 }
 
 void ContactEvaluation::share_out_by_work(const ContactHistory& history) {

@@ -20,6 +20,13 @@ if(OSCULATE_COVERAGE)
 endif()
 # Results must not depend on the machine the binary was built on: no -march=native, no contraction of a*b+c.
 add_compile_options(-ffp-contract=off)
+# Where there is memory for it, GCC collects garbage a few times a file instead of dozens: a tenth of the time for a fifth more memory.
+cmake_host_system_information(RESULT OSCULATE_MEMORY QUERY TOTAL_PHYSICAL_MEMORY) # MiB
+cmake_host_system_information(RESULT OSCULATE_PROCESSORS QUERY NUMBER_OF_LOGICAL_CORES)
+math(EXPR OSCULATE_MEMORY_OF_A_COMPILER "${OSCULATE_MEMORY} / (${OSCULATE_PROCESSORS} + 2)")
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND OSCULATE_MEMORY_OF_A_COMPILER GREATER 4000)
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=2000000>)
+endif()
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)

@@ -133,10 +133,10 @@ TEST_F(DistributedRun, SharesGeneralContactOfLargeSurfaces) {
     const std::string options = settings + " --set 'contact={general: {friction: 0.3}}' --set stages.press.steps=1 "
                                            "--set 'bodies.lower.mesh.block.divisions=[34, 34, 1]' "
                                            "--set 'bodies.upper.mesh.block.divisions=[33, 33, 1]'";
-    for (const int ranks : {1, 3})
+    for (const int ranks : {1, 2})
         ASSERT_EQ(with_ranks(ranks, scene, options + " -o run_" + std::to_string(ranks)), 0)
             << content(folder / "said.txt");
-    expect_the_same(folder / "run_1", folder / "run_3", 1e-9);
+    expect_the_same(folder / "run_1", folder / "run_2", 1e-9);
 }
 
 /// Nodes that follow others have rows where those have them: a tie, a sector whose ends move alike, a face that stays plane.

@@ -14,7 +14,7 @@ namespace osculate::output {
 
 using Cell = std::variant<double, long, std::string>;
 
-/// Nothing for NaN.
+/// The number, or an empty cell for NaN.
 [[nodiscard]] Cell cell(double value);
 
 /// Comma-separated values (RFC 4180, lines end in \n) with one line of column names. Every row reaches the file before

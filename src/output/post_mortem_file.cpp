@@ -10,27 +10,27 @@ namespace osculate::output {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json written(const Vec3& v) {
+OrderedJson written(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-double real(const Json& json) {
+double real(const OrderedJson& json) {
     return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-Vec3 vector(const Json& json) {
+Vec3 vector(const OrderedJson& json) {
     return {real(json.at(0)), real(json.at(1)), real(json.at(2))};
 }
 
 /// Enumerations by name.
-template <class Value> Value known(const std::optional<Value>& value, const Json& json) {
+template <class Value> Value known(const std::optional<Value>& value, const OrderedJson& json) {
     if (!value) throw std::runtime_error("'" + json.get<std::string>() + "' is not known");
     return *value;
 }
 
-template <class Value, std::size_t n> Value one_of(const Value (&values)[n], const Json& json) {
+template <class Value, std::size_t n> Value one_of(const Value (&values)[n], const OrderedJson& json) {
     for (const Value value : values)
         if (name(value) == json.get<std::string>()) return value;
     return known(std::optional<Value>(), json);
@@ -38,7 +38,7 @@ template <class Value, std::size_t n> Value one_of(const Value (&values)[n], con
 
 constexpr time::Verdict verdicts[] = {time::Verdict::accept, time::Verdict::retry, time::Verdict::give_up};
 
-Json written(const time::Attempt& a) {
+OrderedJson written(const time::Attempt& a) {
     return {{"attempt", a.attempt},
             {"time", a.time},
             {"dt", a.dt},
@@ -52,7 +52,7 @@ Json written(const time::Attempt& a) {
             {"cause", a.cause}};
 }
 
-time::Attempt attempt(const Json& j) {
+time::Attempt attempt(const OrderedJson& j) {
     time::Attempt a;
     a.attempt = j.at("attempt");
     a.time = real(j.at("time"));
@@ -68,30 +68,30 @@ time::Attempt attempt(const Json& j) {
     return a;
 }
 
-Json written(const equilibrium::IterationRecord& i) {
+OrderedJson written(const equilibrium::IterationRecord& i) {
     return {
         {"iteration", i.iteration}, {"residual", i.residual}, {"status_changes", i.status_changes}, {"open", i.open},
         {"stick", i.stick},         {"slip", i.slip},         {"facet_changes", i.facet_changes}};
 }
 
-equilibrium::IterationRecord iteration(const Json& j) {
+equilibrium::IterationRecord iteration(const OrderedJson& j) {
     return {j.at("iteration"), real(j.at("residual")), j.at("status_changes"), j.at("open"),
             j.at("stick"),     j.at("slip"),           j.at("facet_changes")};
 }
 
-Json written(const time::StatusChanges& c) {
-    Json sequence = Json::array();
+OrderedJson written(const time::StatusChanges& c) {
+    OrderedJson sequence = OrderedJson::array();
     for (const contact::Status status : c.sequence) sequence.push_back(time::name(status));
     return {{"pair", c.pair}, {"body", c.body}, {"node", c.node}, {"statuses", sequence}};
 }
 
-time::StatusChanges changes(const Json& j) {
+time::StatusChanges changes(const OrderedJson& j) {
     time::StatusChanges c{j.at("pair"), j.at("body"), j.at("node"), {}};
-    for (const Json& status : j.at("statuses")) c.sequence.push_back(known(time::status_of(status), status));
+    for (const OrderedJson& status : j.at("statuses")) c.sequence.push_back(known(time::status_of(status), status));
     return c;
 }
 
-Json written(const time::BodyHold& b) {
+OrderedJson written(const time::BodyHold& b) {
     return {{"body", b.body},
             {"free_by_supports", b.free_by_supports},
             {"free_with_contact", b.free_with_contact},
@@ -105,7 +105,7 @@ Json written(const time::BodyHold& b) {
             {"facet", b.facet}};
 }
 
-time::BodyHold hold(const Json& j) {
+time::BodyHold hold(const OrderedJson& j) {
     time::BodyHold b;
     b.body = j.at("body");
     b.free_by_supports = j.at("free_by_supports");
@@ -121,13 +121,13 @@ time::BodyHold hold(const Json& j) {
     return b;
 }
 
-template <class List> Json listed(const List& list) {
-    Json all = Json::array();
+template <class List> OrderedJson listed(const List& list) {
+    OrderedJson all = OrderedJson::array();
     for (const auto& one : list) all.push_back(written(one));
     return all;
 }
 
-time::PostMortem parsed(const Json& j) {
+time::PostMortem parsed(const OrderedJson& j) {
     time::PostMortem f;
     f.cause = known(time::cause_of(j.at("cause")), j.at("cause"));
     f.message = j.at("message");
@@ -137,12 +137,12 @@ time::PostMortem parsed(const Json& j) {
     f.dt = real(j.at("dt"));
     f.smallest_dt = real(j.at("smallest_dt"));
     f.limit = j.at("limit");
-    for (const Json& one : j.at("attempts")) f.attempts.push_back(attempt(one));
+    for (const OrderedJson& one : j.at("attempts")) f.attempts.push_back(attempt(one));
     f.body = j.at("body");
     f.node = j.at("node");
     f.X = vector(j.at("X"));
     f.x = vector(j.at("x"));
-    if (const Json& c = j.at("contact"); !c.is_null()) {
+    if (const OrderedJson& c = j.at("contact"); !c.is_null()) {
         time::ContactPlace& place = f.contact.emplace();
         place.pair = c.at("pair");
         place.master_body = c.at("master_body");
@@ -151,17 +151,17 @@ time::PostMortem parsed(const Json& j) {
         place.status = known(time::status_of(c.at("status")), c.at("status"));
         place.gap = real(c.at("gap"));
     }
-    if (const Json& e = j.at("element"); !e.is_null())
+    if (const OrderedJson& e = j.at("element"); !e.is_null())
         f.element = time::ElementPlace{e.at("body"), e.at("element"), real(e.at("J"))};
     f.residual = real(j.at("residual"));
     f.reference_force = real(j.at("reference_force"));
     f.out_of_balance = vector(j.at("out_of_balance"));
     f.rung = j.at("rung");
-    for (const Json& one : j.at("iterations")) f.iterations.push_back(iteration(one));
+    for (const OrderedJson& one : j.at("iterations")) f.iterations.push_back(iteration(one));
     f.changing = j.at("nodes_that_changed_status");
-    for (const Json& one : j.at("status_changes")) f.changes.push_back(changes(one));
-    for (const Json& one : j.at("bodies")) f.bodies.push_back(hold(one));
-    for (const Json& one : j.at("advice"))
+    for (const OrderedJson& one : j.at("status_changes")) f.changes.push_back(changes(one));
+    for (const OrderedJson& one : j.at("bodies")) f.bodies.push_back(hold(one));
+    for (const OrderedJson& one : j.at("advice"))
         f.advice.push_back({one.at("key"), one.at("text"), one.value("set", std::vector<std::string>())});
     f.no_remedy = j.value("no_remedy", "");
     return f;
@@ -170,7 +170,7 @@ time::PostMortem parsed(const Json& j) {
 } // namespace
 
 void write_post_mortem(const std::filesystem::path& path, const time::PostMortem& f) {
-    Json j;
+    OrderedJson j;
     j["cause"] = name(f.cause);
     j["in_words"] = time::in_words(f.cause);
     j["message"] = f.message;
@@ -203,7 +203,7 @@ void write_post_mortem(const std::filesystem::path& path, const time::PostMortem
     j["nodes_that_changed_status"] = f.changing;
     j["status_changes"] = listed(f.changes);
     j["bodies"] = listed(f.bodies);
-    j["advice"] = Json::array();
+    j["advice"] = OrderedJson::array();
     for (const time::Advice& one : f.advice)
         j["advice"].push_back({{"key", one.key}, {"text", one.text}, {"set", one.set}});
     j["no_remedy"] = f.no_remedy;
@@ -214,7 +214,7 @@ time::PostMortem read_post_mortem(const std::filesystem::path& path) {
     std::ifstream file(path);
     if (!file) throw std::runtime_error("cannot read " + path.string());
     try {
-        return parsed(Json::parse(file));
+        return parsed(OrderedJson::parse(file));
     } catch (const std::exception& error) { // of the library, or of a name
         throw std::runtime_error(path.string() + " is no post-mortem: " + error.what());
     }

@@ -119,7 +119,7 @@ TEST(Checkpoint, ResumesRubberByEverySolver) {
         rubber.push_back({"bodies.block.material", "{neo_hookean: {E: 1 MPa, nu: 0.3, density: 1000 kg/m^3}}"});
         rubber.push_back({"stages.fall.follower_pressure", "{underside: 100 Pa}"});
         rubber.push_back({"solver.linear_solver", solver});
-        expect_resumes("validation/falling_block.yaml", rubber, 25);
+        expect_resumes("validation/falling_block.yaml", rubber, 12);
     }
 }
 

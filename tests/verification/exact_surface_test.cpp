@@ -163,8 +163,8 @@ stages:
   swing:
     analysis: {dynamic: {integrator: {generalised_alpha: {rho_inf: 0.5}}}}
     control: {step_size: fixed}
-    duration: 0.45
-    steps: 112
+    duration: 0.4
+    steps: 80
 )");
     const model::Model& model = swung.plan.model;
     const auto x = [&](const support::RunStep& step) {

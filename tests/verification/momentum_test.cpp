@@ -128,7 +128,7 @@ TEST(TwoBlocks, KeepTheirAngularMomentumAtFiniteStrain) {
 }
 
 TEST(TwoBlocks, OfQuadraticElementsKeepTheirMomentaToo) {
-    const Changes small = meet("blend", "0.1", 40, false, "hex20"), finite = meet("facets", "0.1", 40, true, "tet10");
+    const Changes small = meet("blend", "0.1", 24, false, "hex20"), finite = meet("facets", "0.1", 30, true, "tet10");
     EXPECT_LT(small.linear, 1e-11);
     EXPECT_LT(small.moment, 1e-10); // each force acts on some thirty nodes
     EXPECT_LT(small.angular, 0.01);

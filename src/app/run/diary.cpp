@@ -25,8 +25,8 @@ using time::Verdict;
 
 namespace {
 
-const std::string header = "attempt,time,dt,verdict,reason,body,node,value,lambda,iterations";
-constexpr std::size_t columns = 10;
+const std::string head_of_diary = "attempt,time,dt,verdict,reason,body,node,value,lambda,iterations";
+constexpr std::size_t columns_of_diary = 10;
 constexpr Verdict verdicts[] = {Verdict::accept, Verdict::retry, Verdict::give_up};
 
 struct Cell {
@@ -57,8 +57,9 @@ class LineReader {
 public:
     LineReader(const std::string& file, int line, const std::string& text)
         : file_(file), line_(line), cells_(split(text)) {
-        if (cells_.size() != columns)
-            fail(1, "", fmt::format("{} cells: {}", columns, header), fmt::format("{} in '{}'", cells_.size(), text));
+        if (cells_.size() != columns_of_diary)
+            fail(1, "", fmt::format("{} cells: {}", columns_of_diary, head_of_diary),
+                 fmt::format("{} in '{}'", cells_.size(), text));
     }
     [[nodiscard]] const std::vector<Fault>& faults() const { return faults_; }
 
@@ -148,14 +149,14 @@ std::vector<Attempt> read_steps(const fs::path& folder, bool cut_off) {
             refuse(path, number, "a line end", "'" + text + "', where the file stops: it has been cut off");
         if (text.ends_with('\r')) text.pop_back(); // saved by a spreadsheet
         if (number == 1) {
-            if (text != header) refuse(path, 1, "the column names " + header, "'" + text + "'");
+            if (text != head_of_diary) refuse(path, 1, "the column names " + head_of_diary, "'" + text + "'");
             continue;
         }
         LineReader line(file, number, text);
         attempts.push_back(read_attempt(line));
         faults.insert(faults.end(), line.faults().begin(), line.faults().end());
     }
-    if (number == 0 && !cut_off) refuse(path, 1, "the column names " + header, "an empty file");
+    if (number == 0 && !cut_off) refuse(path, 1, "the column names " + head_of_diary, "an empty file");
     if (!faults.empty()) throw SceneError(faults);
     return attempts;
 }

@@ -75,6 +75,16 @@ Region select_numbers(const Mesh& mesh, const std::vector<Facet>& exterior, std:
     return region;
 }
 
+std::vector<Index> nearest_nodes(const Mesh& mesh, const Vec3& point) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& X : mesh.nodes) least = std::min(least, (X - point).norm());
+    const double allowed = least + tolerance_of(mesh);
+    std::vector<Index> nearest;
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+        if ((mesh.nodes[i] - point).norm() <= allowed) nearest.push_back(static_cast<Index>(i));
+    return nearest;
+}
+
 Region select_plane(const Mesh& mesh, const std::vector<Facet>& exterior, const Vec3& point, const Vec3& normal) {
     const double tolerance = tolerance_of(mesh);
     const Vec3 n = normal.normalized();

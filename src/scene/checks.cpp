@@ -106,6 +106,16 @@ public:
         }
     }
 
+    void check_imperfections(const Scene& scene) {
+        for (const auto& [name, by] : scene.imperfections) {
+            const SetSpec* set = find(scene.sets, name);
+            const Body* body = set != nullptr ? find(scene.bodies, set->body) : nullptr;
+            if (body != nullptr && (body->rigid || body->slice))
+                fault({"imperfections", name}, "a set of a body that deforms, and is no slice",
+                      "a set of " + std::string(body->rigid ? "rigid body '" : "slice '") + set->body + "'");
+        }
+    }
+
     void check_ties(const Scene& scene) {
         for (const auto& [name, tie] : scene.ties) {
             for (const auto& [key, set_name] : {std::pair{"slave", tie.slave}, std::pair{"master", tie.master}}) {
@@ -297,6 +307,7 @@ void check_rules(const Scene& scene, const Tree& tree, std::vector<Fault>& fault
     check_bodies(scene, tree, faults);
     SceneRules rules(tree, faults);
     rules.check_rigid_sets(scene);
+    rules.check_imperfections(scene);
     rules.check_couplings(scene);
     rules.check_ties(scene);
     rules.check_cyclic(scene);

@@ -63,6 +63,19 @@ void describe(Visitor& v, Scene& scene) {
           scene.bodies, group);
     named(v, {.name = "sets", .meaning = "Parts of a body's exterior, or of its nodes.", .item = "set"}, scene.sets,
           group);
+    named(v,
+          {.name = "imperfections",
+           .meaning = "Sets whose nodes are moved before the run, once all sets are known.",
+           .names = Names::set,
+           .item = "set"},
+          scene.imperfections, [&v](const std::string& set, Vec3& by) {
+              v.vector({.name = set,
+                        .meaning = "By how much; a node of several sets is moved by their sum.",
+                        .unit = dimension::length,
+                        .range = range::position,
+                        .required = true},
+                       by);
+          });
     named(
         v,
         {.name = "supports", .meaning = "Constraints of sets, for the whole run.", .names = Names::set, .item = "set"},

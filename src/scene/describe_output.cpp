@@ -149,6 +149,11 @@ void describe(Visitor& v, Derivative& derivative) {
                   "is of the order of the square.",
               .range = {.low = 1e-8, .high = 1e-2}},
              derivative.change);
+    v.number(
+        {.name = "step",
+         .meaning = "The change itself, in SI, in place of the relative one: numbers that are 0 need it. 0: relative.",
+         .range = {.low = 0, .high = 1e9}},
+        derivative.step);
 }
 
 void direction(Visitor& v, Vec3& value) {

@@ -43,6 +43,10 @@ void describe(Visitor& v, SelectNearest& s) {
     point(v, "point", "A point on that surface, away from its edges, or close to it.", s.point);
 }
 
+void describe(Visitor& v, SelectNode& s) {
+    point(v, "point", "A point that is nearer to the node than to any other.", s.point);
+}
+
 } // namespace
 
 void describe(Visitor& v, SelectBox& s) {
@@ -52,7 +56,8 @@ void describe(Visitor& v, SelectBox& s) {
 
 void describe(Visitor& v, SetSpec& set) {
     v.text({.name = "body", .meaning = "Body the set belongs to.", .required = true, .names = Names::body}, set.body);
-    static const Words tags{"surface", "nodes", "plane", "cylinder", "box", "normal", "node_numbers", "nearest"};
+    static const Words tags{"surface", "nodes",        "plane",   "cylinder", "box",
+                            "normal",  "node_numbers", "nearest", "node"};
     constexpr std::size_t nodes = 1; // surface and nodes are both a SelectNamed
     const std::size_t index = set.select.index();
     const auto* by_name = std::get_if<SelectNamed>(&set.select);
@@ -72,7 +77,7 @@ void describe(Visitor& v, SetSpec& set) {
          .required = true,
          .choose =
              [&](std::size_t i) {
-                 emplace(set.select, i <= nodes ? 0 : i - 1, std::make_index_sequence<7>{});
+                 emplace(set.select, i <= nodes ? 0 : i - 1, std::make_index_sequence<8>{});
                  if (i == nodes) std::get<SelectNamed>(set.select).nodes = true;
              },
          .describe =
@@ -91,6 +96,7 @@ void describe(Visitor& v, SetSpec& set) {
                  case 7:
                      return group("nearest", "The surface that the mesh names, such as face_<number> of a geometry, "
                                              "nearest to a point.");
+                 case 8: return group("node", "The node nearest to a point, on the surface or inside.");
                  default:
                      return v.integers({.name = "node_numbers",
                                         .meaning = "Nodes by their numbers in the mesh file.",

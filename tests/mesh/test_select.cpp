@@ -69,6 +69,17 @@ TEST_F(PlacedTube, KnowsTheSurfaceNearestToAPoint) {
     EXPECT_THAT(near({0, 6, -2.9}), IsEmpty());
 }
 
+TEST_F(PlacedTube, KnowsTheNodeNearestToAPoint) {
+    const auto inside = static_cast<Index>(mesh.nodes.size()) / 2;
+    const Vec3 X = mesh.nodes[static_cast<std::size_t>(inside)];
+    EXPECT_THAT(nearest_nodes(mesh, X), ElementsAre(inside));
+    EXPECT_THAT(nearest_nodes(mesh, X + Vec3(0.01, -0.02, 0.01)), ElementsAre(inside));
+    const Vec3 other = mesh.nodes[static_cast<std::size_t>(inside) + 1];
+    EXPECT_THAT(nearest_nodes(mesh, 0.5 * (X + other)), ElementsAre(inside, inside + 1)) << "as near";
+    mesh.nodes.clear();
+    EXPECT_THAT(nearest_nodes(mesh, X), IsEmpty());
+}
+
 TEST_F(PlacedTube, IsSelectedByNormal) {
     const Region end = select_normal(mesh, exterior, rotation.col(1) * 5, 0.1);
     EXPECT_EQ(facet_nodes(end.facets), facet_nodes(mesh.surfaces.at("y_max")));

@@ -57,10 +57,10 @@ TEST(BadScene, MissingNames) {
         replaced(small_scene, "  bed: {fix", "  bde: {fix"),
         "bad.yaml:14:3: supports.bde: expected the name of a set: bed, ground, under, top, found 'bde' (did you "
         "mean 'bed'?)");
-    expect_fault(
-        replaced(small_scene, ", surface: z_min", ""),
-        "bad.yaml:9:8: sets.bed: expected one of surface, nodes, plane, cylinder, box, normal, node_numbers, nearest, "
-        "found none");
+    expect_fault(replaced(small_scene, ", surface: z_min", ""),
+                 "bad.yaml:9:8: sets.bed: expected one of surface, nodes, plane, cylinder, box, normal, node_numbers, "
+                 "nearest, node, "
+                 "found none");
 }
 
 TEST(BadScene, MissingAndDoubleKeys) {

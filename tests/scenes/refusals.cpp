@@ -95,7 +95,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "'-9.81 m/s^2'"}},
         Refusal{"half_a_step", {"42:12: stages.pull.steps: expected a whole number in [1, 1e+06], found '2.5'"}},
         Refusal{"key_one_level_too_high",
-                {"46:1: pressure: expected one of the keys name, description, bodies, sets, supports, couplings, ties, "
+                {"46:1: pressure: expected one of the keys name, description, bodies, sets, imperfections, supports, "
+                 "couplings, ties, "
                  "cyclic, equations, contact, "
                  "gravity, stages, solver, output, expect, found unknown key 'pressure'"}},
         Refusal{"incompressible",

@@ -1,6 +1,6 @@
 /// `osculate study` from file to files, by the program itself: it starts itself anew.
 
-#include "scenes/program.hpp"
+#include "scenes/study.hpp"
 
 #include <chrono>
 #include <csignal>
@@ -12,91 +12,11 @@
 namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-const std::string press = scene_file("tests/scenes/press.yaml");
-
-const std::string small_study = R"(title: Pressed and pulled
-problem: A small one.
-source: none
-scene: )" + press + R"(
-axes:
-  friction: {key: contact.joint.friction, values: [0.1, 0.3]}
-  mesh:
-    coarse: {set: {bodies.cap.mesh.block.divisions: [2, 2, 1]}, parameters: {h: 0.5}}
-    fine: {set: {bodies.cap.mesh.block.divisions: [4, 4, 2]}, parameters: {h: 0.25}}
-quantities:
-  weight:
-    unit: N
-    contact: joint
-    value: sum(force_z)
-    reference: 1e5
-  pressure:
-    contact: joint
-    of: normal_stress
-    exact: 1e5
-    scale: 1e5
-    area: true
-  dragged:
-    history: pair.joint.friction / pair.joint.normal
-    reference: finest
-    error: absolute
-  cap:
-    body: cap
-    value: max(x - X - ux) + max(von_mises)
-refine: mesh
-)";
-
-class Study : public Program {
-protected:
-    std::string write(const std::string& text) const {
-        std::ofstream(folder / "small.yaml") << text;
-        return (folder / "small.yaml").string();
-    }
-
-    /// Starts the program in `folder`.
-    pid_t start(std::vector<std::string> words) const {
-        words.insert(words.begin(), "osculate");
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
-        const pid_t child = fork();
-        if (child == 0) {
-            fs::current_path(folder);
-            for (const auto& [file, to] : {std::pair{"out.txt", STDOUT_FILENO}, std::pair{"err.txt", STDERR_FILENO}})
-                dup2(open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600), to);
-            execv(OSCULATE_PROGRAM, argv.data());
-            _exit(127);
-        }
-        return child;
-    }
-    Outcome study(std::vector<std::string> words) const {
-        words.insert(words.begin(), "study");
-        int status = 0;
-        waitpid(start(words), &status, 0);
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder / "out.txt"), content(folder / "err.txt")};
-    }
-
-    /// What every run of a study took, by its name: no two runs take the same time.
-    std::map<std::string, std::string> seconds_of_runs(const fs::path& table) const {
-        const Csv csv(table);
-        std::map<std::string, std::string> seconds;
-        for (std::size_t i = 0; i < csv.rows.size(); ++i)
-            seconds[csv.rows[i][0] + csv.rows[i][1]] = csv.text(i, "wall_seconds");
-        return seconds;
-    }
-};
-
-/// The tests' reader of tables knows no quotes: names of runs hold a comma, so they take two cells.
-Csv table(const fs::path& path) {
-    Csv csv(path);
-    csv.columns.insert(csv.columns.begin(), "id");
-    return csv;
-}
+using Study = StudyProgram;
 
 TEST_F(Study, HasARowForEveryRun) {
     const std::string file = write(small_study);
@@ -104,7 +24,7 @@ TEST_F(Study, HasARowForEveryRun) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("4 of 4 runs done"));
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("run 4/4"), HasSubstr("ETA 0:00:00")));
-    const Csv csv = table(folder / "s/study.csv");
+    const Csv csv = table_of(folder / "s/study.csv");
     ASSERT_EQ(csv.rows.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(csv.text(i, "status"), "done");
@@ -129,7 +49,7 @@ TEST_F(Study, HasARowForEveryRun) {
 
 /// The drag of a sliding block is mu P, whatever the mesh: a curve for each, a map, and sensitivities of samples.
 TEST_F(Study, ShowsQuantitiesOverItsAxes) {
-    const std::string file = write(R"(scene: )" + press + R"(
+    const std::string file = write(R"(scene: )" + press_yaml + R"(
 axes:
   friction: {key: contact.joint.friction, values: [0.3, 0.1, 0.2]}
   E: {key: bodies.cap.material.linear_elastic.E, values: [10 MPa, 40 MPa]}
@@ -165,7 +85,7 @@ plots:
 
 /// A run that is missing leaves a gap, a quantity that does not vary no warning, and one without values no dead link.
 TEST_F(Study, DrawsGapsWhereRunsHaveNoValue) {
-    const std::string file = write(R"(scene: )" + press + R"(
+    const std::string file = write(R"(scene: )" + press_yaml + R"(
 axes:
   friction: {key: contact.joint.friction, values: [0.1, 0.2, 0.3]}
   E: {key: bodies.cap.material.linear_elastic.E, values: [10 MPa, 40 MPa]}
@@ -188,7 +108,7 @@ plots:
 }
 
 TEST_F(Study, SamplesTellWhatAQuantityDependsOn) {
-    const std::string file = write(R"(scene: )" + press + R"(
+    const std::string file = write(R"(scene: )" + press_yaml + R"(
 axes:
   sample:
     sample: sobol
@@ -237,7 +157,7 @@ TEST_F(Study, MeasuresAnewWithoutRunning) {
     const Outcome outcome = study({write(changed), "-o", "s", "--report-only"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
-    EXPECT_NEAR(table(folder / "s/study.csv").number(0, "weight.value"), 2, 1e-12); // m^2
+    EXPECT_NEAR(table_of(folder / "s/study.csv").number(0, "weight.value"), 2, 1e-12); // m^2
 }
 
 TEST_F(Study, RunsOnlyWhatItIsToldTo) {
@@ -245,7 +165,7 @@ TEST_F(Study, RunsOnlyWhatItIsToldTo) {
     const Outcome some = study({file, "-o", "s", "--only", "mesh=coarse"});
     EXPECT_EQ(some.code, 0) << some.err;
     EXPECT_THAT(some.err, AllOf(HasSubstr("run 2/2"), Not(HasSubstr("mesh=fine"))));
-    EXPECT_EQ(table(folder / "s/study.csv").text(1, "status"), "waiting");
+    EXPECT_EQ(table_of(folder / "s/study.csv").text(1, "status"), "waiting");
     const Outcome bad = study({file, "-o", "s", "--only", "mesh=corase", "--only", "msh=fine"});
     EXPECT_EQ(bad.code, 2);
     EXPECT_THAT(bad.err, AllOf(HasSubstr("did you mean 'coarse'?"), HasSubstr("did you mean 'mesh'?")));
@@ -265,7 +185,7 @@ TEST_F(Study, LosesNothingFinishedWhenItIsKilled) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    const Csv partial = table(folder / "s/study.csv"); // readable at any moment
+    const Csv partial = table_of(folder / "s/study.csv"); // readable at any moment
     ASSERT_EQ(partial.rows.size(), 4U);
     std::vector<std::string> seconds;
     for (std::size_t i = 0; i < 4; ++i)
@@ -274,7 +194,7 @@ TEST_F(Study, LosesNothingFinishedWhenItIsKilled) {
     const Outcome rest = study({file, "-o", "s"});
     ASSERT_EQ(rest.code, 0) << rest.err;
     EXPECT_THAT(rest.err, Not(HasSubstr("friction=0.1"))) << "the first two were finished";
-    const Csv whole = table(folder / "s/study.csv");
+    const Csv whole = table_of(folder / "s/study.csv");
     for (std::size_t i = 0; i < seconds.size(); ++i) EXPECT_EQ(whole.text(i, "wall_seconds"), seconds[i]);
 }
 
@@ -297,7 +217,7 @@ TEST_F(Study, EndsItsRunsWhenItIsAskedToEnd) {
 
 TEST_F(Study, ARunThatGivesUpIsARow) {
     // pulled off the base, see Run.CountsEveryAttempt
-    const Outcome outcome = study({write(R"(scene: )" + press + R"(
+    const Outcome outcome = study({write(R"(scene: )" + press_yaml + R"(
 set: {solver.smallest_step: 0.3}
 axes:
   far:
@@ -320,8 +240,8 @@ quantities:
 
 TEST_F(Study, OfValuesAloneIsAMatrix) {
     fs::create_directories(folder / "scenes");
-    std::ofstream(folder / "scenes/done.yaml") << content(press) << "expect: {outcome: completed}\n";
-    std::ofstream(folder / "scenes/torn.yaml") << content(press) << "expect: {outcome: completed}\n"
+    std::ofstream(folder / "scenes/done.yaml") << content(press_yaml) << "expect: {outcome: completed}\n";
+    std::ofstream(folder / "scenes/torn.yaml") << content(press_yaml) << "expect: {outcome: completed}\n"
                                                << "solver: {smallest_step: 0.3}\n";
     std::string torn = content(folder / "scenes/torn.yaml");
     torn.replace(torn.find("rear: {x: 0.1 m}"), 16, "rear: {x: 6 m}");
@@ -373,7 +293,7 @@ repeats: 2
 TEST_F(Study, RepeatsMustGiveTheSameBits) {
     const std::string file = write(small_study);
     ASSERT_EQ(study({file, "-o", "s", "--quiet", "--repeats", "2"}).code, 0);
-    const Csv csv = table(folder / "s/study.csv");
+    const Csv csv = table_of(folder / "s/study.csv");
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(csv.number(i, "repeats"), 2);
         EXPECT_EQ(csv.text(i, "same_bits"), "yes");
@@ -382,7 +302,7 @@ TEST_F(Study, RepeatsMustGiveTheSameBits) {
     EXPECT_THAT(third.err, HasSubstr("run 4/4")) << "one more of each";
     std::ofstream(folder / "s/runs/friction=0.1,mesh=fine/history.csv", std::ios::app) << "\n";
     ASSERT_EQ(study({file, "-o", "s", "--quiet", "--repeats", "4"}).code, 0);
-    EXPECT_EQ(table(folder / "s/study.csv").text(1, "same_bits"), "no");
+    EXPECT_EQ(table_of(folder / "s/study.csv").text(1, "same_bits"), "no");
     EXPECT_THAT(content(folder / "s/study.md"),
                 HasSubstr("Repeats of friction=0.1,mesh=fine did not give the same bits"));
 }
@@ -401,95 +321,6 @@ TEST_F(Study, FaultsOfItsScenesComeBeforeAnyRun) {
     EXPECT_EQ(empty.code, 2);
     EXPECT_THAT(empty.err, HasSubstr("small.yaml:9:"));
     EXPECT_FALSE(fs::exists(folder / "s/runs"));
-}
-
-/// Three runs that complete and one that gives up.
-const std::string study_with_a_failure = [] {
-    std::string text = small_study;
-    const std::string fine = "{bodies.cap.mesh.block.divisions: [4, 4, 2]}";
-    text.replace(text.find(fine), fine.size(),
-                 "{bodies.cap.mesh.block.divisions: [4, 4, 2], solver.smallest_step: 0.3, "
-                 "stages.pull.displacement.rear.x: 6 m}");
-    return text;
-}();
-
-/// A table of a study without what no two runs have in common: seconds and memory.
-std::vector<std::vector<std::string>> timeless(const fs::path& path) {
-    const Csv csv = table(path);
-    std::vector<std::vector<std::string>> rows{{}};
-    const auto varies = [](const std::string& name) {
-        return name.find("seconds") != std::string::npos || name.find("memory") != std::string::npos;
-    };
-    for (const auto& row : csv.rows) {
-        rows.emplace_back();
-        for (std::size_t i = 0; i < row.size() && i < csv.columns.size(); ++i)
-            if (!varies(csv.columns[i])) rows.back().push_back(csv.columns[i] + "=" + row[i]);
-    }
-    return rows;
-}
-
-/// The tasks of a SLURM array one after another, `srun` being nothing but its arguments.
-TEST_F(Study, RunBySlurmAndGatheredIsTheStudyRunHere) {
-    const std::string file = write(study_with_a_failure);
-    ASSERT_EQ(study({file, "-o", "here", "--quiet"}).code, 0);
-    const Outcome emitted = study({file, "-o", "there", "--emit", "slurm"});
-    ASSERT_EQ(emitted.code, 0) << emitted.err;
-    EXPECT_THAT(emitted.out, AllOf(HasSubstr("4 runs; `sbatch there/study.sbatch`"), HasSubstr("--gather")));
-    EXPECT_THAT(content(folder / "there/study.sbatch"), HasSubstr("#SBATCH --array=1-4\n"));
-    EXPECT_FALSE(fs::exists(folder / "there/study.csv"));
-
-    std::ofstream(folder / "srun") << "#!/bin/sh\nexec \"$@\"\n";
-    fs::permissions(folder / "srun", fs::perms::owner_all);
-    const auto task = [&](int number) {
-        return std::system(("cd / && PATH=" + folder.string() + ":$PATH SLURM_ARRAY_TASK_ID=" + std::to_string(number) +
-                            " bash " + (folder / "there/study.sbatch").string())
-                               .c_str());
-    };
-    for (int number = 1; number <= 3; ++number) EXPECT_EQ(task(number), 0);
-    ASSERT_EQ(study({file, "-o", "there", "--gather"}).code, 0);
-    EXPECT_EQ(table(folder / "there/study.csv").text(3, "status"), "waiting");
-    const Outcome rest = study({file, "-o", "there", "--emit", "slurm"});
-    EXPECT_THAT(rest.out, HasSubstr("1 runs;")) << "what is finished is not done again";
-    EXPECT_EQ(task(1), 0);
-    EXPECT_NE(task(2), 0) << "there is no such task";
-
-    const Outcome gathered = study({file, "-o", "there", "--gather"});
-    EXPECT_THAT(gathered.out, HasSubstr("2 of 4 runs done, 2 gave up"));
-    EXPECT_EQ(timeless(folder / "there/study.csv"), timeless(folder / "here/study.csv"));
-    EXPECT_THAT(study({file, "-o", "there", "--emit", "slurm"}).out, HasSubstr("every run is finished"));
-}
-
-TEST_F(Study, RunBySnakemakeIsTheStudyRunHere) {
-    if (std::system("snakemake --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no snakemake here";
-    const std::string file = write(study_with_a_failure);
-    ASSERT_EQ(study({file, "-o", "here", "--quiet"}).code, 0);
-    ASSERT_EQ(study({file, "-o", "there", "--emit", "snakemake"}).code, 0);
-    const std::string command = "cd " + folder.string() + " && HOME=" + folder.string() +
-                                " snakemake -s there/Snakefile --cores 2 > log.txt 2>&1";
-    ASSERT_EQ(std::system(command.c_str()), 0) << content(folder / "log.txt");
-    EXPECT_EQ(timeless(folder / "there/study.csv"), timeless(folder / "here/study.csv"));
-    ASSERT_EQ(std::system(command.c_str()), 0);
-    EXPECT_THAT(content(folder / "log.txt"), HasSubstr("Nothing to be done"));
-}
-
-TEST_F(Study, OfSurfacesIsNotForClusters) {
-    const Outcome refused = study({scene_file("configs/studies/table1.yaml"), "--emit", "slurm"});
-    EXPECT_EQ(refused.code, 2);
-    EXPECT_THAT(refused.err, HasSubstr("--emit: expected a study of runs"));
-}
-
-/// A task that ends badly without a summary leaves its exit code and its words.
-TEST_F(Study, ATaskThatIsRefusedIsARow) {
-    const std::string file = write(small_study);
-    ASSERT_EQ(study({file, "-o", "s", "--emit", "slurm"}).code, 0);
-    const fs::path run = folder / "s/runs/friction=0.1,mesh=coarse";
-    std::ofstream(run / "exit_code") << "2\n";
-    std::ofstream(run / "messages.txt") << "first\nno such file\n";
-    ASSERT_EQ(study({file, "-o", "s", "--gather"}).code, 0);
-    const Csv csv = table(folder / "s/study.csv");
-    EXPECT_EQ(csv.text(0, "status"), "refused");
-    EXPECT_EQ(csv.text(0, "reason"), "no such file");
-    EXPECT_EQ(csv.text(1, "status"), "waiting");
 }
 
 TEST_F(Study, OfSurfacesIsTheSameCommand) {

@@ -49,4 +49,7 @@ struct Region {
 /// @returns  names, ascending; none where the mesh names no surface
 [[nodiscard]] std::vector<std::string> nearest_surfaces(const Mesh& mesh, const Vec3& point);
 
+/// The node nearest to a point, on the surface or inside, or several that are as near to within the tolerance; ascending.
+[[nodiscard]] std::vector<Index> nearest_nodes(const Mesh& mesh, const Vec3& point);
+
 } // namespace osculate::mesh

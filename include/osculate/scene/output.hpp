@@ -109,6 +109,7 @@ struct Plot {
 struct Derivative {
     std::string key;      ///< dotted path of the number, as for --set
     double change = 1e-5; ///< of the number, relative to it, by which it is made
+    double step = 0;      ///< change itself, SI; 0: the relative one counts
     bool operator==(const Derivative&) const = default;
 };
 

@@ -51,9 +51,16 @@ struct SelectNearest {
     bool operator==(const SelectNearest&) const = default;
 };
 
+/// The node that is nearest to a point.
+struct SelectNode {
+    Vec3 point = Vec3::Zero();
+    bool operator==(const SelectNode&) const = default;
+};
+
 struct SetSpec {
     std::string body;
-    std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal, SelectNumbers, SelectNearest>
+    std::variant<SelectNamed, SelectPlane, SelectCylinder, SelectBox, SelectNormal, SelectNumbers, SelectNearest,
+                 SelectNode>
         select;
     bool operator==(const SetSpec&) const = default;
 };
@@ -348,7 +355,8 @@ struct Scene {
     Vec3 gravity = Vec3::Zero(); ///< m/s^2, on every body with a density, in every stage
     Named<Body> bodies;
     Named<SetSpec> sets;
-    Named<Support> supports; ///< keyed by set
+    Named<Vec3> imperfections; ///< set -> by how much its nodes are moved before the run, m
+    Named<Support> supports;   ///< keyed by set
     Named<Coupling> couplings;
     Named<Tie> ties;
     Named<CyclicSymmetry> cyclic;

@@ -6,7 +6,6 @@
 #include "app/plan/gaps.hpp"
 #include "app/plan/loose_slaves.hpp"
 #include "app/plan/rigid_surface.hpp"
-#include "osculate/mesh/quality.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -59,7 +58,7 @@ void adjust_slaves(Draft& draft) {
         }
         for (const auto& [node, X] : found)
             m.X[static_cast<std::size_t>(node)] = body.mesh.nodes[static_cast<std::size_t>(node - body.first_node)] = X;
-        for (const std::string& what : mesh::faults(body.mesh))
+        for (const std::string& what : mesh_faults(body.mesh, m.origin))
             draft.faults.push_back(
                 fault(key, "a smaller one: elements fold where nodes are moved onto the master", what));
     }

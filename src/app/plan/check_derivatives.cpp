@@ -17,17 +17,20 @@ bool is_of_steps(const std::string& key) {
     return std::regex_match(key, pattern);
 }
 /// Faults of one number.
-void check_number(const std::string& resolved, const std::string& key, const std::string& where,
+void check_number(const std::string& resolved, const scene::Derivative& derivative, const std::string& where,
                   std::vector<Fault>& faults) {
     std::string found;
+    const std::string& key = derivative.key;
     const auto number = scene::number_at(resolved, key, found);
     if (is_of_steps(key))
         faults.push_back(fault(where, "a number of what is simulated, as the steps stay as they are", "'" + key + "'"));
     else if (!number)
         faults.push_back(fault(where, "the path of a number, such as bodies.NAME.material.linear_elastic.E",
                                "'" + key + "': " + found));
-    else if (number->value == 0)
-        faults.push_back(fault(where, "a number other than 0: it is changed by a part of it", "'" + key + "', 0"));
+    else if (number->value == 0 && derivative.step == 0)
+        faults.push_back(fault(where,
+                               "a number other than 0, as it is changed by a part of it, or a step beside its key",
+                               "'" + key + "', 0"));
 }
 
 bool is_plastic(const scene::Material& material) {
@@ -78,8 +81,7 @@ void check_gradients(const scene::Scene& scene, const Plan& plan, bool shared, s
     const std::string resolved = scene::write_scene(scene);
     for (const auto& [name, gradient] : scene.output.gradients) {
         const std::string where = "output.gradients." + name;
-        for (const auto& [label, by] : gradient.by)
-            check_number(resolved, by.key, where + ".by." + label + ".key", faults);
+        for (const auto& [label, by] : gradient.by) check_number(resolved, by, where + ".by." + label + ".key", faults);
         const auto* force = std::get_if<scene::SupportForce>(&gradient.of);
         const auto held = [&](const linear::NodeConstraint& constraint) {
             return constraint.set >= 0 && plan.model.sets[static_cast<std::size_t>(constraint.set)].name == force->set;
@@ -97,7 +99,7 @@ void check_derivatives(const scene::Scene& scene, bool shared, std::vector<Fault
         faults.push_back(fault("output.derivatives", "contact by named pairs", "contact.general, whose pairs change"));
     const std::string resolved = scene::write_scene(scene);
     for (const auto& [name, derivative] : scene.output.derivatives) {
-        check_number(resolved, derivative.key, "output.derivatives." + name + ".key", faults);
+        check_number(resolved, derivative, "output.derivatives." + name + ".key", faults);
     }
 }
 

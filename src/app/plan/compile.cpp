@@ -62,6 +62,8 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     throw_faults(draft); // nothing below can be trusted on a broken mesh
     add_sets(draft);
     throw_faults(draft);
+    move_imperfect_sets(draft);
+    throw_faults(draft);
     add_couplings(draft);
     throw_faults(draft);
     add_ties(draft);

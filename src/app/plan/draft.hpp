@@ -50,6 +50,10 @@ struct Draft {
 /// Bodies with their kernels, far from the scene's origin moved near to zero.
 void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes);
 void add_sets(Draft& draft);
+/// Elements without a positive volume, also where only their shape functions show it. @param origin  of the mesh's coordinates
+[[nodiscard]] std::vector<std::string> mesh_faults(const mesh::Mesh& mesh, const Vec3& origin);
+/// Nodes of sets with imperfections, moved by them.
+void move_imperfect_sets(Draft& draft);
 /// Couplings, with the two nodes of each behind those of all bodies.
 void add_couplings(Draft& draft);
 /// Ties, with their nodes moved onto the surfaces that they follow.

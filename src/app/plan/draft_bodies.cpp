@@ -1,4 +1,4 @@
-/// Bodies and sets of a plan.
+/// Bodies of a plan.
 
 #include "app/fault.hpp"
 #include "app/overloaded.hpp"
@@ -8,12 +8,9 @@
 #include "osculate/core/error.hpp"
 #include "osculate/fe/bad_jacobians.hpp"
 #include "osculate/mesh/quality.hpp"
-#include "osculate/mesh/select.hpp"
-#include "osculate/scene/nearest.hpp"
 
 #include <fmt/format.h>
 #include <numeric>
-#include <set>
 
 namespace osculate::app {
 
@@ -162,49 +159,6 @@ std::unique_ptr<fe::ElementKernel> kernel(mesh::CellType type, HexFormulation fo
         spec);
 }
 
-/// A part that the mesh names; one fault when it does not.
-mesh::Region select(Draft& draft, const std::string& set_name, const std::string& body, const scene::SelectNamed& s,
-                    const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
-    if (auto named = mesh::select_named(m, exterior, s.name)) return *named;
-    std::vector<std::string> known;
-    for (const auto& [surface, facets] : m.surfaces) known.push_back(surface);
-    for (const auto& [nodes, list] : m.node_sets)
-        if (!m.surfaces.contains(nodes)) known.push_back(nodes);
-    std::string names;
-    for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-    draft.faults.push_back(fault("sets." + set_name + (s.nodes ? ".nodes" : ".surface"),
-                                 "a surface or node set of body '" + body + "' (it has " + names + ")",
-                                 "'" + s.name + "'"));
-    draft.faults.back().nearest = scene::nearest(s.name, known);
-    return {};
-}
-
-/// The named surface nearest to a point; a fault where the mesh names none, or two are as near.
-mesh::Region select(Draft& draft, const std::string& set_name, const std::string& body, const scene::SelectNearest& s,
-                    const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
-    const std::vector<std::string> nearest = mesh::nearest_surfaces(m, s.point - draft.plan.model.origin);
-    if (nearest.size() == 1) return *mesh::select_named(m, exterior, nearest.front());
-    draft.faults.push_back(
-        fault("sets." + set_name + ".nearest",
-              nearest.empty() ? "a body whose mesh names surfaces" : "a point away from edges of surfaces",
-              nearest.empty() ? "body '" + body + "', whose mesh names none"
-                              : fmt::format("one as near to {}", fmt::join(nearest, " and "))));
-    return {};
-}
-
-/// Nodes by their numbers; one fault where any number is of none.
-mesh::Region select(Draft& draft, const std::string& set_name, const std::string& body, const scene::SelectNumbers& s,
-                    const mesh::Mesh& m, const std::vector<mesh::Facet>& exterior) {
-    const std::set<std::int64_t> known(m.node_ids.begin(), m.node_ids.end());
-    const auto missing = std::ranges::find_if(s.numbers, [&](int number) { return !known.contains(number); });
-    if (missing != s.numbers.end())
-        draft.faults.push_back(
-            fault("sets." + set_name + ".node_numbers",
-                  known.empty() ? "a body whose mesh is from a file" : "numbers of nodes of body '" + body + "'",
-                  known.empty() ? "body '" + body + "'" : std::to_string(*missing)));
-    return mesh::select_numbers(m, exterior, s.numbers);
-}
-
 /// Elements that are folded over where only their shape functions show it.
 std::vector<std::string> folded_elements(const mesh::Mesh& m, const Vec3& origin) {
     constexpr std::size_t listed = 20;
@@ -222,14 +176,12 @@ std::vector<std::string> folded_elements(const mesh::Mesh& m, const Vec3& origin
     return faults;
 }
 
-void check_mesh(Draft& draft, const std::string& body, const mesh::Mesh& m) {
-    std::vector<std::string> faults = mesh::faults(m);
-    if (faults.empty()) faults = folded_elements(m, draft.plan.model.origin);
-    for (const std::string& what : faults)
-        draft.faults.push_back(fault("bodies." + body + ".mesh", "a sound mesh", what));
-}
-
 } // namespace
+
+std::vector<std::string> mesh_faults(const mesh::Mesh& m, const Vec3& origin) {
+    std::vector<std::string> faults = mesh::faults(m);
+    return faults.empty() ? folded_elements(m, origin) : faults;
+}
 
 Index Draft::body_index(const std::string& name) const {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
@@ -264,7 +216,8 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
     give_rigid_bodies_materials(draft.scene);
     for (std::size_t b = 0; b < meshes.size(); ++b) {
         const auto& [name, spec] = draft.scene.bodies[b];
-        check_mesh(draft, name, meshes[b]);
+        for (const std::string& what : mesh_faults(meshes[b], draft.plan.model.origin))
+            draft.faults.push_back(fault("bodies." + name + ".mesh", "a sound mesh", what));
         model::Body body;
         body.name = name;
         body.rigid = spec.rigid.has_value();
@@ -291,60 +244,6 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
         draft.plan.model.bodies.push_back(std::move(body));
     }
     if (draft.faults.empty()) add_rigid_bodies(draft);
-}
-
-namespace {
-/// The whole surface of each body with an exact one.
-void add_surface_sets(Draft& draft) {
-    model::Model& m = draft.plan.model;
-    for (const model::RigidBody& rigid : m.rigid) {
-        if (!rigid.shape) continue;
-        model::Set all{surface_set(rigid.name), rigid.body, rigid.nodes,
-                       draft.exterior[static_cast<std::size_t>(rigid.body)]};
-        for (mesh::Facet& facet : all.facets)
-            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += rigid.nodes.front();
-        m.sets.push_back(std::move(all));
-    }
-}
-} // namespace
-
-void add_sets(Draft& draft) {
-    for (const auto& [name, spec] : draft.scene.sets) {
-        const Index b = draft.body_index(spec.body);
-        const mesh::Mesh& m = draft.plan.model.bodies[b].mesh;
-        const auto& exterior = draft.exterior[b];
-        const std::size_t before = draft.faults.size();
-        const Vec3& o = draft.plan.model.origin;
-        const mesh::Region region = std::visit(
-            Overloaded{
-                [&, &name = name, &spec = spec](const scene::SelectNamed& s) {
-                    return select(draft, name, spec.body, s, m, exterior);
-                },
-                [&, &name = name, &spec = spec](const scene::SelectNearest& s) {
-                    return select(draft, name, spec.body, s, m, exterior);
-                },
-                [&](const scene::SelectPlane& s) { return mesh::select_plane(m, exterior, s.point - o, s.normal); },
-                [&](const scene::SelectCylinder& s) {
-                    return mesh::select_cylinder(m, exterior, s.point - o, s.axis, s.radius);
-                },
-                [&](const scene::SelectBox& s) { return mesh::select_box(m, exterior, s.min - o, s.max - o); },
-                [&, &name = name, &spec = spec](const scene::SelectNumbers& s) {
-                    return select(draft, name, spec.body, s, m, exterior);
-                },
-                [&](const scene::SelectNormal& s) { return mesh::select_normal(m, exterior, s.direction, s.angle); },
-            },
-            spec.select);
-        if (region.nodes.empty() && draft.faults.size() == before)
-            draft.faults.push_back(fault("sets." + name, "at least one node of body '" + spec.body + "'",
-                                         "an empty set: nothing lies there"));
-        model::Set global{name, b, region.nodes, region.facets};
-        const Index shift = draft.plan.model.bodies[b].first_node;
-        for (Index& node : global.nodes) node += shift;
-        for (mesh::Facet& facet : global.facets)
-            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += shift;
-        draft.plan.model.sets.push_back(std::move(global));
-    }
-    add_surface_sets(draft);
 }
 
 } // namespace osculate::app

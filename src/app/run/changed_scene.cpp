@@ -46,7 +46,7 @@ ChangedScenes changed_scenes(const LoadedScene& loaded, const std::string& resol
     const auto number = scene::number_at(resolved, derivative.key, found);
     if (!number) return changed;
     changed.value = number->value;
-    changed.step = std::abs(number->value) * derivative.change;
+    changed.step = derivative.step > 0 ? derivative.step : std::abs(number->value) * derivative.change;
     for (std::size_t k = 0; k < changed.sides.size(); ++k) {
         const double value = number->value + (k == 0 ? -changed.step : changed.step);
         try {

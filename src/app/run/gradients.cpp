@@ -16,7 +16,8 @@ Gradients::Gradients(const LoadedScene& loaded, const std::string& resolved, int
     run_ = std::make_unique<time::AdjointRun>(loaded.plan.model, loaded.plan.stages, options, timings);
     for (const auto& [name, gradient] : loaded.scene.output.gradients)
         for (const auto& [label, derivative] : gradient.by) {
-            if (!number_.try_emplace({derivative.key, derivative.change}, scenes_.size()).second) continue;
+            if (!number_.try_emplace({derivative.key, derivative.change, derivative.step}, scenes_.size()).second)
+                continue;
             scenes_.push_back(changed_scenes(loaded, resolved, derivative, "output.gradients." + name + ".by." + label,
                                              threads, timings, faults));
             const ChangedScenes& changed = scenes_.back();
@@ -76,7 +77,7 @@ void Gradients::write(const std::filesystem::path& folder) {
         output::CsvTable table(folder / file(name), {"name", "key", "value", "derivative", "change_of_1_percent"});
         bool any = false;
         for (const auto& [label, by] : gradient.by) {
-            const std::size_t number = number_.at({by.key, by.change});
+            const std::size_t number = number_.at({by.key, by.change, by.step});
             const double value = scenes_[number].value, derivative = all[g][number];
             any = any || derivative != 0;
             table.row({label, by.key, value, derivative, 0.01 * value * derivative});

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace osculate::app {
@@ -30,7 +31,7 @@ private:
     [[nodiscard]] time::FinalQuantity quantity(const scene::Gradient& gradient) const;
 
     const LoadedScene& loaded_;
-    std::map<std::pair<std::string, double>, std::size_t> number_; ///< of a key and its relative change
+    std::map<std::tuple<std::string, double, double>, std::size_t> number_; ///< of a key and its changes
     std::vector<ChangedScenes> scenes_;
     std::unique_ptr<time::AdjointRun> run_;
     bool singular_ = false;         ///< there are none: a linear system has no solution

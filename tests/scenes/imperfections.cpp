@@ -1,0 +1,91 @@
+/// Nodes that are moved before a run, and derivatives by their positions.
+
+#include "scenes/program.hpp"
+
+#include <cmath>
+#include <gmock/gmock.h>
+
+namespace osculate::scenes::OSCULATE_THIS_FILE {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Imperfections : public Program {
+protected:
+    [[nodiscard]] Outcome run(const std::string& scene, const std::vector<std::string>& changes,
+                              const std::string& name) const {
+        std::vector<std::string> arguments{"run", scene, "-o", name, "--quiet"};
+        for (const std::string& change : changes) arguments.insert(arguments.end(), {"--set", change});
+        return osculate(arguments);
+    }
+    [[nodiscard]] double derivative(const std::string& table, std::size_t row) const {
+        return Csv(folder / table).number(row, "derivative");
+    }
+    const std::string column = scene_file("tests/scenes/imperfect_column.yaml");
+};
+
+/// u(top) = -p (l_lower + l_upper) / E wherever nodes inside lie: the patch test.
+TEST_F(Imperfections, OfASetChangeLengthsAndInsideNothing) {
+    const Outcome outcome = run(column, {}, "run");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    constexpr double E = 1e7, p = 20e3, length = 2.5, exact = 1e-10, exact_difference = 1e-7;
+    const Csv loaded(folder / "run/probes/loaded.csv");
+    for (const char* name : {"min_displacement_z [m]", "max_displacement_z [m]"})
+        EXPECT_NEAR(loaded.number(loaded.rows.size() - 1, name), -p * length / E, exact * p * length / E);
+    EXPECT_NEAR(derivative("run/gradients/top.csv", 0), -p / E, exact_difference * p / E);
+    EXPECT_NEAR(derivative("run/gradients/top.csv", 1), 0, exact_difference * p / E) << "a node inside is not felt";
+}
+
+/// By the position of one node of the master, of one of the slave and of one inside, along a curved surface with friction.
+TEST_F(Imperfections, GiveDerivativesByPositionsOfNodes) {
+    std::vector<std::string> changes{"bodies.tube.mesh.half_tube.divisions=[7, 6, 1]",
+                                     "bodies.contactor.mesh.contactor.divisions=[6, 8, 1]",
+                                     "stages.slide.steps=4",
+                                     "stages.slide.duration=4 s",
+                                     "stages.slide.displacement={rear: {y: 0.4 m}}",
+                                     "solver.tolerance=1e-12",
+                                     "sets.under={body: tube, node: {point: [0.3 m, 3.2 m, -2.9 m]}}",
+                                     "sets.over={body: contactor, node: {point: [0.7 m, 2.1 m, -2.9 m]}}",
+                                     "output.template=minimal",
+                                     "output.plots={}"};
+    const std::string half_tube = scene_file("configs/paper/half_tube.yaml");
+    const auto force = [&](const std::string& under, const std::string& over) {
+        std::vector<std::string> moved = changes;
+        moved.push_back("imperfections={under: [0, 0, " + under + "], over: [" + over + ", 0, 0]}");
+        const Outcome outcome = run(half_tube, moved, "moved");
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        const Csv rows(folder / "moved/history.csv");
+        const double value = rows.number(rows.rows.size() - 1, "pair.sliding.force_y");
+        fs::remove_all(folder / "moved");
+        return value;
+    };
+    constexpr double h = 1e-3, allowed = 1e-4; // m; of differences, whose error is of the order of h^2
+    const double by_under = (force("1 mm", "0") - force("-1 mm", "0")) / (2 * h),
+                 by_over = (force("0", "1 mm") - force("0", "-1 mm")) / (2 * h);
+    changes.emplace_back("imperfections={under: [0, 0, 0], over: [0, 0, 0]}");
+    changes.emplace_back("output.gradients={drag: {contact_force: {pair: sliding, direction: [0, 1, 0]}, by: {under: "
+                         "{key: imperfections.under.2, step: 1e-5}, over: {key: imperfections.over.0, step: 1e-5}}}}");
+    const Outcome outcome = run(half_tube, changes, "run");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(derivative("run/gradients/drag.csv", 0), by_under, allowed * std::abs(by_under));
+    EXPECT_NEAR(derivative("run/gradients/drag.csv", 1), by_over, allowed * std::abs(by_over));
+}
+
+TEST_F(Imperfections, ThatCannotBeAreRefused) {
+    const auto said = [&](const std::vector<std::string>& changes) {
+        const Outcome outcome = run(column, changes, "refused");
+        EXPECT_EQ(outcome.code, 2) << outcome.err;
+        EXPECT_FALSE(fs::exists(folder / "refused"));
+        return outcome.err;
+    };
+    EXPECT_THAT(said({"imperfections.inside=[0, 0, 260 mm]"}), HasSubstr("elements fold"));
+    EXPECT_THAT(said({"imperfections={insight: [0, 0, 1 mm]}", "output.gradients={}"}), HasSubstr("inside"));
+    EXPECT_THAT(said({"bodies.upper.rigid={}"}), HasSubstr("a set of rigid body 'upper'"));
+    EXPECT_THAT(said({"sets.inside.node.point=[0.25 m, 0.5 m, 1.5 m]"}), HasSubstr("2 nodes as near"));
+    EXPECT_THAT(said({"output.gradients.top.by.length={key: imperfections.top.1}"}),
+                HasSubstr("or a step beside its key"));
+}
+
+} // namespace
+} // namespace osculate::scenes::OSCULATE_THIS_FILE

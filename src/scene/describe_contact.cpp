@@ -206,10 +206,13 @@ void describe(Visitor& v, Pair& pair) {
               .meaning = "An initial overlap deeper than this fraction of the facet size is a fault.",
               .range = range::fraction},
              pair.initial_overlap_limit);
-    v.number({.name = "stiffness_scale",
-              .meaning = "Factor on the complementarity function's constant; results do not depend on it.",
-              .range = {.low = 1e-6, .high = 1e6}},
-             pair.stiffness_scale);
+    v.number(
+        {.name = "stiffness_scale",
+         .meaning =
+             "Factor on the complementarity function's constant. Results do not depend on it, but a little where slave "
+             "nodes stick that are held or driven: they stick elastically.",
+         .range = {.low = 1e-6, .high = 1e6}},
+        pair.stiffness_scale);
 }
 
 void describe(Visitor& v, GeneralContact& general) {

@@ -157,7 +157,7 @@ struct Pair {
     double closing_tolerance = 0.02;       ///< of the facet size: the first solve closes nodes with a smaller gap
     double initial_overlap_limit = 0.1;    ///< of the facet size: a deeper initial overlap is a fault
     double stiffness_scale =
-        1; ///< factor on the estimated c of the complementarity function; results do not depend on it
+        1; ///< factor on the estimated c of the complementarity function; see docs/theory.md, section 5
     bool operator==(const Pair&) const = default;
 };
 

@@ -29,6 +29,8 @@ std::ostream& operator<<(std::ostream& out, const Pairing& p) {
 std::vector<scene::Override> base(const Pairing& pairing) {
     return {{"contact.sliding.surface", pairing.surface},
             {"contact.sliding.discretisation", pairing.discretisation},
+            {"bodies.tube.mesh.half_tube.divisions", "[13, 12, 1]"},
+            {"bodies.contactor.mesh.contactor.divisions", "[12, 16, 1]"},
             {"stages.slide.steps", std::to_string(slides)},
             {"stages.slide.displacement.rear.y", "0.3 m"},
             {"solver.tolerance", "1e-10"},

@@ -2,25 +2,55 @@
 
 #include "app/fault.hpp"
 #include "app/plan/draft.hpp"
+#include "osculate/mesh/cell_type.hpp"
 
 namespace osculate::app {
 
-void move_imperfect_sets(Draft& draft) {
-    model::Model& m = draft.plan.model;
-    std::map<Index, std::string> moved; // bodies, and the last set that moved them
-    for (const auto& [name, by] : draft.scene.imperfections) {
-        if (by.isZero(0)) continue;
-        const model::Set& set = draft.set(name);
-        model::Body& body = m.bodies[static_cast<std::size_t>(set.body)];
-        for (const Index node : set.nodes) {
-            m.X[static_cast<std::size_t>(node)] += by;
-            body.mesh.nodes[static_cast<std::size_t>(node - body.first_node)] += by;
+namespace {
+
+/// Midside nodes that no set moves stay in the middle of their edges. @param own  (nodes) sets say where they go
+void take_midside_nodes_along(const model::Body& body, const std::vector<char>& own, Field& moved) {
+    for (const mesh::ElementBlock& block : body.mesh.blocks) {
+        const mesh::CellInfo& info = mesh::cell_info(block.type);
+        for (std::size_t first = 0; first < block.connectivity.size(); first += static_cast<std::size_t>(info.nodes)) {
+            const auto node = [&](int local) {
+                return static_cast<std::size_t>(body.first_node +
+                                                block.connectivity[first + static_cast<std::size_t>(local)]);
+            };
+            for (std::size_t e = 0; e < info.edges.size(); ++e)
+                if (const std::size_t midside = node(info.corners() + static_cast<int>(e)); own[midside] == 0)
+                    moved[midside] = 0.5 * (moved[node(info.edges[e][0])] + moved[node(info.edges[e][1])]);
         }
-        moved[set.body] = name;
     }
-    for (const auto& [number, name] : moved)
-        for (const std::string& what : mesh_faults(m.bodies[static_cast<std::size_t>(number)].mesh, m.origin))
+}
+
+} // namespace
+
+void move_imperfect_sets(Draft& draft) {
+    if (draft.scene.imperfections.empty()) return;
+    model::Model& m = draft.plan.model;
+    Field moved(m.X.size());
+    std::vector<char> own(m.X.size(), 0);
+    std::map<Index, std::string> last; // set that moved a body
+    for (const auto& [name, by] : draft.scene.imperfections) {
+        const model::Set& set = draft.set(name);
+        for (const Index node : set.nodes) {
+            moved[node] += by;
+            own[static_cast<std::size_t>(node)] = 1;
+        }
+        last[set.body] = name;
+    }
+    for (const auto& [number, name] : last) {
+        model::Body& body = m.bodies[static_cast<std::size_t>(number)];
+        take_midside_nodes_along(body, own, moved);
+        for (std::size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+            const Vec3& by = moved[body.first_node + static_cast<Index>(i)];
+            m.X[body.first_node + static_cast<Index>(i)] += by;
+            body.mesh.nodes[i] += by;
+        }
+        for (const std::string& what : mesh_faults(body.mesh, m.origin))
             draft.faults.push_back(fault("imperfections." + name, "smaller ones: elements fold", what));
+    }
 }
 
 } // namespace osculate::app

@@ -19,7 +19,7 @@ constexpr double slack = 0.05, beyond_end = 0.15, farthest = 0.9;
 constexpr double clearly_nearer = 0.6;
 /// A crossing that is deeper at the start, in lengths of the shorter edge, is on the other side of a thin part; one that is
 /// new is of edges that did not meet, but whose lines do.
-constexpr double deepest = 0.3, deepest_new = 0.02;
+constexpr double deepest_known = 0.3, deepest_new = 0.02;
 /// An end that is this near, in lengths, meets the other edge as a node on a face, if the normal is that of a face up to this
 /// sine.
 constexpr double at_end = 0.04, of_face = 0.02;
@@ -182,7 +182,7 @@ private:
         const double length = std::min((at[1] - at[0]).norm(), (at[3] - at[2]).norm());
         const bool known = edge.watched || std::max(tracking.facet[static_cast<std::size_t>(j)],
                                                     tracking.facet[static_cast<std::size_t>(edge.reverse)]) >= 0;
-        if (side * crossing.across.dot(crossing.offset) < -(known ? deepest : deepest_new) * length) return {};
+        if (side * crossing.across.dot(crossing.offset) < -(known ? deepest_known : deepest_new) * length) return {};
         const Vec3 n = side * crossing.across;
         // the normal of a face is normal to its wing
         const bool flat = std::max(n.dot(other.wings[0]), n.dot(other.wings[1])) > -of_face ||

@@ -31,21 +31,6 @@ protected:
         more.insert(more.begin(), {"run", press, "-o", output, "--quiet"});
         return osculate(more);
     }
-    /// Starts a program of its own, whose words go nowhere.
-    [[nodiscard]] pid_t start(std::vector<std::string> words) const {
-        words.insert(words.begin(), "osculate");
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
-        const pid_t child = fork();
-        if (child == 0) {
-            fs::current_path(folder);
-            dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-            execv(OSCULATE_PROGRAM, argv.data());
-            _exit(127);
-        }
-        return child;
-    }
 };
 
 const std::vector<std::string> others{"run/checkpoint/thesis.txt", "run/plots/mine.csv", "run/probes/mine.csv",

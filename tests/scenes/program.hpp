@@ -74,6 +74,22 @@ protected:
         if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
         folder = name;
     }
+    /// Starts a program of its own in `folder`, whose words go to out.txt and err.txt there.
+    [[nodiscard]] pid_t start(std::vector<std::string> words) const {
+        words.insert(words.begin(), "osculate");
+        std::vector<char*> argv;
+        for (std::string& word : words) argv.push_back(word.data());
+        argv.push_back(nullptr);
+        const pid_t child = fork();
+        if (child == 0) {
+            std::filesystem::current_path(folder);
+            for (const auto& [file, to] : {std::pair{"out.txt", STDOUT_FILENO}, std::pair{"err.txt", STDERR_FILENO}})
+                dup2(open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600), to);
+            execv(OSCULATE_PROGRAM, argv.data());
+            _exit(127);
+        }
+        return child;
+    }
     ~Program() override { std::filesystem::remove_all(folder); }
 
     /// Runs the program in a process of its own, whose current folder is `folder`.

@@ -49,22 +49,6 @@ protected:
         return (folder / "small.yaml").string();
     }
 
-    /// Starts the program in `folder`.
-    pid_t start(std::vector<std::string> words) const {
-        words.insert(words.begin(), "osculate");
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
-        const pid_t child = fork();
-        if (child == 0) {
-            fs::current_path(folder);
-            for (const auto& [file, to] : {std::pair{"out.txt", STDOUT_FILENO}, std::pair{"err.txt", STDERR_FILENO}})
-                dup2(open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600), to);
-            execv(OSCULATE_PROGRAM, argv.data());
-            _exit(127);
-        }
-        return child;
-    }
     Outcome study(std::vector<std::string> words) const {
         words.insert(words.begin(), "study");
         int status = 0;

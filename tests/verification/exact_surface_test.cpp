@@ -164,7 +164,7 @@ stages:
     analysis: {dynamic: {integrator: {generalised_alpha: {rho_inf: 0.5}}}}
     control: {step_size: fixed}
     duration: 0.4
-    steps: 80
+    steps: 100
 )");
     const model::Model& model = swung.plan.model;
     const auto x = [&](const support::RunStep& step) {

@@ -133,7 +133,7 @@ TEST(TwoBlocks, OfQuadraticElementsKeepTheirMomentaToo) {
     EXPECT_LT(small.moment, 1e-10); // each force acts on some thirty nodes
     EXPECT_LT(small.angular, 0.01);
     EXPECT_LT(finite.linear, 1e-7);
-    EXPECT_LT(finite.angular, 3e-4); // of first order in the step, which is three times as long as above
+    EXPECT_LT(finite.angular, 3e-4); // of first order in the step, which is four times as long as above
 }
 
 } // namespace

@@ -121,5 +121,28 @@ TEST_F(Imperfections, ThatCannotBeAreRefused) {
                 HasSubstr("or a step beside its key"));
 }
 
+/// A tie or `adjust` that puts nodes back would leave the run, or a derivative, without the imperfection.
+TEST_F(Imperfections, ThatOthersUndoAreRefused) {
+    const std::vector<std::string> plain{"output.gradients={}", "output.derivatives={}"};
+    const auto said = [&](std::vector<std::string> changes) {
+        changes.insert(changes.end(), plain.begin(), plain.end());
+        const Outcome outcome = run(column, changes, "run");
+        fs::remove_all(folder / "run");
+        return outcome.code == 0 ? "" : outcome.err;
+    };
+    const std::string tie = "ties={joint: {slave: under, master: ground}}", untied = "contact={}",
+                      adjust = "contact.joint.adjust=20 mm";
+    EXPECT_THAT(said({untied, tie, "imperfections={under: [0, 0, 10 mm]}"}), HasSubstr("9, placed elsewhere by these"));
+    EXPECT_THAT(said({adjust, "imperfections={under: [0, 0, 10 mm]}"}), HasSubstr("move the master's"));
+    EXPECT_EQ(said({untied, tie, "imperfections={ground: [0, 0, 10 mm]}"}), "") << "the slave's go along";
+    EXPECT_EQ(said({untied, tie, "imperfections={under: [10 mm, 0, 0]}"}), "") << "along the master they stay";
+    const Outcome from_zero = run(column,
+                                  {adjust, "imperfections={under: [0, 0, 0]}", plain.front(),
+                                   "output.derivatives={height: {key: imperfections.under.2, step: 1e-4}}"},
+                                  "run");
+    EXPECT_EQ(from_zero.code, 2) << "its changes are undone";
+    EXPECT_THAT(from_zero.err, HasSubstr("output.derivatives.height.key"));
+}
+
 } // namespace
 } // namespace osculate::scenes::OSCULATE_THIS_FILE

@@ -73,6 +73,7 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     draft.plan.settles_by_rule = settle_dynamics(draft.scene);
     settle_pairs(draft);
     adjust_slaves(draft);
+    check_imperfect_sets(draft);
     throw_faults(draft);
     add_skins(draft);
     throw_faults(draft);

@@ -4,9 +4,14 @@
 #include "app/plan/draft.hpp"
 #include "osculate/mesh/cell_type.hpp"
 
+#include <fmt/format.h>
+
 namespace osculate::app {
 
 namespace {
+
+/// How far a node may be placed elsewhere, of its imperfection: round-off in the places that ties compute stays below.
+constexpr double kept = 0.01;
 
 /// Midside nodes that no set moves stay in the middle of their edges. @param own  (nodes) sets say where they go
 void take_midside_nodes_along(const model::Body& body, const std::vector<char>& own, Field& moved) {
@@ -40,6 +45,11 @@ void move_imperfect_sets(Draft& draft) {
         }
         last[set.body] = name;
     }
+    for (const auto& [name, by] : draft.scene.imperfections)
+        for (const Index node : draft.set(name).nodes)
+            if (moved[node].norm() > 0)
+                draft.imperfect.push_back(
+                    {node, m.X[static_cast<std::size_t>(node)] + moved[node], moved[node].norm(), name});
     for (const auto& [number, name] : last) {
         model::Body& body = m.bodies[static_cast<std::size_t>(number)];
         take_midside_nodes_along(body, own, moved);
@@ -50,6 +60,29 @@ void move_imperfect_sets(Draft& draft) {
         }
         for (const std::string& what : mesh_faults(body.mesh, m.origin))
             draft.faults.push_back(fault("imperfections." + name, "smaller ones: elements fold", what));
+    }
+}
+
+void check_imperfect_sets(Draft& draft) {
+    const model::Model& m = draft.plan.model;
+    std::map<std::string, std::pair<Index, MovedNode>> elsewhere; // by set: how many, and the farthest
+    const auto off = [&](const MovedNode& moved) {
+        return (m.X[static_cast<std::size_t>(moved.node)] - moved.X).norm();
+    };
+    for (const MovedNode& moved : draft.imperfect) {
+        if (!(off(moved) > kept * moved.by)) continue;
+        auto& [count, farthest] = elsewhere.try_emplace(moved.set, 0, moved).first->second;
+        ++count;
+        if (off(moved) > off(farthest)) farthest = moved;
+    }
+    for (const auto& [set, found] : elsewhere) {
+        const auto& [count, farthest] = found;
+        const Vec3 X = farthest.X + m.origin;
+        draft.faults.push_back(
+            fault("imperfections." + set,
+                  "nodes that no tie, sector or `adjust` places: move the master's, whose nodes take these along",
+                  fmt::format("{}, placed elsewhere by these: up to {:.3g} m from [{:.6g}, {:.6g}, {:.6g}] m",
+                              count == 1 ? "one" : std::to_string(count), off(farthest), X[0], X[1], X[2])));
     }
 }
 

@@ -198,6 +198,9 @@ bool ConvexProblem::solve(const Vector& slid, Vector& R, Vector& U, int& iterati
 
 FrictionSolution cone_friction(const FrictionProblem& problem, double tolerance, int most_iterations) {
     constexpr int newton_iterations = 30;
+    constexpr double settled = 1e-6; // of sliding distances, whose unit is the mean of q
+    constexpr double gain = 0.9;     // of the error
+    constexpr int patience = 5;      // convex problems with settled distances and without a gain: round-off is reached
     const Index n = problem.points();
     FrictionSolution solution;
     solution.r = Vector::Zero(3 * n);
@@ -231,7 +234,9 @@ FrictionSolution cone_friction(const FrictionProblem& problem, double tolerance,
         solution.r = r;
         solution.error = error;
     };
-    while (solution.iterations < most_iterations) {
+    int idle = 0;
+    while (solution.iterations < most_iterations && idle < patience) {
+        const double before = solution.error;
         const bool solved = convex.solve(slid, R, U, solution.iterations);
         keep_better(unit.cwiseProduct(R));
         const FrictionSolution newton = newton_friction(problem, solution.r, tolerance, newton_iterations);
@@ -245,6 +250,7 @@ FrictionSolution cone_friction(const FrictionProblem& problem, double tolerance,
             change = std::max(change, std::abs(now - slid(j)));
             slid(j) = now;
         }
+        idle = change <= settled && solution.error > gain * before ? idle + 1 : 0;
         // back into the interior, as far as the problem has changed
         const double inside = std::clamp(0.1 * change, 1e-6, 1e-2);
         for (Index j = 0; j < n; ++j) {

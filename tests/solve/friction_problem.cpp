@@ -171,5 +171,21 @@ TEST(FrictionProblem, AProblemWithoutSolutionIsNotSaidToBeSolved) {
     EXPECT_FALSE(solve_friction(problem, tolerance).converged);
 }
 
+TEST(FrictionProblem, EndsWhereRoundOffIsAboveTheTolerance) {
+    // a mechanism: one motion of all points has no resistance but round-off, and the loads go along it
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    constexpr double loose = 1e13;
+    constexpr int trials = 10, enough = 300; // factorisations; it is given up after a thousand in any case
+    for (int k = 0; k < trials; ++k) {
+        FrictionProblem problem = heap(random, 3, 20, 1e-2);
+        Vector motion(problem.q.size());
+        for (Index i = 0; i < motion.size(); ++i) motion(i) = normal(random);
+        problem.W += loose * motion * motion.transpose();
+        problem.q += loose * motion;
+        EXPECT_LT(solve_friction(problem, 1e-14).iterations, enough) << k;
+    }
+}
+
 } // namespace
 } // namespace osculate::solve::OSCULATE_THIS_FILE

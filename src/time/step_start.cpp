@@ -33,9 +33,7 @@ equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, con
                               const Field& prescribed_start, double elapsed) {
     const double ramp = stage.ramp ? elapsed / stage.duration : 1;
     equilibrium::StepLoad load;
-    load.force.reset(model.X.size());
-    for (std::size_t i = 0; i < load.force.size(); ++i)
-        load.force[i] = stage.force_start[i] + ramp * (stage.force_end[i] - stage.force_start[i]);
+    load.force = stage.force(model.X.size(), ramp);
     std::vector<double> value;
     for (const Course& course : stage.courses) {
         value.push_back(course.at(elapsed));
@@ -44,7 +42,7 @@ equilibrium::StepLoad load_at(const model::Model& model, const Stage& stage, con
                                     number(elapsed) + " s after the stage's start",
                                 course.name, elapsed);
     }
-    for (const CourseForce& part : stage.course_forces) load.force.add(value[part.course], part.pattern);
+    for (const CourseForce& part : stage.course_forces) part.pattern.add_to(value[part.course], load.force);
     for (const FollowerPressure& pressure : stage.follower_pressures) {
         const double now =
             pressure.course >= 0 ? value[pressure.course] : pressure.start + ramp * (pressure.end - pressure.start);

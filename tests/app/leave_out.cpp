@@ -109,5 +109,21 @@ TEST(LeaveOut, NothingIsMadeWhileItRuns) {
     EXPECT_EQ(run.stepper->counts().stabilised_steps, 0);
 }
 
+TEST(LeaveOut, StagesHoldForcesWhereThereAreAnyAndShareTheirWeight) {
+    const std::string more = little + "  hold: {}\n  shake: {analysis: dynamic, duration: 10 ms}\n  rest: {}\n"
+                                      "gravity: [0, 0, -9.81 m/s^2]\n";
+    const scene::Scene scene = scene::parse_scene(more, "scene.yaml");
+    Timings timings;
+    const Plan plan = compile(scene, build_meshes(scene), 1, timings);
+    constexpr std::ptrdiff_t on_top = 16;
+    for (const time::Stage& stage : plan.stages)
+        EXPECT_EQ(std::distance(stage.force_end.begin(), stage.force_end.end()), on_top) << stage.name;
+    EXPECT_TRUE(plan.stages[0].force_start.empty());
+    EXPECT_EQ(plan.stages[0].weight, plan.stages[1].weight);
+    Vec3 force = Vec3::Zero();
+    for (const Vec3& f : plan.stages[1].force(plan.model.X.size(), 0.5)) force += f;
+    EXPECT_NEAR(force.z(), -10e3 - 2500 * 9.81, 1e-9 * 35e3) << "pressure and weight of 2.5 m^3";
+}
+
 } // namespace
 } // namespace osculate::app::OSCULATE_THIS_FILE

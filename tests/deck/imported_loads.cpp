@@ -36,21 +36,21 @@ protected:
     }
     static Vec3 at_end(const app::Plan& plan, std::size_t stage, double from_x = -1, double to_x = 4) {
         Vec3 sum = Vec3::Zero();
+        const Field force = plan.stages.at(stage).force(plan.model.X.size(), 1);
         for (std::size_t n = 0; n < plan.model.X.size(); ++n)
             if (plan.model.X[n].x() > 1e-3 * from_x && plan.model.X[n].x() < 1e-3 * to_x)
-                sum += plan.stages.at(stage).force_end[n];
+                sum += force[n];
         return sum;
     }
     /// Force of all loads at a time of a stage, courses included.
     static Vec3 at_time(const app::Plan& plan, std::size_t number, double t) {
         const time::Stage& stage = plan.stages.at(number);
         const double ramp = stage.ramp ? t / stage.duration : 1;
+        Field force = stage.force(plan.model.X.size(), ramp);
+        for (const time::CourseForce& part : stage.course_forces)
+            part.pattern.add_to(stage.courses[static_cast<std::size_t>(part.course)].at(t), force);
         Vec3 sum = Vec3::Zero();
-        for (std::size_t n = 0; n < plan.model.X.size(); ++n) {
-            sum += stage.force_start[n] + ramp * (stage.force_end[n] - stage.force_start[n]);
-            for (const time::CourseForce& force : stage.course_forces)
-                sum += stage.courses[static_cast<std::size_t>(force.course)].at(t) * force.pattern[n];
-        }
+        for (const Vec3& f : force) sum += f;
         return sum;
     }
 };

@@ -124,7 +124,7 @@ TEST_F(ImportingParts, ScenesMayUseTheSetsOfInstances) {
         "scene.yaml");
     const app::Plan plan = plan_of(scene);
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& f : plan.stages.at(0).force_end) sum += f;
+    for (const Vec3& f : plan.stages.at(0).force(plan.model.X.size(), 1)) sum += f;
     EXPECT_DOUBLE_EQ(sum[2], -4);
 }
 

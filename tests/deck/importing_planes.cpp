@@ -51,7 +51,7 @@ TEST_F(ImportingPlanes, BecomeOneLayerAsThickAsTheirSection) {
         EXPECT_EQ(scene.bodies[0].second.hex_formulation,
                   std::string(type) == "CPE8R" ? HexFormulation::reduced : HexFormulation::full);
         Vec3 sum = Vec3::Zero();
-        for (const Vec3& f : plan.stages[0].force_end) sum += f;
+        for (const Vec3& f : plan.stages[0].force(plan.model.X.size(), 1)) sum += f;
         // of a force on the whole circle a wedge has its share
         EXPECT_NEAR(sum.y(), revolves ? 1 : 720, 1e-9) << type;
         EXPECT_NEAR(sum.x(), revolves ? 2 * 2 * turn : 0.5, 1e-4) << type;

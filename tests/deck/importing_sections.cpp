@@ -61,7 +61,7 @@ TEST_F(ImportingSections, NodesAtOnePlaceAreToldApartByTheirNumbers) {
         EXPECT_THAT(imported.lost, IsEmpty());
         EXPECT_THAT(imported.text, AllOf(HasSubstr("keep_non_manifold"), HasSubstr("node_numbers: ")));
         const app::Plan plan = plan_of(checked(imported));
-        const Field& force = plan.stages.at(0).force_end;
+        const Field force = plan.stages.at(0).force(plan.model.X.size(), 1);
         for (std::size_t i = 0; i < force.size(); ++i)
             EXPECT_EQ(force[i], i == static_cast<std::size_t>(place) ? Vec3(5, 0, 0) : Vec3(0, 0, 0))
                 << node << " " << i;

@@ -26,7 +26,7 @@ public:
         kinsol = std::make_unique<solve::KinsolSolver>(equilibrium->size(), timings);
         state.u.assign(plan.model.X.size(), Vec3::Zero());
         state.contact.push_back(model::opened(plan.model.pairs[0]));
-        force = pull.force_end;
+        force = pull.force(plan.model.X.size(), 1);
     }
     /// All slave nodes of one status, but for the first few, which are open.
     [[nodiscard]] Statuses all(contact::Status status, std::size_t opened = 0) const {

@@ -63,7 +63,7 @@ public:
             kept.held_force.push_back(held(body.reference));
             kept.held_moment.emplace_back(body.radius * held(body.rotation()));
         }
-        for (const Vec3& f : step.stage.force_end) kept.load += f;
+        for (const Vec3& f : step.stage.force(model.X.size(), 1)) kept.load += f;
         run_.steps.push_back(std::move(kept));
         run_.contact = step.equilibrium.contact();
     }

@@ -17,7 +17,6 @@ namespace osculate::support {
     stage.name = name;
     stage.steps = steps;
     stage.constraints = small.constraints;
-    stage.force_start = stage.force_end = Field(small.model.X.size());
     stage.limits.dt_max = stage.duration / steps;
     stage.limits.dt_min = 1e-6 * stage.limits.dt_max;
     stage.tangent = equilibrium::choose_tangent(small.model, small.model.pairs, solver, false, false);

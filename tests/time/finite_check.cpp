@@ -117,7 +117,7 @@ TEST_F(Flight, IsGivenUpWhereAVelocityOverflowsThoughForcesBalance) {
     const support::FloatingPointTraps suspended(false); // numbers that are none are what it is about
     // velocities are made from the displacements afterwards, and nothing in these equations of motion needs them
     stage = support::small_motion(*small, "fly", 100, 1, 0.8);
-    stage.force_start = stage.force_end = small->weight({0, 0, 10});
+    stage.weight = std::make_shared<const Field>(small->weight({0, 0, 10}));
     stage.limits.dt_min = stage.limits.dt_max;
     stage.dynamics->integrator = {.beta = 1, .gamma = std::numeric_limits<double>::max() / 2};
     const std::string failure = run();

@@ -27,7 +27,7 @@ TEST(Ledger, AddsUpUnderFriction) {
     Stage slide = support::small_motion(small, "slide", 0.1, 20, 0.5);
     slide.dynamics->mass_damping = 2;
     slide.dynamics->stiffness_damping = 1e-3;
-    slide.force_start = slide.force_end = small.weight({0, 0, -10});
+    slide.weight = std::make_shared<const Field>(small.weight({0, 0, -10}));
     FollowerPressure& pressure = slide.follower_pressures.emplace_back();
     for (const mesh::Facet& facet : small.facets(1, "z_max")) pressure.faces.push_back(mesh::plane_face(facet));
     pressure.end = 500;

@@ -21,8 +21,10 @@ TEST(FirstAcceleration, IsNoneWhereContactAndLoadsBalance) {
     small.fix(1, "x_min", "xy");
     small.finish(true);
     Stage press = support::small_stage(small, "press", 1);
+    Field pressed(small.model.X.size());
     for (const mesh::Facet& facet : small.facets(1, "z_max"))
-        fe::add_pressure_forces(mesh::plane_face(facet), small.model.X, 1e4, press.force_end.values());
+        fe::add_pressure_forces(mesh::plane_face(facet), small.model.X, 1e4, pressed.values());
+    press.force_end = SparseField(pressed);
     Stage wait = support::small_motion(small, "wait", 0.01, 2, 0.8);
     wait.force_start = wait.force_end = press.force_end;
     Timings timings;

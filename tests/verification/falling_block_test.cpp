@@ -90,8 +90,8 @@ Depths depths(Fall& fall) {
     Depths result;
     for (std::size_t k = 1; k < fall.states.size(); ++k) {
         const model::State& start = fall.states[k - 1];
-        equilibrium.begin_attempt(start, {stage.force_end, std::vector<Vec3>(model.X.size(), Vec3::Zero())},
-                                  fall.dt[k]);
+        equilibrium.begin_attempt(
+            start, {stage.force(model.X.size(), 1), std::vector<Vec3>(model.X.size(), Vec3::Zero())}, fall.dt[k]);
         Vector z = equilibrium.unknowns(start.u, start.contact);
         const double weight = 80; // N
         const auto solved =

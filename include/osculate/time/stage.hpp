@@ -1,6 +1,7 @@
 #pragma once
 /// One stage in the form for the stepper.
 
+#include "osculate/core/sparse_field.hpp"
 #include "osculate/equilibrium/dynamics.hpp"
 #include "osculate/equilibrium/tangent_choice.hpp"
 #include "osculate/linear/constraints.hpp"
@@ -8,6 +9,7 @@
 #include "osculate/time/step_control.hpp"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,8 +25,8 @@ struct Course {
 
 /// External forces that follow a course.
 struct CourseForce {
-    Index course = -1; ///< of the stage
-    Field pattern;     ///< (nodes) forces at course value 1, N
+    Index course = -1;   ///< of the stage
+    SparseField pattern; ///< forces at course value 1, N
 };
 
 /// A pressure on the current area, along the current normal.
@@ -53,13 +55,21 @@ struct Stage {
     bool follow_paths = false;                            ///< follow paths of slave nodes, see CollisionCheck
     bool ramp = true;                                     ///< linear from the last value; false: full value at once
     std::vector<linear::NodeConstraint> constraints;      ///< every direction held during this stage
-    Field force_start, force_end;                         ///< (nodes) external forces at its two ends, N
+    SparseField force_start, force_end;                   ///< external forces at its two ends without weight, N
+    std::shared_ptr<const Field> weight;                  ///< (nodes) N, in full from the start; null: no gravity
     std::vector<Course> courses;
     std::vector<CourseForce> course_forces; ///< added to these forces
     std::vector<FollowerPressure> follower_pressures;
     /// Pairs of the model as they are in this stage, in their order: others in friction or in force. Empty: as in the model.
     std::vector<std::shared_ptr<const model::ContactPair>> pairs;
     std::vector<NodeTemperature> temperatures; ///< the last that names a node counts
+
+    /// External forces that follow no course, N. @param part  0 at the start, 1 at the end
+    [[nodiscard]] Field force(std::size_t nodes, double part) const {
+        Field force = SparseField::between(force_start, force_end, part, nodes);
+        if (weight) force.add(1, *weight);
+        return force;
+    }
 };
 
 } // namespace osculate::time

@@ -90,15 +90,16 @@ private:
         acting_.emplace(cell, d);
     }
 
-    void add_nodal(const std::vector<Vec3>& force) {
-        for (Index i = body_.first_node; i < body_.first_node + body_.nodes() && i < static_cast<Index>(force.size());
-             ++i)
-            add(force[static_cast<std::size_t>(i)]);
+    void add_nodal(const SparseField& force) {
+        for (const auto& [node, value] : force)
+            if (own(node)) add(value);
     }
 
     void add_loads(const time::Stage& stage) {
         add_nodal(stage.force_start);
         add_nodal(stage.force_end);
+        for (Index i = body_.first_node; stage.weight && i < body_.first_node + body_.nodes(); ++i)
+            add((*stage.weight)[static_cast<std::size_t>(i)]);
         for (const time::CourseForce& force : stage.course_forces) add_nodal(force.pattern);
         for (const time::FollowerPressure& pressure : stage.follower_pressures)
             for (const mesh::SurfaceFace& face : pressure.faces)

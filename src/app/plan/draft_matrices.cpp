@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <memory>
+#include <optional>
 
 namespace osculate::app {
 
@@ -119,15 +122,21 @@ void add_weight(Draft& draft, const model::RigidBody& rigid, Field& weight) {
 void add_gravity(Draft& draft) {
     if (draft.scene.gravity.isZero(0)) return;
     const model::Model& m = draft.plan.model;
+    std::map<std::optional<bool>, std::shared_ptr<const Field>> weights; // by mass: none, consistent or lumped
     for (std::size_t s = 0; s < draft.plan.stages.size(); ++s) {
+        const equilibrium::Dynamics* dynamics = weighed(draft, s);
+        std::shared_ptr<const Field>& known =
+            weights[dynamics != nullptr ? std::optional(dynamics->lumped_mass) : std::nullopt];
+        draft.plan.stages[s].weight = known;
+        if (known) continue;
         Field weight(m.X.size());
-        if (const equilibrium::Dynamics* dynamics = weighed(draft, s))
+        if (dynamics != nullptr)
             m.mass(dynamics->lumped_mass).multiply_add(Field(m.X.size(), draft.scene.gravity), weight, draft.threads);
         else
             for (const model::Body& body : m.bodies)
                 if (!body.rigid) model::add_gravity(body, draft.scene.gravity, weight);
         for (const model::RigidBody& rigid : m.rigid) add_weight(draft, rigid, weight);
-        for (Field* force : {&draft.plan.stages[s].force_start, &draft.plan.stages[s].force_end}) force->add(1, weight);
+        draft.plan.stages[s].weight = known = std::make_shared<const Field>(std::move(weight));
     }
 }
 

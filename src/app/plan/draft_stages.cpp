@@ -91,34 +91,32 @@ Field ramped_forces(const Draft& draft, const Driving& driving) {
 
 void add_course_forces(const Draft& draft, const Driving& driving, CourseList& courses,
                        std::vector<time::CourseForce>& forces) {
-    const auto pattern = [&](const std::string& name, const scene::Course& course) -> Field& {
-        forces.push_back({courses.index(name, course), Field(draft.plan.model.X.size())});
-        return forces.back().pattern;
+    Field pattern; // of one force
+    const auto add = [&](const std::string& name, const scene::Course& course, auto&& make) {
+        pattern.reset(draft.plan.model.X.size());
+        make();
+        forces.push_back({courses.index(name, course), SparseField(pattern)});
     };
     for (const auto& [set_name, value] : driving.pressure)
-        if (!value.is_value()) add_pressure(draft, set_name, 1, pattern("pressure." + set_name, value));
-    for (const auto& [body, components] : driving.body_force)
-        for (int k = 0; k < 3; ++k)
-            if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value())
-                model::add_body_force(draft.plan.model.bodies[draft.body_index(body)], Vec3::Unit(k),
-                                      pattern("body_force." + body + "." + std::string(1, "xyz"[k]), course));
-    for (const auto& [set_name, components] : driving.nodal_force)
-        for (int k = 0; k < 3; ++k)
-            if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value()) {
-                Field& one = pattern("nodal_force." + set_name + "." + std::string(1, "xyz"[k]), course);
-                for (const Index node : draft.set(set_name).nodes) one[static_cast<std::size_t>(node)] = Vec3::Unit(k);
-            }
-    const auto add_at_points = [&](const std::string& key, const auto& vectors, bool moment) {
-        for (const auto& [body, components] : vectors)
+        if (!value.is_value()) add("pressure." + set_name, value, [&] { add_pressure(draft, set_name, 1, pattern); });
+    const auto add_components = [&](const std::string& key, const auto& vectors, auto&& make) {
+        for (const auto& [name, components] : vectors)
             for (int k = 0; k < 3; ++k)
-                if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value()) {
-                    const Vec3 unit = Vec3::Unit(k), none = Vec3::Zero();
-                    add_at_point(draft, body, moment ? none : unit, moment ? unit : none,
-                                 pattern(key + "." + body + "." + std::string(1, "xyz"[k]), course));
-                }
+                if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value())
+                    add(key + "." + name + "." + std::string(1, "xyz"[k]), course, [&] { make(name, Vec3::Unit(k)); });
     };
-    add_at_points("force", driving.force, false);
-    add_at_points("moment", driving.moment, true);
+    add_components("body_force", driving.body_force, [&](const std::string& body, const Vec3& unit) {
+        model::add_body_force(draft.plan.model.bodies[draft.body_index(body)], unit, pattern);
+    });
+    add_components("nodal_force", driving.nodal_force, [&](const std::string& set, const Vec3& unit) {
+        for (const Index node : draft.set(set).nodes) pattern[static_cast<std::size_t>(node)] = unit;
+    });
+    add_components("force", driving.force, [&](const std::string& body, const Vec3& unit) {
+        add_at_point(draft, body, unit, Vec3::Zero(), pattern);
+    });
+    add_components("moment", driving.moment, [&](const std::string& body, const Vec3& unit) {
+        add_at_point(draft, body, Vec3::Zero(), unit, pattern);
+    });
 }
 
 /// Held and driven components of rigid bodies and couplings, at their own nodes.
@@ -283,10 +281,10 @@ void add_stages(Draft& draft) {
         add_rigid_constraints(draft, now, courses, stage.constraints);
         const bool varying = now.has_load_courses();
         if (draft.plan.stages.empty() || settled || varying)
-            stage.force_start = ramped_forces(draft, before.without_courses_of(now));
+            stage.force_start = SparseField(ramped_forces(draft, before.without_courses_of(now)));
         else
             stage.force_start = draft.plan.stages.back().force_end;
-        stage.force_end = ramped_forces(draft, now);
+        stage.force_end = SparseField(ramped_forces(draft, now));
         if (varying) add_course_forces(draft, now, courses, stage.course_forces);
         for (const auto& [set_name, value] : now.follower_pressure) {
             const auto was = before.follower_pressure.find(set_name);

@@ -9,11 +9,14 @@ void StudyReader::quantity(StudyQuantity& q) {
     q.label = q.name;
     reader_.text({.name = "label", .meaning = ""}, q.label);
     const Tree& here = *tree_.find("quantities")->find(q.name);
+    const auto wrong = [&](const std::string& key, const std::string& expected, const std::string& found) {
+        const Tree* at = here.find(key);
+        reader_.fault(at != nullptr ? *at : here, {.name = key}, expected, found);
+    };
     Words sources;
     for (const char* source : {"contact", "body", "history"})
         if (here.find(source)) sources.emplace_back(source);
-    if (sources.size() > 1)
-        reader_.fault(here, {.name = q.name}, "only one of contact, body, history", join(sources, " and "));
+    if (sources.size() > 1) wrong(sources[1], "only one of contact, body, history", join(sources, " and "));
     std::string pair, body;
     reader_.text({.name = "contact"}, pair);
     reader_.text({.name = "body"}, body);
@@ -45,25 +48,23 @@ void StudyReader::quantity(StudyQuantity& q) {
     q.relative = error == 0;
     reader_.flag({.name = "plot"}, q.plot);
 
-    const Key key{.name = q.name};
     if (q.source == RowSource::history && q.value.empty()) {
-        if (!q.of.empty()) reader_.fault(here, key, "history without of: it is the formula of a row", "both");
+        if (!q.of.empty()) wrong("of", "none beside history, which is the formula of a row", "both");
         q.of = row;
     } else if (q.source == RowSource::history && row.text != "all") {
-        reader_.fault(here, key, "history: all where value says what to do with the rows", "'" + row.text + "'");
+        wrong("history", "all, as value says what to do with the rows", "'" + row.text + "'");
     }
     if (q.value.empty() == q.of.empty())
-        reader_.fault(here, key, q.source == RowSource::summary ? "contact, body or history, or value" : "value or of",
-                      q.value.empty() ? "neither" : "both");
-    if (q.source == RowSource::summary && !q.of.empty())
-        reader_.fault(here, key, "contact or body, where of is", "neither");
-    if (!q.value.empty() && !q.exact.empty()) reader_.fault(here, key, "exact beside of or history", "beside value");
-    if (!q.exact.empty() && !q.reference.empty()) reader_.fault(here, key, "reference or exact", "both");
+        wrong("value", q.source == RowSource::summary ? "contact, body or history, or value" : "value or of",
+              q.value.empty() ? "neither" : "both");
+    if (q.source == RowSource::summary && !q.of.empty()) wrong("of", "none without contact or body", "one");
+    if (!q.value.empty() && !q.exact.empty()) wrong("exact", "none beside value", "both");
+    if (!q.exact.empty() && !q.reference.empty()) wrong("reference", "none beside exact", "both");
     if (q.area && (q.source != RowSource::contact || q.exact.empty()))
-        reader_.fault(here, key, "area with the exact values of contact", "area");
+        wrong("area", "none without contact and exact values", "true");
     const bool ordered = q.reduce == "first" || q.reduce == "last" || q.reduce == "roughness";
     if (!q.of.empty() && q.exact.empty() && ordered && q.source != RowSource::history && q.order_by.empty())
-        reader_.fault(here, key, "order_by for " + q.reduce + " of nodes, or another reduce", "none");
+        wrong("order_by", "order_by for " + q.reduce + " of nodes, or another reduce", "none");
 }
 
 } // namespace osculate::scene

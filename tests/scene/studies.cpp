@@ -121,6 +121,8 @@ TEST(StudyFile, ContradictionsAreFaults) {
                 testing::Contains(HasSubstr("only one of contact, body, history")));
     EXPECT_THAT(faults(replaced(small_study, "value: max(normal_stress)", "of: normal_stress")),
                 testing::Contains(HasSubstr("order_by for last of nodes")));
+    EXPECT_THAT(faults(replaced(small_study, "reduce: max", "value: 1")),
+                testing::Contains(HasSubstr("quantities.force.history: expected all, as value says")));
     EXPECT_THAT(faults(replaced(small_study, "  F: 5 * h", "  h: 5")),
                 testing::Contains(HasSubstr("constants.h: expected a name")));
 }

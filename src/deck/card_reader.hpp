@@ -3,6 +3,7 @@
 
 #include "deck/model.hpp"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>

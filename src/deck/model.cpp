@@ -7,7 +7,6 @@
 #include "deck/material_cards.hpp"
 #include "deck/no_counterpart.hpp"
 
-#include <algorithm>
 #include <set>
 
 namespace osculate::deck {

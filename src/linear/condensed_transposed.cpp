@@ -13,7 +13,7 @@ namespace osculate::linear {
 
 namespace {
 /// GMRES iterations beyond which T is worth making anew.
-constexpr int worth_keeping_transposed = 20;
+constexpr int worth_keeping_transposed = 12;
 } // namespace
 
 Vector CondensedTangent::law_weights(const Vector& u, const double* r) const {

@@ -55,7 +55,7 @@ void StudyReader::quantity(StudyQuantity& q) {
         wrong("history", "all, as value says what to do with the rows", "'" + row.text + "'");
     }
     if (q.value.empty() == q.of.empty())
-        wrong("value", q.source == RowSource::summary ? "contact, body or history, or value" : "value or of",
+        wrong("value", q.source == RowSource::summary ? "it, or contact, body or history" : "it or of",
               q.value.empty() ? "neither" : "both");
     if (q.source == RowSource::summary && !q.of.empty()) wrong("of", "none without contact or body", "one");
     if (!q.value.empty() && !q.exact.empty()) wrong("exact", "none beside value", "both");
@@ -64,7 +64,7 @@ void StudyReader::quantity(StudyQuantity& q) {
         wrong("area", "none without contact and exact values", "true");
     const bool ordered = q.reduce == "first" || q.reduce == "last" || q.reduce == "roughness";
     if (!q.of.empty() && q.exact.empty() && ordered && q.source != RowSource::history && q.order_by.empty())
-        wrong("order_by", "order_by for " + q.reduce + " of nodes, or another reduce", "none");
+        wrong("order_by", "one for reduce: " + q.reduce + " of nodes, or another reduce", "none");
 }
 
 } // namespace osculate::scene

@@ -199,8 +199,8 @@ bool ConvexProblem::solve(const Vector& slid, Vector& R, Vector& U, int& iterati
 FrictionSolution cone_friction(const FrictionProblem& problem, double tolerance, int most_iterations) {
     constexpr int newton_iterations = 30;
     constexpr double settled = 1e-6; // of sliding distances, whose unit is the mean of q
-    constexpr double gain = 0.9;     // of the error
-    constexpr int patience = 5;      // convex problems with settled distances and without a gain: round-off is reached
+    constexpr double gain = 0.9;     // of the error, and of changes of these distances
+    constexpr int patience = 5;      // convex problems without either, once distances are settled: taken for round-off
     const Index n = problem.points();
     FrictionSolution solution;
     solution.r = Vector::Zero(3 * n);
@@ -235,13 +235,17 @@ FrictionSolution cone_friction(const FrictionProblem& problem, double tolerance,
         solution.error = error;
     };
     int idle = 0;
+    double least_change = std::numeric_limits<double>::infinity(), tried = least_change;
     while (solution.iterations < most_iterations && idle < patience) {
         const double before = solution.error;
         const bool solved = convex.solve(slid, R, U, solution.iterations);
         keep_better(unit.cwiseProduct(R));
-        const FrictionSolution newton = newton_friction(problem, solution.r, tolerance, newton_iterations);
-        solution.iterations += newton.iterations;
-        keep_better(newton.r);
+        if (solution.error < tried) { // Newton has not begun there yet
+            tried = solution.error;
+            const FrictionSolution newton = newton_friction(problem, solution.r, tolerance, newton_iterations);
+            solution.iterations += newton.iterations;
+            keep_better(newton.r);
+        }
         solution.converged = solution.error <= tolerance;
         if (solution.converged || !solved) break;
         double change = 0;
@@ -250,7 +254,9 @@ FrictionSolution cone_friction(const FrictionProblem& problem, double tolerance,
             change = std::max(change, std::abs(now - slid(j)));
             slid(j) = now;
         }
-        idle = change <= settled && solution.error > gain * before ? idle + 1 : 0;
+        const bool gains = solution.error <= gain * before || change <= gain * least_change;
+        idle = change <= settled && !gains ? idle + 1 : 0;
+        least_change = std::min(least_change, change);
         // back into the interior, as far as the problem has changed
         const double inside = std::clamp(0.1 * change, 1e-6, 1e-2);
         for (Index j = 0; j < n; ++j) {

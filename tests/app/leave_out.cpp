@@ -110,19 +110,37 @@ TEST(LeaveOut, NothingIsMadeWhileItRuns) {
 }
 
 TEST(LeaveOut, StagesHoldForcesWhereThereAreAnyAndShareTheirWeight) {
-    const std::string more = little + "  hold: {}\n  shake: {analysis: dynamic, duration: 10 ms}\n  rest: {}\n"
-                                      "gravity: [0, 0, -9.81 m/s^2]\n";
+    const std::string more = little + R"(
+  hold: {}
+  shake: {duration: 10 ms, analysis: {dynamic: {mass: lumped}}}
+  sway:
+    duration: 10 ms
+    analysis: {dynamic: {mass: consistent}}
+    pressure: {top: {table: [[0 s, 10 kPa], [10 ms, 0 kPa]]}}
+gravity: [0, 0, -10 m/s^2]
+)";
     const scene::Scene scene = scene::parse_scene(more, "scene.yaml");
     Timings timings;
     const Plan plan = compile(scene, build_meshes(scene), 1, timings);
+    const time::Stage &press = plan.stages[0], &hold = plan.stages[1], &shake = plan.stages[2], &sway = plan.stages[3];
+    const auto count = [](const SparseField& field) { return std::distance(field.begin(), field.end()); };
     constexpr std::ptrdiff_t on_top = 16;
-    for (const time::Stage& stage : plan.stages)
-        EXPECT_EQ(std::distance(stage.force_end.begin(), stage.force_end.end()), on_top) << stage.name;
-    EXPECT_TRUE(plan.stages[0].force_start.empty());
-    EXPECT_EQ(plan.stages[0].weight, plan.stages[1].weight);
-    Vec3 force = Vec3::Zero();
-    for (const Vec3& f : plan.stages[1].force(plan.model.X.size(), 0.5)) force += f;
-    EXPECT_NEAR(force.z(), -10e3 - 2500 * 9.81, 1e-9 * 35e3) << "pressure and weight of 2.5 m^3";
+    EXPECT_EQ(count(press.force_start), 0);
+    EXPECT_EQ(count(press.force_end), on_top);
+    EXPECT_EQ(count(hold.force_start), on_top);
+    ASSERT_EQ(sway.course_forces.size(), 1U);
+    EXPECT_EQ(count(sway.course_forces[0].pattern), on_top);
+    EXPECT_TRUE(press.weight == hold.weight && hold.weight == shake.weight) << "statics weigh what will move next";
+    EXPECT_NE(*sway.weight, *shake.weight) << "of another mass matrix";
+    const auto sum = [&](const time::Stage& stage, double part) {
+        Vec3 force = Vec3::Zero();
+        for (const Vec3& f : stage.force(plan.model.X.size(), part)) force += f;
+        return force.z();
+    };
+    constexpr double pressed = 10e3, weight = 2.5 * 1000 * 10, round_off = 1e-9 * (pressed + weight); // N
+    EXPECT_NEAR(sum(press, 0.25), -0.25 * pressed - weight, round_off) << "weight is there from the start";
+    EXPECT_NEAR(sum(hold, 0.5), -pressed - weight, round_off);
+    EXPECT_NEAR(sum(sway, 1), -weight, round_off);
 }
 
 } // namespace

@@ -116,11 +116,11 @@ TEST(StudyFile, ContradictionsAreFaults) {
     EXPECT_THAT(faults(replaced(small_study, ", parameters: {h: 1 / 2}", "")),
                 testing::Contains(HasSubstr("the same parameters for all values: h")));
     EXPECT_THAT(faults(replaced(small_study, "    value: max(normal_stress)\n", "")),
-                testing::Contains(HasSubstr("expected value or of, found neither")));
+                testing::Contains(HasSubstr("quantities.peak.value: expected it or of, found neither")));
     EXPECT_THAT(faults(replaced(small_study, "    contact: joint\n", "    contact: joint\n    body: cap\n")),
                 testing::Contains(HasSubstr("only one of contact, body, history")));
     EXPECT_THAT(faults(replaced(small_study, "value: max(normal_stress)", "of: normal_stress")),
-                testing::Contains(HasSubstr("order_by for last of nodes")));
+                testing::Contains(HasSubstr("quantities.peak.order_by: expected one for reduce: last of nodes")));
     EXPECT_THAT(faults(replaced(small_study, "reduce: max", "value: 1")),
                 testing::Contains(HasSubstr("quantities.force.history: expected all, as value says")));
     EXPECT_THAT(faults(replaced(small_study, "  F: 5 * h", "  h: 5")),

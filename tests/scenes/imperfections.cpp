@@ -9,7 +9,9 @@ namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Imperfections : public Program {
 protected:
@@ -132,10 +134,15 @@ TEST_F(Imperfections, ThatOthersUndoAreRefused) {
     };
     const std::string tie = "ties={joint: {slave: under, master: ground}}", untied = "contact={}",
                       adjust = "contact.joint.adjust=20 mm";
-    EXPECT_THAT(said({untied, tie, "imperfections={under: [0, 0, 10 mm]}"}), HasSubstr("9, placed elsewhere by these"));
-    EXPECT_THAT(said({adjust, "imperfections={under: [0, 0, 10 mm]}"}), HasSubstr("move the master's"));
+    EXPECT_THAT(said({untied, tie, "imperfections={under: [0, 0, 10 mm]}"}), HasSubstr("9 that are, one at ["));
+    EXPECT_THAT(said({adjust, "imperfections={under: [0, 0, 10 mm]}"}), HasSubstr("move those of the master"));
     EXPECT_EQ(said({untied, tie, "imperfections={ground: [0, 0, 10 mm]}"}), "") << "the slave's go along";
     EXPECT_EQ(said({untied, tie, "imperfections={under: [10 mm, 0, 0]}"}), "") << "along the master they stay";
+    const std::string apart = "bodies.upper.mesh.block.origin=[0 m, 0 m, 1.0002 m]"; // a gap that the tie closes
+    EXPECT_EQ(said({untied, tie, apart, "imperfections={under: [10 mm, 0, 0]}"}), "");
+    EXPECT_EQ(said({untied, tie, apart, "imperfections={ground: [0, 0, 10 um], under: [0, 0, 10 um]}"}), "");
+    EXPECT_THAT(said({untied, tie, apart, "imperfections={under: [0, 0, 10 um], top: [0, 0, 0]}"}),
+                AllOf(HasSubstr("imperfections.under"), Not(HasSubstr("imperfections.top"))));
     const Outcome from_zero = run(column,
                                   {adjust, "imperfections={under: [0, 0, 0]}", plain.front(),
                                    "output.derivatives={height: {key: imperfections.under.2, step: 1e-4}}"},

@@ -175,7 +175,7 @@ TEST(FrictionProblem, EndsWhereRoundOffIsAboveTheTolerance) {
     // a mechanism: one motion of all points has no resistance but round-off, and the loads go along it
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
-    constexpr double loose = 1e13;
+    constexpr double loose = 1e13, unreachable = 1e-14, nearly = 1e-9;
     constexpr int trials = 10, enough = 300; // factorisations; it is given up after a thousand in any case
     for (int k = 0; k < trials; ++k) {
         FrictionProblem problem = heap(random, 3, 20, 1e-2);
@@ -183,7 +183,10 @@ TEST(FrictionProblem, EndsWhereRoundOffIsAboveTheTolerance) {
         for (Index i = 0; i < motion.size(); ++i) motion(i) = normal(random);
         problem.W += loose * motion * motion.transpose();
         problem.q += loose * motion;
-        EXPECT_LT(solve_friction(problem, 1e-14).iterations, enough) << k;
+        const FrictionSolution solution = solve_friction(problem, unreachable);
+        EXPECT_FALSE(solution.converged) << k;
+        EXPECT_LT(solution.error, nearly) << k;
+        EXPECT_LT(solution.iterations, enough) << k;
     }
 }
 

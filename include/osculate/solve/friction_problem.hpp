@@ -27,7 +27,8 @@ struct FrictionSolution {
 [[nodiscard]] double friction_error(const FrictionProblem& problem, const Vector& r);
 
 /// Solves it by a nonsmooth Newton method with a line search and, if that fails, by convex problems on the friction cones,
-/// each of which takes the sliding distances of the one before as given; Newton then starts from their solutions. The
+/// each of which takes the sliding distances of the one before as given; Newton then starts from their solutions. It ends
+/// once neither errors nor changes of settled distances become smaller, or after a thousand factorisations. The
 /// solution need not be unique, but the same input gives the same bits. O(n^3) an iteration.
 [[nodiscard]] FrictionSolution solve_friction(const FrictionProblem& problem, double tolerance);
 

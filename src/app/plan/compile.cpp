@@ -41,6 +41,42 @@ void choose_tangents(Draft& draft) {
     }
 }
 
+/// Bodies, and their nodes where imperfections, ties, sectors and pairs put them.
+void place_nodes(Draft& draft, std::vector<mesh::Mesh> meshes) {
+    add_bodies(draft, std::move(meshes));
+    throw_faults(draft); // nothing below can be trusted on a broken mesh
+    add_sets(draft);
+    throw_faults(draft);
+    move_imperfect_sets(draft);
+    throw_faults(draft);
+    add_couplings(draft);
+    throw_faults(draft);
+    add_ties(draft);
+    throw_faults(draft);
+    add_cyclic_symmetry(draft);
+    throw_faults(draft);
+    draft.plan.settles_by_rule = settle_dynamics(draft.scene);
+    settle_pairs(draft);
+    adjust_slaves(draft);
+    throw_faults(draft);
+}
+
+/// Whether what places nodes on others has left the imperfections.
+void check_imperfections(Draft& draft, const scene::Scene& scene, std::vector<mesh::Mesh> meshes) {
+    if (!std::ranges::any_of(draft.plan.contact, [](const auto& pair) { return pair.second.adjust.has_value(); }) &&
+        draft.scene.ties.empty() && draft.scene.cyclic.empty())
+        return;
+    Draft plain{scene, draft.threads, draft.timings};
+    plain.scene.imperfections.clear();
+    try {
+        place_nodes(plain, std::move(meshes));
+    } catch (const SceneError&) { // it needs them
+        return;
+    }
+    check_imperfect_sets(draft, plain);
+    throw_faults(draft);
+}
+
 } // namespace
 
 model::ContactPairs Plan::pairs_at_start() const {
@@ -58,23 +94,10 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     require(meshes.size() == scene.bodies.size(), "compile: one mesh per body");
     Draft draft{scene, threads, timings};
     draft.ranks = std::move(ranks);
-    add_bodies(draft, std::move(meshes));
-    throw_faults(draft); // nothing below can be trusted on a broken mesh
-    add_sets(draft);
-    throw_faults(draft);
-    move_imperfect_sets(draft);
-    throw_faults(draft);
-    add_couplings(draft);
-    throw_faults(draft);
-    add_ties(draft);
-    throw_faults(draft);
-    add_cyclic_symmetry(draft);
-    throw_faults(draft);
-    draft.plan.settles_by_rule = settle_dynamics(draft.scene);
-    settle_pairs(draft);
-    adjust_slaves(draft);
-    check_imperfect_sets(draft);
-    throw_faults(draft);
+    std::vector<mesh::Mesh> unmoved;
+    if (!scene.imperfections.empty()) unmoved = meshes;
+    place_nodes(draft, std::move(meshes));
+    if (!scene.imperfections.empty()) check_imperfections(draft, scene, std::move(unmoved));
     add_skins(draft);
     throw_faults(draft);
     add_stages(draft);

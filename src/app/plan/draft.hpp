@@ -13,14 +13,6 @@
 
 namespace osculate::app {
 
-/// A node that an imperfection moved.
-struct MovedNode {
-    Index node;
-    Vec3 X;          ///< where it is then, m
-    double by;       ///< how far it was moved, m
-    std::string set; ///< last that moved it
-};
-
 struct Draft {
     scene::Scene scene; ///< pairs are settled in it, and rigid bodies get a stiff material
     int threads;
@@ -29,7 +21,6 @@ struct Draft {
     std::shared_ptr<Ranks> ranks{};                   ///< processes that share the run; null: one
     std::vector<std::vector<mesh::Facet>> exterior{}; ///< by body
     std::vector<Fault> faults{};
-    std::vector<MovedNode> imperfect{};
     std::map<std::string, model::Set> skins{};  ///< sets of pairs whose faces have midside nodes, with the skin's nodes
     std::vector<model::CyclicSymmetry> rings{}; ///< with all nodes of their ends, whatever leads them
     std::map<Index, model::Set> outer_skins{};  ///< by body: outer surfaces likewise, for general contact
@@ -63,8 +54,9 @@ void add_sets(Draft& draft);
 [[nodiscard]] std::vector<std::string> mesh_faults(const mesh::Mesh& mesh, const Vec3& origin);
 /// Nodes of sets with imperfections, moved by them.
 void move_imperfect_sets(Draft& draft);
-/// Whether ties, sectors and pairs have left these nodes where their imperfections put them.
-void check_imperfect_sets(Draft& draft);
+/// Whether nodes are as far as their imperfections say from where they would be without any.
+/// @param plain  the same draft without imperfections
+void check_imperfect_sets(Draft& draft, const Draft& plain);
 /// Couplings, with the two nodes of each behind those of all bodies.
 void add_couplings(Draft& draft);
 /// Ties, with their nodes moved onto the surfaces that they follow.

@@ -98,12 +98,15 @@ void add_course_forces(const Draft& draft, const Driving& driving, CourseList& c
         forces.push_back({courses.index(name, course), SparseField(pattern)});
     };
     for (const auto& [set_name, value] : driving.pressure)
-        if (!value.is_value()) add("pressure." + set_name, value, [&] { add_pressure(draft, set_name, 1, pattern); });
+        if (!value.is_value())
+            add("pressure." + set_name, value,
+                [&, &set_name = set_name] { add_pressure(draft, set_name, 1, pattern); });
     const auto add_components = [&](const std::string& key, const auto& vectors, auto&& make) {
         for (const auto& [name, components] : vectors)
             for (int k = 0; k < 3; ++k)
                 if (const scene::Course& course = components[static_cast<std::size_t>(k)]; !course.is_value())
-                    add(key + "." + name + "." + std::string(1, "xyz"[k]), course, [&] { make(name, Vec3::Unit(k)); });
+                    add(key + "." + name + "." + std::string(1, "xyz"[k]), course,
+                        [&, &name = name] { make(name, Vec3::Unit(k)); });
     };
     add_components("body_force", driving.body_force, [&](const std::string& body, const Vec3& unit) {
         model::add_body_force(draft.plan.model.bodies[draft.body_index(body)], unit, pattern);

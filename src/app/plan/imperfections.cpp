@@ -4,14 +4,15 @@
 #include "app/plan/draft.hpp"
 #include "osculate/mesh/cell_type.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace osculate::app {
 
 namespace {
 
-/// How far a node may be placed elsewhere, of its imperfection: round-off in the places that ties compute stays below.
-constexpr double kept = 0.01;
+/// Least part of an imperfection that nodes must keep. Those that follow a curved master are placed along its facets.
+constexpr double kept = 0.9;
 
 /// Midside nodes that no set moves stay in the middle of their edges. @param own  (nodes) sets say where they go
 void take_midside_nodes_along(const model::Body& body, const std::vector<char>& own, Field& moved) {
@@ -45,11 +46,6 @@ void move_imperfect_sets(Draft& draft) {
         }
         last[set.body] = name;
     }
-    for (const auto& [name, by] : draft.scene.imperfections)
-        for (const Index node : draft.set(name).nodes)
-            if (moved[node].norm() > 0)
-                draft.imperfect.push_back(
-                    {node, m.X[static_cast<std::size_t>(node)] + moved[node], moved[node].norm(), name});
     for (const auto& [number, name] : last) {
         model::Body& body = m.bodies[static_cast<std::size_t>(number)];
         take_midside_nodes_along(body, own, moved);
@@ -63,26 +59,27 @@ void move_imperfect_sets(Draft& draft) {
     }
 }
 
-void check_imperfect_sets(Draft& draft) {
+void check_imperfect_sets(Draft& draft, const Draft& plain) {
     const model::Model& m = draft.plan.model;
-    std::map<std::string, std::pair<Index, MovedNode>> elsewhere; // by set: how many, and the farthest
-    const auto off = [&](const MovedNode& moved) {
-        return (m.X[static_cast<std::size_t>(moved.node)] - moved.X).norm();
-    };
-    for (const MovedNode& moved : draft.imperfect) {
-        if (!(off(moved) > kept * moved.by)) continue;
-        auto& [count, farthest] = elsewhere.try_emplace(moved.set, 0, moved).first->second;
-        ++count;
-        if (off(moved) > off(farthest)) farthest = moved;
-    }
-    for (const auto& [set, found] : elsewhere) {
-        const auto& [count, farthest] = found;
-        const Vec3 X = farthest.X + m.origin;
-        draft.faults.push_back(
-            fault("imperfections." + set,
-                  "nodes that no tie, sector or `adjust` places: move the master's, whose nodes take these along",
-                  fmt::format("{}, placed elsewhere by these: up to {:.3g} m from [{:.6g}, {:.6g}, {:.6g}] m",
-                              count == 1 ? "one" : std::to_string(count), off(farthest), X[0], X[1], X[2])));
+    Field asked(m.X.size());
+    for (const auto& [name, by] : draft.scene.imperfections)
+        for (const Index node : draft.set(name).nodes) asked[node] += by;
+    for (const auto& [name, by] : draft.scene.imperfections) {
+        if (by.isZero(0)) continue;
+        const auto part = [&](Index node) { // of what was asked for
+            const Vec3& all = asked[static_cast<std::size_t>(node)];
+            const Vec3 is = m.X[static_cast<std::size_t>(node)] - plain.plan.model.X[static_cast<std::size_t>(node)];
+            return all.isZero(0) ? 1 : is.dot(all) / all.squaredNorm();
+        };
+        const std::vector<Index>& nodes = draft.set(name).nodes;
+        const auto lost = std::ranges::count_if(nodes, [&](Index node) { return !(part(node) >= kept); });
+        if (lost == 0) continue;
+        const Index least = *std::ranges::min_element(nodes, {}, part);
+        const Vec3 X = m.X[static_cast<std::size_t>(least)] + m.origin;
+        draft.faults.push_back(fault(
+            "imperfections." + name, "nodes that no tie, sector or `adjust` puts back: move those of the master, too",
+            fmt::format("{} that {}, one at [{:.6g}, {:.6g}, {:.6g}] m by all but {:.3g} of it", lost,
+                        lost == 1 ? "is" : "are", X[0], X[1], X[2], part(least))));
     }
 }
 

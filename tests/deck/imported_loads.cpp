@@ -38,8 +38,7 @@ protected:
         Vec3 sum = Vec3::Zero();
         const Field force = plan.stages.at(stage).force(plan.model.X.size(), 1);
         for (std::size_t n = 0; n < plan.model.X.size(); ++n)
-            if (plan.model.X[n].x() > 1e-3 * from_x && plan.model.X[n].x() < 1e-3 * to_x)
-                sum += force[n];
+            if (plan.model.X[n].x() > 1e-3 * from_x && plan.model.X[n].x() < 1e-3 * to_x) sum += force[n];
         return sum;
     }
     /// Force of all loads at a time of a stage, courses included.

@@ -143,6 +143,10 @@ TEST_F(Imperfections, ThatOthersUndoAreRefused) {
     EXPECT_EQ(said({untied, tie, apart, "imperfections={ground: [0, 0, 10 um], under: [0, 0, 10 um]}"}), "");
     EXPECT_THAT(said({untied, tie, apart, "imperfections={under: [0, 0, 10 um], top: [0, 0, 0]}"}),
                 AllOf(HasSubstr("imperfections.under"), Not(HasSubstr("imperfections.top"))));
+    const std::string far = "bodies.upper.mesh.block.origin=[0 m, 0 m, 1.2 m]",
+                      near_tie = tie.substr(0, tie.size() - 2);
+    EXPECT_EQ(said({untied, near_tie + ", distance: 0.05 m}}", far, "imperfections={under: [0, 0, -0.16 m]}"}), "")
+        << "tied for its imperfection alone";
     const Outcome from_zero = run(column,
                                   {adjust, "imperfections={under: [0, 0, 0]}", plain.front(),
                                    "output.derivatives={height: {key: imperfections.under.2, step: 1e-4}}"},

@@ -61,17 +61,20 @@ void place_nodes(Draft& draft, std::vector<mesh::Mesh> meshes) {
     throw_faults(draft);
 }
 
-/// Whether what places nodes on others has left the imperfections.
+/// Whether anything places nodes on others.
+bool places_nodes(const scene::Scene& scene) {
+    return !scene.ties.empty() || !scene.cyclic.empty() ||
+           std::ranges::any_of(scene.contact, [](const auto& pair) { return pair.second.adjust.has_value(); });
+}
+
+/// Whether what does so has left the imperfections.
 void check_imperfections(Draft& draft, const scene::Scene& scene, std::vector<mesh::Mesh> meshes) {
-    if (!std::ranges::any_of(draft.plan.contact, [](const auto& pair) { return pair.second.adjust.has_value(); }) &&
-        draft.scene.ties.empty() && draft.scene.cyclic.empty())
-        return;
     Draft plain{scene, draft.threads, draft.timings};
     plain.scene.imperfections.clear();
     try {
         place_nodes(plain, std::move(meshes));
-    } catch (const SceneError&) { // it needs them
-        return;
+    } catch (const SceneError&) {
+        // without them a tie may find nothing: its nodes are then where the mesh has them
     }
     check_imperfect_sets(draft, plain);
     throw_faults(draft);
@@ -94,10 +97,11 @@ Plan compile(const scene::Scene& scene, std::vector<mesh::Mesh> meshes, int thre
     require(meshes.size() == scene.bodies.size(), "compile: one mesh per body");
     Draft draft{scene, threads, timings};
     draft.ranks = std::move(ranks);
+    const bool may_undo = !scene.imperfections.empty() && places_nodes(scene);
     std::vector<mesh::Mesh> unmoved;
-    if (!scene.imperfections.empty()) unmoved = meshes;
+    if (may_undo) unmoved = meshes;
     place_nodes(draft, std::move(meshes));
-    if (!scene.imperfections.empty()) check_imperfections(draft, scene, std::move(unmoved));
+    if (may_undo) check_imperfections(draft, scene, std::move(unmoved));
     add_skins(draft);
     throw_faults(draft);
     add_stages(draft);

@@ -53,6 +53,17 @@ void Ranks::sum(std::span<double> values) {
     }
 }
 
+std::string Ranks::said_by(int rank, const std::string& own) {
+    const std::string text = this->rank() == rank ? own : std::string();
+    std::vector<int> sizes(static_cast<std::size_t>(count()), 0);
+    sizes[static_cast<std::size_t>(rank)] = static_cast<int>(largest(static_cast<double>(text.size())));
+    std::vector<double> all(static_cast<std::size_t>(sizes[static_cast<std::size_t>(rank)]));
+    gather(std::vector<double>(text.begin(), text.end()), sizes, all.data());
+    std::string heard;
+    for (const double letter : all) heard.push_back(static_cast<char>(letter));
+    return heard;
+}
+
 double Ranks::largest(double own) {
     std::vector<double> all(static_cast<std::size_t>(count()));
     const std::vector<int> sizes(all.size(), 1);

@@ -318,15 +318,21 @@ void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis
     });
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index b, const State& state) {
+Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index b, const State& state,
+                                                      std::span<const char> chosen) {
     const Body& body = model.bodies[static_cast<std::size_t>(b)];
     std::size_t history = history_place(model.bodies, static_cast<std::size_t>(b)).first;
     Eigen::Matrix<double, Eigen::Dynamic, 6> stress = decltype(stress)::Zero(body.nodes(), 6);
     if (body.rigid) return stress;
     Vector weight = Vector::Zero(body.nodes());
     Matrix element_stress;
+    std::size_t number = 0;
     for_each_element(body, [&](const Element& one) {
         const auto& [kernel, density, element, X] = one;
+        if (!chosen.empty() && chosen[number++] == 0) {
+            history += kernel.history_size();
+            return;
+        }
         Eigen::Matrix3Xd ue(3, kernel.nodes());
         for (int i = 0; i < kernel.nodes(); ++i) ue.col(i) = state.u[element[static_cast<std::size_t>(i)]];
         element_stress.resize(6, kernel.nodes());

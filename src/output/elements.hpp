@@ -5,6 +5,7 @@
 #include "osculate/model/model.hpp"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace osculate::output {
@@ -50,10 +51,17 @@ struct ElementOf {
     return std::span(state.material).subspan(first + static_cast<std::size_t>(element.number) * size, size);
 }
 
-/// f(element) for every element of a body.
-template <class F> void for_each_element(const model::Body& body, F&& f) {
+/// f(element) for every element of a body, or for some.
+/// @param chosen  (elements) empty: all
+template <class F> void for_each_element(const model::Body& body, std::span<const char> chosen, F&& f) {
+    std::size_t number = 0;
     for (std::size_t b = 0; b < body.mesh.blocks.size(); ++b)
-        for (Index e = 0; e < body.mesh.blocks[b].size(); ++e) f(ElementOf{static_cast<Index>(b), e});
+        for (Index e = 0; e < body.mesh.blocks[b].size(); ++e, ++number)
+            if (chosen.empty() || chosen[number] != 0) f(ElementOf{static_cast<Index>(b), e});
+}
+
+template <class F> void for_each_element(const model::Body& body, F&& f) {
+    for_each_element(body, {}, std::forward<F>(f));
 }
 
 } // namespace osculate::output

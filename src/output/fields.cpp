@@ -132,20 +132,20 @@ template <int k> Values principal(const Snapshot& snapshot, Index body) {
 Values strain(const Snapshot& snapshot, Index body) {
     const model::Body& part = snapshot.model().bodies[body];
     if (part.rigid) return Values(6 * static_cast<std::size_t>(part.nodes()), 0.0);
-    return nodal_strain(snapshot.model().bodies[body], snapshot.state().u);
+    return nodal_strain(snapshot.model().bodies[body], snapshot.state().u, snapshot.elements(body));
 }
 
 Values energy_density(const Snapshot& snapshot, Index body) {
     const model::Body& part = snapshot.model().bodies[body];
     if (part.rigid) return Values(static_cast<std::size_t>(part.nodes()), 0.0);
-    return nodal_energy_density(snapshot.model(), body, snapshot.state());
+    return nodal_energy_density(snapshot.model(), body, snapshot.state(), snapshot.elements(body));
 }
 
 /// Equivalent, 0 in elastic bodies.
 Values plastic_strain(const Snapshot& snapshot, Index body) {
     const model::Body& part = snapshot.model().bodies[body];
     if (part.rigid) return Values(static_cast<std::size_t>(part.nodes()), 0.0);
-    return nodal_plastic_strain(snapshot.model(), body, snapshot.state());
+    return nodal_plastic_strain(snapshot.model(), body, snapshot.state(), snapshot.elements(body));
 }
 
 Values gap(const Snapshot& snapshot, Index pair) {

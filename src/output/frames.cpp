@@ -1,9 +1,11 @@
 #include "osculate/output/frames.hpp"
 
+#include "osculate/output/vtk_pieces.hpp"
 #include "output/files.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 
@@ -25,14 +27,28 @@ Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& 
     return array;
 }
 
+/// The values of some points.
+Array at(const std::vector<Index>& points, const Array& all) {
+    Array some{all.name, all.components, {}, all.integer, all.unit};
+    const auto n = static_cast<std::ptrdiff_t>(all.components);
+    for (const Index point : points)
+        some.values.insert(some.values.end(), all.values.begin() + n * point, all.values.begin() + n * (point + 1));
+    return some;
+}
+
 } // namespace
 
 Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model& model, bool beside,
-               std::vector<SeriesEntry> kept)
+               std::vector<SeriesEntry> kept, const Share* share)
     : directory_(std::move(directory)), body_fields_(chosen(FieldPlace::body, fields.body)),
-      series_(directory_, std::move(kept)), beside_(beside) {
+      share_(share != nullptr && share->ranks().count() > 1 ? share : nullptr), beside_(beside && share_ == nullptr) {
+    if (first()) series_.emplace(directory_, std::move(kept));
     if (!body_fields_.empty())
-        for (const model::Body& body : model.bodies) bodies_.push_back(body.name);
+        for (const model::Body& body : model.bodies) {
+            bodies_.push_back(body.name);
+            if (share_ != nullptr) pieces_.push_back(piece_of(body, *share_));
+        }
+    if (!first()) return;
     const auto slave = chosen(FieldPlace::slave, fields.slave), master = chosen(FieldPlace::master, fields.master);
     for (std::size_t p = 0; p < model.pairs.size(); ++p) {
         const model::ContactPair& pair = *model.pairs[p];
@@ -49,7 +65,11 @@ Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model
 
 std::vector<std::string> Frames::files(long number) const {
     std::vector<std::string> names;
-    for (const std::string& body : bodies_) names.push_back(file(body, number, "vtu"));
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        names.push_back(file(bodies_[b], number, share_ == nullptr ? "vtu" : "pvtu"));
+        if (share_ != nullptr)
+            for (const int rank : pieces_[b].processes) names.push_back(piece_file(bodies_[b], number, rank));
+    }
     for (const Surface& surface : surfaces_) names.push_back(file(surface.name, number, "vtp"));
     return names;
 }
@@ -78,39 +98,98 @@ std::string Frames::file(const std::string& part, long number, const char* exten
     return fmt::format("frames/{}_{:05}.{}", part, number, extension);
 }
 
-void Frames::write(const Snapshot& snapshot, long number) {
-    const double time = snapshot.state().time;
-    const model::Model& model = snapshot.model();
-    std::vector<File> files; // values are taken here: the state does not wait
+std::string Frames::piece_file(const std::string& part, long number, int rank) {
+    return fmt::format("frames/pieces/{}_{:05}_{}.vtu", part, number, rank);
+}
+
+std::vector<Frames::File> Frames::files_of(const Snapshot& snapshot, long number) const {
+    std::vector<File> files;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        const model::Body& body = model.bodies[b];
-        File& one = files.emplace_back(File{nullptr, &body, body.name, file(body.name, number, "vtu"), {}});
-        for (const OutputField* f : body_fields_) one.arrays.push_back(evaluate(*f, snapshot, static_cast<Index>(b)));
+        const model::Body& body = snapshot.model().bodies[b];
+        File& one = files.emplace_back(File{nullptr, &body, nullptr, body.name, file(body.name, number, "vtu"), {}});
+        if (share_ != nullptr) {
+            one.piece = &pieces_[b];
+            one.name = piece_file(body.name, number, share_->ranks().rank());
+        }
+        for (const OutputField* f : body_fields_) {
+            Array values = evaluate(*f, snapshot, static_cast<Index>(b));
+            one.arrays.push_back(one.piece == nullptr ? std::move(values) : at(one.piece->nodes, values));
+        }
     }
     for (const Surface& surface : surfaces_) {
-        File& one = files.emplace_back(File{&surface, nullptr, surface.name, file(surface.name, number, "vtp"), {}});
+        File& one =
+            files.emplace_back(File{&surface, nullptr, nullptr, surface.name, file(surface.name, number, "vtp"), {}});
         one.arrays.push_back(displacement_of(surface.nodes, snapshot.state().u));
         for (const OutputField* f : surface.fields) one.arrays.push_back(evaluate(*f, snapshot, surface.pair));
     }
-    finish();
-    if (!beside_) return write_files(files, model.origin, time);
-    writing_ = std::async(std::launch::async, [this, files = std::move(files), origin = model.origin, time] {
-        write_files(files, origin, time);
-    });
+    return files;
 }
 
-void Frames::write_files(const std::vector<File>& files, const Vec3& origin, double time) {
+void Frames::write(const Snapshot& snapshot, long number) {
+    const double time = snapshot.state().time;
+    const Vec3& origin = snapshot.model().origin;
+    if (share_ != nullptr) {
+        Ranks& ranks = share_->ranks();
+        (void)ranks.largest(0); // all wait: the first process has claimed the files by then
+        std::vector<File> files;
+        std::string problem;
+        try {
+            files = files_of(snapshot.of_pieces(pieces_), number);
+            write_files(files, origin, time);
+        } catch (const std::runtime_error& error) {
+            problem = error.what();
+        }
+        if (const auto failed = static_cast<int>(ranks.largest(problem.empty() ? -1 : ranks.rank())); failed >= 0)
+            throw std::runtime_error(fmt::format("process {}: {}", failed, ranks.said_by(failed, problem)));
+        return list(files, number, time); // of what all have written
+    }
+    std::vector<File> files = files_of(snapshot, number); // values are taken here: the state does not wait
+    finish();
+    const auto put = [this, files = std::move(files), origin, time, number] {
+        write_files(files, origin, time);
+        list(files, number, time);
+    };
+    if (!beside_) return put();
+    writing_ = std::async(std::launch::async, put);
+}
+
+void Frames::write_files(const std::vector<File>& files, const Vec3& origin, double time) const {
     for (const File& one : files) {
         if (one.surface != nullptr) {
             write_vtp(directory_ / one.name, one.surface->points, one.surface->facets, one.arrays, time);
-        } else {
+        } else if (one.piece == nullptr) {
             std::vector<Vec3> points = one.body->mesh.nodes;
             for (Vec3& X : points) X += origin;
             write_vtu(directory_ / one.name, points, one.body->mesh.blocks, one.arrays, time);
+        } else if (!one.piece->nodes.empty()) {
+            std::vector<Vec3> points;
+            for (const Index node : one.piece->nodes) points.push_back(one.body->mesh.nodes[node] + origin);
+            write_vtu(directory_ / one.name, points, one.piece->blocks, one.arrays, time, one.piece->nodes);
         }
-        series_.add(time, one.part, one.name);
     }
-    series_.flush();
+}
+
+void Frames::list(const std::vector<File>& files, long number, double time) {
+    if (!first()) return;
+    for (const File& one : files) {
+        if (one.piece == nullptr) {
+            series_->add(time, one.part, one.name);
+            continue;
+        }
+        const std::string name = file(one.part, number, "pvtu");
+        std::vector<std::string> pieces;
+        for (const int rank : one.piece->processes)
+            pieces.push_back(
+                fs::path(piece_file(one.part, number, rank)).lexically_relative("frames").generic_string());
+        write_pvtu(directory_ / name, pieces, one.arrays, time);
+        series_->add(time, one.part, name);
+    }
+    series_->flush();
+}
+
+const std::vector<SeriesEntry>& Frames::written() {
+    finish();
+    return series_->entries();
 }
 
 void Frames::finish() {

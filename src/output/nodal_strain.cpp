@@ -62,9 +62,9 @@ Matrix element_strain(const StrainPoints& points, const Eigen::Matrix3Xd& X, con
 
 } // namespace
 
-std::vector<double> nodal_strain(const model::Body& body, const Field& u) {
+std::vector<double> nodal_strain(const model::Body& body, const Field& u, std::span<const char> chosen) {
     NodalMean mean(body.nodes(), 6);
-    for_each_element(body, [&](const ElementOf& element) {
+    for_each_element(body, chosen, [&](const ElementOf& element) {
         const auto block = static_cast<std::size_t>(element.block);
         const fe::ElementKernel& kernel = *body.kernels[block];
         const std::vector<Index> nodes = nodes_of(body, element);
@@ -77,10 +77,11 @@ std::vector<double> nodal_strain(const model::Body& body, const Field& u) {
     return mean.values();
 }
 
-std::vector<double> nodal_plastic_strain(const model::Model& model, Index b, const model::State& state) {
+std::vector<double> nodal_plastic_strain(const model::Model& model, Index b, const model::State& state,
+                                         std::span<const char> chosen) {
     const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
     NodalMean mean(body.nodes(), 1);
-    for_each_element(body, [&](const ElementOf& element) {
+    for_each_element(body, chosen, [&](const ElementOf& element) {
         const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(element.block)];
         const std::vector<Index> nodes = nodes_of(body, element);
         const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, state.u);
@@ -93,10 +94,11 @@ std::vector<double> nodal_plastic_strain(const model::Model& model, Index b, con
     return mean.values();
 }
 
-std::vector<double> nodal_energy_density(const model::Model& model, Index b, const model::State& state) {
+std::vector<double> nodal_energy_density(const model::Model& model, Index b, const model::State& state,
+                                         std::span<const char> chosen) {
     const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
     NodalMean mean(body.nodes(), 1);
-    for_each_element(body, [&](const ElementOf& element) {
+    for_each_element(body, chosen, [&](const ElementOf& element) {
         const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(element.block)];
         const std::vector<Index> nodes = nodes_of(body, element);
         const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, state.u);

@@ -1,22 +1,24 @@
 #pragma once
-/// What bodies say of their deformation, at their nodes: means over the elements, their volumes as weights.
+/// What bodies say of their deformation, at their nodes: means over the elements, their volumes as weights. `chosen` elements
+/// (empty: all) give values; nodes that have others as well must not be read.
 
 #include "osculate/model/model.hpp"
 
+#include <span>
 #include <vector>
 
 namespace osculate::output {
 
 /// Strain of the displacement field (nodes * 6), tensor components xx yy zz xy yz zx: sym(grad u) at small strain,
 /// Green-Lagrange (H + H^T + H^T H)/2 at finite strain. From the quadrature points carried to the nodes, as stresses are.
-[[nodiscard]] std::vector<double> nodal_strain(const model::Body& body, const Field& u);
+[[nodiscard]] std::vector<double> nodal_strain(const model::Body& body, const Field& u, std::span<const char> chosen);
 
 /// Equivalent plastic strain (nodes), carried to the nodes as stresses are; 0 in elastic elements.
-[[nodiscard]] std::vector<double> nodal_plastic_strain(const model::Model& model, Index body,
-                                                       const model::State& state);
+[[nodiscard]] std::vector<double> nodal_plastic_strain(const model::Model& model, Index body, const model::State& state,
+                                                       std::span<const char> chosen);
 
 /// Strain energy per reference volume (nodes), J/m^3: the mean of each element around.
-[[nodiscard]] std::vector<double> nodal_energy_density(const model::Model& model, Index body,
-                                                       const model::State& state);
+[[nodiscard]] std::vector<double> nodal_energy_density(const model::Model& model, Index body, const model::State& state,
+                                                       std::span<const char> chosen);
 
 } // namespace osculate::output

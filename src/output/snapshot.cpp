@@ -15,9 +15,21 @@ const Field& Snapshot::x() const {
     return x_;
 }
 
+Snapshot Snapshot::of_pieces(const std::vector<Piece>& pieces) const {
+    Snapshot part = *this;
+    part.pieces_ = &pieces;
+    return part;
+}
+
+std::span<const char> Snapshot::elements(Index body) const {
+    if (pieces_ == nullptr) return {};
+    return (*pieces_)[static_cast<std::size_t>(body)].around;
+}
+
 const Snapshot::Stress& Snapshot::stress(Index body) const {
     auto known = stress_.find(body);
-    if (known == stress_.end()) known = stress_.emplace(body, model::nodal_stress(model_, body, state_)).first;
+    if (known == stress_.end())
+        known = stress_.emplace(body, model::nodal_stress(model_, body, state_, elements(body))).first;
     return known->second;
 }
 

@@ -10,6 +10,7 @@
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
+#include <vtkIdTypeArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
 #include <vtkIntArray.h>
@@ -82,7 +83,8 @@ template <class Writer> void write(const std::filesystem::path& path, vtkDataObj
 } // namespace
 
 void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& points,
-               const std::vector<mesh::ElementBlock>& blocks, const std::vector<Array>& point_data, double time) {
+               const std::vector<mesh::ElementBlock>& blocks, const std::vector<Array>& point_data, double time,
+               const std::vector<Index>& numbers) {
     vtkNew<vtkCellArray> cells;
     vtkNew<vtkUnsignedCharArray> types;
     std::array<vtkIdType, mesh::most_nodes_per_cell> nodes{};
@@ -99,6 +101,13 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
     grid->SetPoints(vtk_points(points));
     grid->SetCells(types, cells);
     add_data(*grid, point_data, time);
+    if (!numbers.empty()) {
+        require(numbers.size() == points.size(), "each point of a piece has a number");
+        vtkNew<vtkIdTypeArray> ids;
+        ids->SetName(point_numbers);
+        for (const Index number : numbers) ids->InsertNextValue(number);
+        grid->GetPointData()->SetGlobalIds(ids);
+    }
     write<vtkXMLUnstructuredGridWriter>(path, *grid);
 }
 

@@ -53,5 +53,14 @@ TEST(Ranks, FindTheLargestOfAll) {
     });
 }
 
+TEST(Ranks, HearWhatOneOfThemSays) {
+    const std::string words = "no room in é";
+    support::on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {
+        for (const int speaker : {0, 2})
+            EXPECT_EQ(ranks->said_by(speaker, ranks->rank() == speaker ? words : "other words"), words);
+        EXPECT_EQ(ranks->said_by(1, ""), "");
+    });
+}
+
 } // namespace
 } // namespace osculate::OSCULATE_THIS_FILE

@@ -5,6 +5,7 @@
 #include "osculate/mesh/generators.hpp"
 #include "osculate/output/snapshot.hpp"
 
+#include <array>
 #include <set>
 
 namespace osculate::output {
@@ -17,9 +18,15 @@ public:
     inline static const Vec3 shift{0.02, 0, -0.01};
     inline static const Vec3 force{-30, 0, 100}; ///< on every closed slave node, N
 
-    TwoBlocks() {
-        add_body("base", mesh::make_block({0, 0, 0}, {2, 1, 1}, {2, 1, 1}));
-        add_body("cap", mesh::make_block({0.5, 0.25, 1}, {2, 0.5, 0.5}, {2, 1, 1}));
+    /// Elements of each along x, y, z.
+    struct Refined {
+        std::array<Index, 3> base{2, 1, 1}, cap{2, 1, 1};
+    };
+
+    TwoBlocks() : TwoBlocks(Refined{}) {}
+    explicit TwoBlocks(const Refined& elements) {
+        add_body("base", mesh::make_block({0, 0, 0}, {2, 1, 1}, elements.base));
+        add_body("cap", mesh::make_block({0.5, 0.25, 1}, {2, 0.5, 0.5}, elements.cap));
         add_pair();
         state.time = 2.5;
         state.u.reset(model.X.size());

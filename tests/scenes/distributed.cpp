@@ -1,5 +1,6 @@
 /// One run shared by several processes, started as users start them.
 
+#include "osculate/output/frame_reader.hpp"
 #include "scenes/program.hpp"
 
 #include <cmath>
@@ -60,8 +61,27 @@ TEST_F(DistributedRun, GivesTheSameResultsWithAnyNumberOfProcesses) {
     for (const int ranks : {1, 2, 3, 4})
         ASSERT_EQ(with_ranks(ranks, scene, settings + " -o run_" + std::to_string(ranks)), 0)
             << content(folder / "said.txt");
-    for (const int ranks : {2, 3, 4})
-        expect_the_same(folder / "run_1", folder / ("run_" + std::to_string(ranks)), 1e-9);
+    const output::Frame whole = output::read_frame(folder / "run_1/frames/upper_00002.vtu");
+    for (const int ranks : {2, 3, 4}) {
+        const fs::path run = folder / ("run_" + std::to_string(ranks));
+        expect_the_same(folder / "run_1", run, 1e-9);
+        const output::Frame pieces = output::read_frame(run / "frames/upper_00002.pvtu");
+        ASSERT_EQ(pieces.points, whole.points);
+        for (const char* field : {"displacement", "stress"}) {
+            const std::vector<double>&a = whole.find(field)->values, &b = pieces.find(field)->values;
+            ASSERT_EQ(a.size(), b.size());
+            double largest = 0, apart = 0;
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                largest = std::max(largest, std::abs(a[i]));
+                apart = std::max(apart, std::abs(a[i] - b[i]));
+            }
+            EXPECT_LT(apart, 1e-8 * largest) << field;
+        }
+    }
+    const Outcome report = osculate({"report", "run_3"});
+    EXPECT_EQ(report.code, 0) << report.err;
+    EXPECT_THAT(report.err, testing::Not(testing::HasSubstr("frames")));
+    EXPECT_THAT(content(folder / "run_3/report.html"), testing::HasSubstr("<img")) << "a picture of the bodies";
 }
 
 TEST_F(DistributedRun, GivesTheSameBitsAgain) {
@@ -222,7 +242,9 @@ TEST_F(DistributedRun, GoesOnFromACheckpointWithAnotherNumberOfProcesses) {
             0)
             << content(folder / "said.txt");
         expect_the_same(folder / "run", folder / "whole", 1e-9);
-        EXPECT_TRUE(fs::exists(folder / "run/frames/lower_00002.vtu"));
+        EXPECT_TRUE(fs::exists(folder / ("run/frames/lower_00002" + std::string(ranks == 1 ? ".vtu" : ".pvtu"))));
+        EXPECT_EQ(output::read_frame(folder / "run/frames/lower_00001.pvtu").points.size(), 729U)
+            << "of before, by two processes";
         if (ranks == 2) {
             EXPECT_EQ(content(folder / "run/history.csv"), content(folder / "whole/history.csv"));
         }
@@ -305,6 +327,17 @@ TEST_F(DistributedRun, GivesUpWithAPostMortemAndAllFrames) {
 TEST_F(DistributedRun, NeedsNoUnknownsButContactForces) {
     EXPECT_EQ(with_ranks(2, scene_file("configs/extreme/driven_through_a_wall.yaml"), "-o run"), 3);
     EXPECT_THAT(content(folder / "said.txt"), testing::HasSubstr("cause       singular_tangent: "));
+}
+
+/// A folder of somebody else: all end at once, with the words of the first.
+TEST_F(DistributedRun, EndsTogetherWhereTheFirstCannotEnterTheFolder) {
+    fs::create_directories(folder / "run");
+    std::ofstream(folder / "run/history.csv") << "mine\n";
+    EXPECT_EQ(with_ranks(2, scene, settings + " -o run"), 2);
+    const std::string said = content(folder / "said.txt");
+    EXPECT_THAT(said, testing::HasSubstr("history.csv"));
+    EXPECT_THAT(said, testing::Not(testing::HasSubstr("ends alone")));
+    EXPECT_EQ(content(folder / "run/history.csv"), "mine\n");
 }
 
 TEST_F(DistributedRun, NamesAProcessThatHasNoRoom) {

@@ -70,6 +70,10 @@ inline const std::map<std::string, KnownDifference>& known_differences() {
     constexpr const char* several =
         "bodies bend and buckle so far within a step that it has more than one solution: "
         "Newton cycles before it finds one, and round-off decides which one, or how the step is cut on the way";
+    constexpr const char* between = "a corner stands on the concave edge of a master of facets: Newton goes round "
+                                    "between the two normals there, and "
+                                    "round-off decides whether it finds one of the two equilibria, which are mirror "
+                                    "images, at once or in cut steps";
     constexpr const char* skin =
         "a skin 1e6 times softer than the core: its forces are near the tolerance, which is taken of all forces, so "
         "that its displacements have four digits";
@@ -107,13 +111,14 @@ inline const std::map<std::string, KnownDifference>& known_differences() {
         {"extreme/vertex_on_vertex_facets", {.reason = symmetric, .transformations = sides}},
         {"extreme/nodes_on_edges", {.reason = bent, .transformations = sides}},
         {"extreme/spike_in_crack", {.reason = symmetric, .transformations = {"mirror"}}},
-        {"extreme/spike_in_crack_facets", {.reason = symmetric, .transformations = {"mirror"}}},
+        {"extreme/spike_in_crack_facets", {.reason = between, .transformations = every}},
         {"extreme/stiff_slave_mortar", {.reason = round, .transformations = every}},
         {"extreme/stiff_slave", {.reason = round, .transformations = {"time 1e-9"}}},
         {"extreme/overlap_dynamic", {.reason = cut, .transformations = every}},
         {"tutorials/balls_in_box", {.reason = alike, .transformations = {"body order"}}},
         {"tutorials/clip", {.reason = driven, .transformations = {"rotation", "mirror"}}},
         {"tutorials/tool_into_rubber", {.reason = driven, .transformations = {"rotation", "mirror"}}},
+        {"tutorials/bracket", {.reason = driven, .transformations = {"rotation"}}},
         {"tutorials/bolted_joint", {.reason = driven, .transformations = {"rotation"}}},
         {"tutorials/spur_gears", {.reason = driven_alike, .transformations = {"rotation", "mirror", "body order"}}},
         {"extreme/wedge_in_crack", {.reason = symmetric, .transformations = sides}},

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace osculate {
@@ -29,6 +30,8 @@ public:
     [[nodiscard]] double largest(double own);
     /// Sums of the values of all processes, in the order of ranks: the same bits on all.
     void sum(std::span<double> values);
+    /// The text of one rank, on all. @param own  read on that rank
+    [[nodiscard]] std::string said_by(int rank, const std::string& own);
 };
 
 /// Which process owns which node. Every process holds the values of all nodes and takes all decisions from them, so that all

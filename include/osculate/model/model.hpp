@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -203,6 +204,8 @@ struct State {
 };
 
 /// Nodal stress of one body (nodes x 6, Pa, Voigt): averages of element values, weighted by element volumes.
-[[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index body, const State& state);
+/// @param chosen  (elements of the body) those that take part; nodes that have others as well must not be read; empty: all
+[[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index body, const State& state,
+                                                                    std::span<const char> chosen = {});
 
 } // namespace osculate::model

@@ -1,11 +1,12 @@
 #pragma once
-/// The frames of a run: one VTK file per body and contact surface, and the series that lists them.
+/// The frames of a run: one VTK file per body and contact surface, or per piece of a body, and the series that lists them.
 
 #include "osculate/output/fields.hpp"
 #include "osculate/output/series.hpp"
 
 #include <filesystem>
 #include <future>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,16 +19,19 @@ struct FrameFields {
 
 /// Writes the files frames/BODY_00000.vtu, frames/PAIR.slave_00000.vtp and frames/PAIR.master_00000.vtp. Points are
 /// reference positions; surfaces include the displacement, so that viewers can warp them like bodies.
+/// Where processes share a run, each writes its piece of a body, frames/pieces/BODY_00000_RANK.vtu, and the first one a list of
+/// them, frames/BODY_00000.pvtu, and all else; all of them make the object and write each frame together.
 class Frames {
 public:
     /// Starts a new series.pvd.
-    /// @param beside  write files on a separate thread, while the next step continues
+    /// @param beside  write files on a separate thread, while the next step continues; not with several processes
     /// @param kept    frames to keep, see written()
+    /// @param share   among processes; null: there is one
     /// @throws std::runtime_error with path and reason, like write() and finish()
     Frames(std::filesystem::path directory, const FrameFields& fields, const model::Model& model, bool beside = false,
-           std::vector<SeriesEntry> kept = {});
+           std::vector<SeriesEntry> kept = {}, const Share* share = nullptr);
 
-    /// Files of frame `number`, relative to the directory.
+    /// Files of frame `number`, those of all processes, relative to the directory.
     [[nodiscard]] std::vector<std::string> files(long number) const;
 
     /// Writes frame number `number` and lists it in series.pvd, at the latest when the next frame is written or
@@ -35,11 +39,8 @@ public:
     void write(const Snapshot& snapshot, long number);
     /// Waits until every frame is written.
     void finish();
-    /// Waits until every frame so far is written, and returns them.
-    [[nodiscard]] const std::vector<SeriesEntry>& written() {
-        finish();
-        return series_.entries();
-    }
+    /// Waits until every frame so far is written, and returns them; of the first process.
+    [[nodiscard]] const std::vector<SeriesEntry>& written();
 
 private:
     struct Surface {
@@ -53,19 +54,26 @@ private:
     struct File {
         const Surface* surface = nullptr; ///< null: of a body
         const model::Body* body = nullptr;
+        const Piece* piece = nullptr; ///< of the body; null: all of it
         std::string part, name;
         std::vector<Array> arrays;
     };
-    void write_files(const std::vector<File>& files, const Vec3& origin, double time);
+    [[nodiscard]] std::vector<File> files_of(const Snapshot& snapshot, long number) const;
+    void write_files(const std::vector<File>& files, const Vec3& origin, double time) const;
+    void list(const std::vector<File>& files, long number, double time);
+    [[nodiscard]] bool first() const { return share_ == nullptr || share_->ranks().rank() == 0; }
     void add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,
                      const std::vector<mesh::Facet>& facets, std::vector<const OutputField*> fields);
     [[nodiscard]] static std::string file(const std::string& part, long number, const char* extension);
+    [[nodiscard]] static std::string piece_file(const std::string& part, long number, int rank);
 
     std::filesystem::path directory_;
     std::vector<const OutputField*> body_fields_;
     std::vector<std::string> bodies_; ///< those with files
     std::vector<Surface> surfaces_;
-    Series series_;
+    const Share* share_;           ///< null: one process
+    std::vector<Piece> pieces_;    ///< (bodies) of this process; empty: whole bodies
+    std::optional<Series> series_; ///< of the first process
     bool beside_;
     std::future<void> writing_; ///< last member: its thread uses the others, and its destructor waits
 };

@@ -5,9 +5,11 @@
 #include "osculate/model/contact_evaluation.hpp"
 #include "osculate/model/model.hpp"
 #include "osculate/output/nodal_contact.hpp"
+#include "osculate/output/piece.hpp"
 
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace osculate::output {
@@ -25,6 +27,12 @@ public:
     Snapshot(const model::Model& model, const model::State& state, const model::ContactEvaluations& contact,
              std::vector<Vec3> reactions, std::vector<Vec3> out_of_balance = {}, double dt = 0,
              const contact::AuditResult* audit = nullptr);
+
+    /// The same for one process of several: what means over elements give is right at the nodes of its pieces alone. Pieces
+    /// must outlive it. @param pieces  (bodies)
+    [[nodiscard]] Snapshot of_pieces(const std::vector<Piece>& pieces) const;
+    /// (elements of the body) Which ones give nodal values; empty: all.
+    [[nodiscard]] std::span<const char> elements(Index body) const;
 
     [[nodiscard]] const model::Model& model() const { return model_; }
     [[nodiscard]] const model::State& state() const { return state_; }
@@ -55,6 +63,7 @@ private:
     std::vector<Vec3> reactions_, out_of_balance_;
     double dt_;
     const contact::AuditResult* audit_;
+    const std::vector<Piece>* pieces_ = nullptr; ///< null: whole bodies
     mutable Field x_;
     mutable std::map<Index, Stress> stress_;
     mutable std::optional<NodalContact> nodal_contact_;

@@ -159,11 +159,30 @@ std::unique_ptr<Derivatives> derivatives_of(const LoadedScene& loaded, const Run
     }
 }
 
-/// And all else that takes time, memory or room.
-void leave_out_frames(scene::Output& output) {
+/// What the first process writes alone.
+void leave_to_the_first(scene::Output& output) {
     output.report = output.paraview = output.failed_iterate = false;
-    output.frame_every = 0;
     output.plots.clear();
+}
+
+/// Enters the run's folder, or another one of a process that is not the first.
+/// @param frames  becomes the run's folder in a process that is not the first
+template <class Enter>
+std::unique_ptr<OutputFolder> entered(const RunOptions& options, fs::path& frames, Enter&& enter) {
+    std::unique_ptr<OutputFolder> folder;
+    std::string told;
+    try {
+        folder = enter();
+        told = fs::absolute(folder->path()).string();
+    } catch (const SceneError&) { // all end alike, with what the first one says
+        if (options.ranks && writes(options)) (void)options.ranks->said_by(0, {});
+        throw;
+    }
+    if (!options.ranks) return folder;
+    told = options.ranks->said_by(0, told);
+    if (told.empty()) refuse("the run's folder", "one that the first process can enter", "none");
+    if (!writes(options)) frames = told;
+    return folder;
 }
 
 /// For a process whose files nobody reads, but which goes on with them like the first.
@@ -206,13 +225,17 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
     LoadedScene loaded = load(scene_path, overrides, options.threads, timings, options.ranks);
-    if (!writes(options)) leave_out_frames(loaded.scene.output);
+    if (!writes(options)) leave_to_the_first(loaded.scene.output);
     const auto derivatives = derivatives_of(loaded, options, timings);
-    OutputFolder folder(folder_of(loaded, options), entry_of(options.folder),
-                        RunRecorder::files(loaded.scene, loaded.plan));
-    if (options.entered) options.entered(folder.path());
-    RunRecorder::Settings settings{&folder, options.threads, options.quiet, begin, options.checkpoint_every};
+    fs::path frames;
+    const auto folder = entered(options, frames, [&] {
+        return std::make_unique<OutputFolder>(folder_of(loaded, options), entry_of(options.folder),
+                                              RunRecorder::files(loaded.scene, loaded.plan));
+    });
+    if (options.entered) options.entered(folder->path());
+    RunRecorder::Settings settings{folder.get(), options.threads, options.quiet, begin, options.checkpoint_every};
     settings.derivatives = derivatives.get();
+    settings.frames = frames;
     return run(loaded, settings, timings);
 }
 
@@ -268,12 +291,19 @@ std::optional<output::Summary> resume(const fs::path& directory, const fs::path&
                "'" + asked + "'");
     if (!writes(options)) {
         copy_tables(file, directory, options.directory);
-        leave_out_frames(loaded.scene.output);
+        leave_to_the_first(loaded.scene.output);
         file.frames.clear();
     }
-    OutputFolder folder(writes(options) ? directory : options.directory, OutputFolder::Entry::adopt,
-                        RunRecorder::files(loaded.scene, loaded.plan));
-    return run(loaded, {&folder, options.threads, options.quiet, begin, options.checkpoint_every, &file}, timings);
+    fs::path frames;
+    const auto folder = entered(options, frames, [&] {
+        return std::make_unique<OutputFolder>(writes(options) ? directory : options.directory,
+                                              OutputFolder::Entry::adopt,
+                                              RunRecorder::files(loaded.scene, loaded.plan));
+    });
+    RunRecorder::Settings settings{folder.get(), options.threads,          options.quiet,
+                                   begin,        options.checkpoint_every, &file};
+    settings.frames = frames;
+    return run(loaded, settings, timings);
 }
 
 } // namespace osculate::app

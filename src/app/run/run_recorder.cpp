@@ -11,6 +11,7 @@
 #include "osculate/core/file_content.hpp"
 #include "osculate/output/paraview_script.hpp"
 #include "osculate/output/post_mortem_file.hpp"
+#include "osculate/output/vtk_pieces.hpp"
 #include "osculate/scene/writer.hpp"
 
 #include <algorithm>
@@ -76,8 +77,10 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
         if (out.frame_every > 0) {
             files.claim({series_file});
             frames_ = std::make_unique<output::Frames>(
-                folder, output::FrameFields{out.body_fields, out.slave_fields, out.master_fields}, plan.model,
-                settings_.threads > 1, resumed() ? settings_.from->frames : std::vector<output::SeriesEntry>{});
+                settings_.frames.empty() ? folder : settings_.frames,
+                output::FrameFields{out.body_fields, out.slave_fields, out.master_fields}, plan.model,
+                settings_.threads > 1, resumed() ? settings_.from->frames : std::vector<output::SeriesEntry>{},
+                plan.model.share.get());
         }
         if (resumed()) remove_what_is_written_anew(); // after series.pvd has forgotten it
         if (out.frame_every > 0 && out.paraview) {
@@ -126,6 +129,10 @@ std::vector<std::string> RunRecorder::files(const scene::Scene& scene, const Pla
     const auto frames = [&](const std::string& folder) {
         names.push_back(folder + series_file);
         for (const model::Body& body : plan.model.bodies) names.push_back(folder + "frames/" + body.name + "_*.vtu");
+        if (folder.empty())
+            for (const model::Body& body : plan.model.bodies)
+                names.insert(names.end(),
+                             {"frames/" + body.name + "_*.pvtu", "frames/pieces/" + body.name + "_*_*.vtu"});
         for (const auto& pair : plan.model.pairs)
             for (const char* side : {".slave", ".master"})
                 names.push_back(folder + "frames/" + pair->name() + side + "_*.vtp");
@@ -148,7 +155,11 @@ void RunRecorder::remove_what_is_written_anew() {
     std::set<std::string> kept(rows.begin(), rows.end());
     kept.insert({"scene.yaml", "summary.json", checkpoint_path, previous_checkpoint_path});
     if (frames_) kept.insert(series_file);
-    for (const output::SeriesEntry& frame : settings_.from->frames) kept.insert(frame.file);
+    for (const output::SeriesEntry& frame : settings_.from->frames) {
+        kept.insert(frame.file);
+        const std::vector<std::string> pieces = output::pieces_of(directory(), frame.file);
+        kept.insert(pieces.begin(), pieces.end());
+    }
     settings_.folder->claim(rows);
     settings_.folder->remove_all_but(kept);
 }
@@ -176,7 +187,11 @@ void RunRecorder::write_initial_frame() {
     if (!frames_) return;
     const scene::Output& out = scene_.output;
     model::ContactEvaluations contact;
-    if (!out.slave_fields.empty() || !out.master_fields.empty())
+    const bool shows_contact = !out.slave_fields.empty() || !out.master_fields.empty();
+    const bool reads_it = settings_.frames.empty() || std::ranges::any_of(out.body_fields, [](const std::string& name) {
+                              return name.starts_with("contact_");
+                          });
+    if (shows_contact && reads_it)
         for (model::ContactEvaluation& evaluation :
              contact = model::contact_evaluations(model::pairs_of(stepper_.state().contact)))
             (void)initial_gaps(evaluation, plan_.model.X, timings_, settings_.threads);

@@ -1,0 +1,23 @@
+#pragma once
+/// The part of a body that one of several processes writes.
+
+#include "osculate/core/ranks.hpp"
+#include "osculate/model/model.hpp"
+
+#include <vector>
+
+namespace osculate::output {
+
+/// The elements whose first node belongs to a process, and their nodes.
+struct Piece {
+    std::vector<Index> nodes;               ///< of the body, ascending: point by point
+    std::vector<mesh::ElementBlock> blocks; ///< as those of the body; connectivity in points
+    std::vector<char>
+        around; ///< (elements of the body) whether one has a node here: they give the mean values of these nodes
+    std::vector<int> processes; ///< those that have a piece of this body, ascending
+};
+
+/// Piece of the calling process. O(elements)
+[[nodiscard]] Piece piece_of(const model::Body& body, const Share& share);
+
+} // namespace osculate::output

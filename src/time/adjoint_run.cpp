@@ -4,6 +4,8 @@
 #include "time/run_context.hpp"
 #include "time/stage_state.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace osculate::time {
@@ -11,6 +13,36 @@ namespace osculate::time {
 namespace {
 /// Of linear systems. Derivatives of forces of supports are small differences of large sums: those of what is held and of what moves.
 constexpr double linear_tolerance = 1e-11, linear_tolerance_of_reactions = 1e-12;
+
+/// What steps before one may still add to a derivative, over what it is the sum of by then: nothing that counts beside linear_tolerance and
+/// the error of differences.
+constexpr double negligible = 1e-9;
+constexpr double loosest = 1e-3; ///< of systems whose solutions are small beside those before
+
+using Sizes = equilibrium::WeightSizes;
+
+Sizes sizes_of(const equilibrium::Weights& weights) {
+    Sizes sizes;
+    for (const Vec3& w : weights.nodes) sizes.nodes += w.squaredNorm();
+    for (const Vec3& w : weights.couplings) sizes.couplings += w.squaredNorm();
+    return {std::sqrt(sizes.nodes), std::sqrt(sizes.couplings)};
+}
+
+/// Tolerance of a system, so that its error is that of the largest system so far.
+double tolerance_beside(double tolerance, const Sizes& own, Sizes& largest) {
+    largest = {std::max(largest.nodes, own.nodes), std::max(largest.couplings, own.couplings)};
+    double part = 0;
+    if (own.nodes > 0) part = own.nodes / largest.nodes;
+    if (own.couplings > 0) part = std::max(part, own.couplings / largest.couplings);
+    return part > 0 ? std::clamp(tolerance / part, tolerance, loosest) : tolerance;
+}
+
+bool is_zero(const equilibrium::StateWeights& weights) {
+    const auto zero = [](const auto& list) {
+        return std::ranges::all_of(list, [](const Vec3& w) { return w.isZero(0); });
+    };
+    return zero(weights.u) && zero(weights.v) && zero(weights.a) && zero(weights.couplings);
+}
 
 /// Components of a field at held directions, in the order of nodes and directions.
 Vector held_components(const linear::Constraints& constraints, const Field& values) {
@@ -37,7 +69,8 @@ struct AdjointRun::Number {
 struct AdjointRun::Step {
     /// Derivatives by one number at fixed unknowns.
     struct Change {
-        Vector residual;             ///< (rows)
+        Vector residual; ///< (rows)
+        equilibrium::WeightSizes residual_sizes;
         Vector reaction, prescribed; ///< (held directions) N, m
     };
     std::size_t stage = 0;
@@ -128,6 +161,9 @@ void AdjointRun::follow(const BesideStep& step, const LinearSolve&) {
             add(held_components(own.constraints(), side->state().u), change.prescribed);
             sign = -sign;
         }
+        equilibrium::Weights rows;
+        one.above->equilibrium().unpack_rows(change.residual, rows);
+        change.residual_sizes = sizes_of(rows);
     }
     first_coupling_.assign(1, 0);
     for (const model::ContactEvaluation& evaluation : step.contact)
@@ -149,6 +185,14 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
         return none;
     };
     std::vector<equilibrium::StateWeights> end; // (quantities) of the state at the end of a step
+    std::vector<Sizes> largest(quantities.size());
+    std::vector<std::vector<double>> added(quantities.size(), std::vector<double>(numbers_.size(), 0.0)); // sizes
+    std::vector<Sizes> before(numbers_.size()); // sums over the steps before this one
+    for (const Step& step : steps_)
+        for (std::size_t p = 0; p < numbers_.size(); ++p) {
+            before[p].nodes += step.by[p].residual_sizes.nodes;
+            before[p].couplings += step.by[p].residual_sizes.couplings;
+        }
     for (std::size_t n = steps_.size(); n-- > 0;) {
         const Step& step = steps_[n];
         if (stage != step.stage) now.emplace(*context_, stages_[step.stage], step.start);
@@ -157,6 +201,11 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
         if (!open(step, *now)) return {};
         const bool last = n + 1 == steps_.size();
         equilibrium.linearise_transposed();
+        bool done = !now->dynamics;
+        for (std::size_t p = 0; p < numbers_.size(); ++p) {
+            before[p].nodes -= step.by[p].residual_sizes.nodes;
+            before[p].couplings -= step.by[p].residual_sizes.couplings;
+        }
         for (std::size_t q = 0; q < quantities.size(); ++q) {
             const bool reacts = last && !quantities[q].reactions.empty();
             if (last) {
@@ -175,8 +224,16 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
             }
             Vector w;
             const double tolerance = quantities[q].reactions.empty() ? linear_tolerance : linear_tolerance_of_reactions;
-            if (!equilibrium.solve_transposed(by, w, of, tolerance)) return {};
+            // in motion nothing shrinks, and errors add up
+            const double here = now->dynamics ? tolerance : tolerance_beside(tolerance, sizes_of(by), largest[q]);
+            if (!equilibrium.solve_transposed(by, w, of, here)) return {};
             add(q, -1, w, step, &Step::Change::residual);
+            const Sizes size = sizes_of(of);
+            for (std::size_t p = 0; p < numbers_.size(); ++p) { // by the inequality of Cauchy and Schwarz
+                added[q][p] += std::abs(w.dot(step.by[p].residual));
+                done = done &&
+                       size.nodes * before[p].nodes + size.couplings * before[p].couplings <= negligible * added[q][p];
+            }
             // the next one backwards; what is held there is in the differences
             if (reacts) of.nodes.add(-1, reactions.nodes);
             equilibrium::StateWeights start = nothing();
@@ -185,6 +242,7 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
             equilibrium.add_transposed_of_start(of, end[q], start);
             end[q] = std::move(start);
         }
+        if (done || std::ranges::all_of(end, is_zero)) break;
         equilibrium.commit();
     }
     return gradients;

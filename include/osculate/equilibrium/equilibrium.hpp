@@ -87,6 +87,7 @@ public:
     /// See EquilibriumTangent, at the last residual, and ContactTerm::add_transposed_of_start().
     void linearise_transposed() { tangent_.linearise_transposed(); }
     void add_transposed(const Weights& of, Weights& by) { tangent_.add_transposed(of, by); }
+    void unpack_rows(const Vector& rows, Weights& of) const { tangent_.unpack_rows(rows, of); }
     [[nodiscard]] bool solve_transposed(const Weights& b, Vector& w, Weights& of, double tolerance) {
         return tangent_.solve_transposed(b, w, of, tolerance);
     }

@@ -75,9 +75,10 @@ public:
     [[nodiscard]] bool solve_transposed(const Weights& b, Vector& w, Weights& of, double tolerance);
     [[nodiscard]] int factorisations() const override { return condensed_ ? condensed_->factorisations() : 0; }
 
-private:
-    /// Weights at nodes and couplings of a vector of rows.
+    /// Weights, or values, at nodes and couplings of a vector of rows.
     void unpack_rows(const ConstVectorRef& w, Weights& of) const;
+
+private:
     /// Weights as a vector of unknowns.
     void pack_unknowns(const Weights& by, VectorRef b) const;
     void multiply_transposed(const ConstVectorRef& w, VectorRef b);

@@ -13,6 +13,11 @@ struct Weights {
     std::vector<Vec3> couplings;
 };
 
+/// Norms of weights, of the two kinds apart as they have different units.
+struct WeightSizes {
+    double nodes = 0, couplings = 0;
+};
+
 /// Weights of a state between two steps in a sum: of displacements, of velocities and accelerations (both empty in statics), (nodes),
 /// and of contact forces, (couplings). Global components.
 struct StateWeights {

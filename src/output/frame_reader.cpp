@@ -109,11 +109,11 @@ std::vector<mesh::Facet> facets_of(Cells cells) {
 
 /// Takes each piece of a list. @param take  piece, numbers of its points in the whole
 template <class Take> void read_pieces(const fs::path& path, const Take& take) {
-    for (const std::string& piece : pieces_of(path.parent_path(), path.filename().string()))
-        read(path.parent_path() / piece, [&](vtkPointSet& data) {
-            const vtkDataArray* ids = data.GetPointData()->GetGlobalIds();
+    for (const fs::path& piece : pieces_in(path))
+        read(piece, [&](vtkPointSet& data) {
+            vtkDataArray* ids = data.GetPointData()->GetGlobalIds();
             if (ids == nullptr) throw std::runtime_error("cannot read " + path.string() + ": a piece without numbers");
-            const Array numbers = copy_of(*data.GetPointData()->GetGlobalIds());
+            const Array numbers = copy_of(*ids);
             take(data,
                  [&](vtkIdType point) { return static_cast<Index>(numbers.values[static_cast<std::size_t>(point)]); });
         });

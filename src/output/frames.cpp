@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -102,6 +103,16 @@ std::string Frames::piece_file(const std::string& part, long number, int rank) {
     return fmt::format("frames/pieces/{}_{:05}_{}.vtu", part, number, rank);
 }
 
+bool Frames::is_piece_of(const std::string& file, const std::string& listed) {
+    const fs::path list = listed;
+    if (list.extension() != ".pvtu") return false;
+    const std::string before = "frames/pieces/" + list.stem().string() + "_", after = ".vtu";
+    if (file.size() <= before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after))
+        return false;
+    const auto rank = std::string_view(file).substr(before.size(), file.size() - before.size() - after.size());
+    return rank.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 std::vector<Frames::File> Frames::files_of(const Snapshot& snapshot, long number) const {
     std::vector<File> files;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -132,16 +143,21 @@ void Frames::write(const Snapshot& snapshot, long number) {
         Ranks& ranks = share_->ranks();
         (void)ranks.largest(0); // all wait: the first process has claimed the files by then
         std::vector<File> files;
-        std::string problem;
-        try {
+        const auto together = [&](auto&& act) { // all end where one fails
+            std::string problem;
+            try {
+                act();
+            } catch (const std::runtime_error& error) {
+                problem = error.what();
+            }
+            if (const auto failed = static_cast<int>(ranks.largest(problem.empty() ? -1 : ranks.rank())); failed >= 0)
+                throw std::runtime_error(fmt::format("process {}: {}", failed, ranks.said_by(failed, problem)));
+        };
+        together([&] {
             files = files_of(snapshot.of_pieces(pieces_), number);
             write_files(files, origin, time);
-        } catch (const std::runtime_error& error) {
-            problem = error.what();
-        }
-        if (const auto failed = static_cast<int>(ranks.largest(problem.empty() ? -1 : ranks.rank())); failed >= 0)
-            throw std::runtime_error(fmt::format("process {}: {}", failed, ranks.said_by(failed, problem)));
-        return list(files, number, time); // of what all have written
+        });
+        return together([&] { list(files, number, time); });
     }
     std::vector<File> files = files_of(snapshot, number); // values are taken here: the state does not wait
     finish();

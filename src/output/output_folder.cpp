@@ -77,15 +77,15 @@ void list_files(const fs::path& folder, const std::string& prefix, std::vector<s
     }
 }
 
-/// Whether a name is one of the pattern's, whose `*` stands for one digit or more.
+/// Whether a name is one of the pattern's, in which `*` stands for one digit or more and comes before no digit.
 bool fits(std::string_view name, std::string_view pattern) {
     const std::size_t star = pattern.find('*');
     if (star == std::string_view::npos) return name == pattern;
-    const std::string_view before = pattern.substr(0, star), after = pattern.substr(star + 1);
-    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
-        return false;
-    const std::string_view number = name.substr(before.size(), name.size() - before.size() - after.size());
-    return std::ranges::all_of(number, [](unsigned char c) { return std::isdigit(c) != 0; });
+    if (!name.starts_with(pattern.substr(0, star))) return false;
+    name.remove_prefix(star);
+    const auto end = std::ranges::find_if_not(name, [](unsigned char c) { return std::isdigit(c) != 0; });
+    const auto digits = static_cast<std::size_t>(end - name.begin());
+    return digits > 0 && fits(name.substr(digits), pattern.substr(star + 1));
 }
 
 /// The first folder on the way to a file that is a symbolic link; empty: none is.

@@ -28,12 +28,18 @@ view.OrientationAxesVisibility = 1
 LoadPalette("WhiteBackground")
 
 
-def read(part, reader, ending):
-    files = sorted(glob.glob(os.path.join(folder, "frames", part + "_[0-9]*." + ending)))
-    if not files:
+def read(part, *readers):  # files of one process, or lists of pieces: a run may have been resumed by another number of them
+    found = [(reader, sorted(glob.glob(os.path.join(folder, "frames", part + "_[0-9]*." + ending)))) for reader, ending in readers]
+    found = [(reader, files) for reader, files in found if files]
+    if not found:
         return None
+    if len(found) > 1:
+        print(part + ": frames of one and of several processes; series.pvd has them all, shown are those of the more")
+        found.sort(key=lambda one: len(one[1]))
+    reader, files = found[-1]
     source = reader(registrationName=part, FileName=files)
-    source.TimeArray = "TimeValue"
+    if "TimeArray" in source.ListProperties():
+        source.TimeArray = "TimeValue"
     warped = WarpByVector(registrationName=part + " deformed", Input=source)
     warped.Vectors = ["POINTS", "displacement"]
     warped.ScaleFactor = SCALE
@@ -67,9 +73,10 @@ def size_of(source):
     return max(b[1] - b[0], b[3] - b[2], b[5] - b[4])
 
 
-sources = [(read(part, XMLUnstructuredGridReader, "vtu"), part, "body") for part in BODIES]
-sources += [(read(part, XMLPolyDataReader, "vtp"), part, "slave") for part in SLAVES]
-sources += [(read(part, XMLPolyDataReader, "vtp"), part, "master") for part in MASTERS]
+VOLUMES = (XMLUnstructuredGridReader, "vtu"), (XMLPartitionedUnstructuredGridReader, "pvtu")
+sources = [(read(part, *VOLUMES), part, "body") for part in BODIES]
+sources += [(read(part, (XMLPolyDataReader, "vtp")), part, "slave") for part in SLAVES]
+sources += [(read(part, (XMLPolyDataReader, "vtp")), part, "master") for part in MASTERS]
 sources = [s for s in sources if s[0] is not None]
 scene = GetAnimationScene()
 scene.UpdateAnimationUsingDataTimeSteps()

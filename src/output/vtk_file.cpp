@@ -45,8 +45,7 @@ template <class VtkArray> vtkSmartPointer<VtkArray> vtk_array(const Array& array
     for (std::size_t i = 0; i < array.values.size(); ++i)
         result->SetValue(static_cast<vtkIdType>(i), static_cast<Value>(array.values[i]));
     if (array.components == 6) { // the order of VTK's symmetric tensors is that of Voigt's here
-        static constexpr std::array names{"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
-        for (int c = 0; c < 6; ++c) result->SetComponentName(c, names[static_cast<std::size_t>(c)]);
+        for (int c = 0; c < 6; ++c) result->SetComponentName(c, voigt_names[static_cast<std::size_t>(c)]);
     }
     if (!array.unit.empty()) result->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), array.unit.c_str());
     return result;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace osculate::time {
@@ -14,10 +15,10 @@ namespace {
 /// Of linear systems. Derivatives of forces of supports are small differences of large sums: those of what is held and of what moves.
 constexpr double linear_tolerance = 1e-11, linear_tolerance_of_reactions = 1e-12;
 
-/// What steps before one may still add to a derivative, over what it is the sum of by then: nothing that counts beside linear_tolerance and
-/// the error of differences.
+/// What steps before one may still add to a derivative, over the derivative by then: less than the error of differences.
 constexpr double negligible = 1e-9;
-constexpr double loosest = 1e-3; ///< of systems whose solutions are small beside those before
+constexpr double cancelled = 1e-3; ///< of what has been added up: the least that counts as the derivative
+constexpr double loosest = 1e-3;   ///< of systems whose solutions add little
 
 using Sizes = equilibrium::WeightSizes;
 
@@ -28,13 +29,31 @@ Sizes sizes_of(const equilibrium::Weights& weights) {
     return {std::sqrt(sizes.nodes), std::sqrt(sizes.couplings)};
 }
 
-/// Tolerance of a system, so that its error is that of the largest system so far.
-double tolerance_beside(double tolerance, const Sizes& own, Sizes& largest) {
-    largest = {std::max(largest.nodes, own.nodes), std::max(largest.couplings, own.couplings)};
-    double part = 0;
-    if (own.nodes > 0) part = own.nodes / largest.nodes;
-    if (own.couplings > 0) part = std::max(part, own.couplings / largest.couplings);
-    return part > 0 ? std::clamp(tolerance / part, tolerance, loosest) : tolerance;
+/// What is known of a derivative while the steps are gone through backwards.
+struct Sum {
+    double value = 0, sizes = 0; ///< so far; of what was added
+};
+
+/// The most that the first `steps` steps may add to one of the derivatives, over the derivative so far. That solutions grow backwards by no
+/// more than they have done so far is an assumption.
+/// @param w       of the step after them
+/// @param before  (numbers) sums of the sizes of changes in those steps
+double still_to_come(const Sizes& w, double growth, const std::vector<Sizes>& before, const std::vector<Sum>& sums) {
+    double most = 0;
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+        const double rest = growth * (w.nodes * before[p].nodes + w.couplings * before[p].couplings);
+        const double known = std::max(std::abs(sums[p].value), cancelled * sums[p].sizes);
+        if (rest > 0) most = std::max(most, known > 0 ? rest / known : std::numeric_limits<double>::infinity());
+    }
+    return most;
+}
+
+/// At least 1: how much larger one is than the other.
+double growth_of(const Sizes& later, const Sizes& now) {
+    double growth = 1;
+    if (later.nodes > 0) growth = std::max(growth, now.nodes / later.nodes);
+    if (later.couplings > 0) growth = std::max(growth, now.couplings / later.couplings);
+    return growth;
 }
 
 bool is_zero(const equilibrium::StateWeights& weights) {
@@ -185,13 +204,15 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
         return none;
     };
     std::vector<equilibrium::StateWeights> end; // (quantities) of the state at the end of a step
-    std::vector<Sizes> largest(quantities.size());
-    std::vector<std::vector<double>> added(quantities.size(), std::vector<double>(numbers_.size(), 0.0)); // sizes
-    std::vector<Sizes> before(numbers_.size()); // sums over the steps before this one
-    for (const Step& step : steps_)
+    std::vector<std::vector<Sum>> sums(quantities.size(), std::vector<Sum>(numbers_.size()));
+    std::vector<Sizes> solved(quantities.size()); // w of the step after
+    double growth = 1;
+    std::vector<std::vector<Sizes>> before(steps_.size() + 1,
+                                           std::vector<Sizes>(numbers_.size())); // sums over the first steps
+    for (std::size_t n = 0; n < steps_.size(); ++n)
         for (std::size_t p = 0; p < numbers_.size(); ++p) {
-            before[p].nodes += step.by[p].residual_sizes.nodes;
-            before[p].couplings += step.by[p].residual_sizes.couplings;
+            const Sizes& own = steps_[n].by[p].residual_sizes;
+            before[n + 1][p] = {before[n][p].nodes + own.nodes, before[n][p].couplings + own.couplings};
         }
     for (std::size_t n = steps_.size(); n-- > 0;) {
         const Step& step = steps_[n];
@@ -201,11 +222,7 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
         if (!open(step, *now)) return {};
         const bool last = n + 1 == steps_.size();
         equilibrium.linearise_transposed();
-        bool done = !now->dynamics;
-        for (std::size_t p = 0; p < numbers_.size(); ++p) {
-            before[p].nodes -= step.by[p].residual_sizes.nodes;
-            before[p].couplings -= step.by[p].residual_sizes.couplings;
-        }
+        bool done = !now->dynamics; // in motion nothing shrinks, and errors add up
         for (std::size_t q = 0; q < quantities.size(); ++q) {
             const bool reacts = last && !quantities[q].reactions.empty();
             if (last) {
@@ -224,16 +241,18 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
             }
             Vector w;
             const double tolerance = quantities[q].reactions.empty() ? linear_tolerance : linear_tolerance_of_reactions;
-            // in motion nothing shrinks, and errors add up
-            const double here = now->dynamics ? tolerance : tolerance_beside(tolerance, sizes_of(by), largest[q]);
-            if (!equilibrium.solve_transposed(by, w, of, here)) return {};
+            double part = 1; // that this step may add
+            if (!last && !now->dynamics) part = still_to_come(solved[q], growth, before[n + 1], sums[q]);
+            if (!equilibrium.solve_transposed(by, w, of, std::clamp(tolerance / part, tolerance, loosest))) return {};
             add(q, -1, w, step, &Step::Change::residual);
             const Sizes size = sizes_of(of);
-            for (std::size_t p = 0; p < numbers_.size(); ++p) { // by the inequality of Cauchy and Schwarz
-                added[q][p] += std::abs(w.dot(step.by[p].residual));
-                done = done &&
-                       size.nodes * before[p].nodes + size.couplings * before[p].couplings <= negligible * added[q][p];
+            if (!last) growth = std::max(growth, growth_of(solved[q], size));
+            solved[q] = size;
+            for (std::size_t p = 0; p < numbers_.size(); ++p) {
+                sums[q][p].value = gradients[q][p];
+                sums[q][p].sizes += std::abs(w.dot(step.by[p].residual));
             }
+            done = done && still_to_come(size, growth, before[n], sums[q]) <= negligible;
             // the next one backwards; what is held there is in the differences
             if (reacts) of.nodes.add(-1, reactions.nodes);
             equilibrium::StateWeights start = nothing();

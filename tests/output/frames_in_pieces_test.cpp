@@ -15,6 +15,7 @@ namespace osculate::output::OSCULATE_THIS_FILE {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -87,9 +88,15 @@ TEST_F(FramesInPieces, AreListedByTheFirstProcess) {
                             "frames/pieces/cap_00004_2.vtu", "frames/joint.slave_00004.vtp"));
     for (const std::string& file : files) EXPECT_TRUE(fs::exists(folder / file)) << file;
     EXPECT_EQ(files_in(folder / "frames/pieces"), 4U);
-    EXPECT_THAT(pieces_of(folder, "frames/cap_00004.pvtu"),
-                ElementsAre("frames/pieces/cap_00004_1.vtu", "frames/pieces/cap_00004_2.vtu"));
-    EXPECT_THAT(pieces_of(folder, "frames/joint.slave_00004.vtp"), ElementsAre());
+    EXPECT_THAT(pieces_in(folder / "frames/cap_00004.pvtu"),
+                ElementsAre(folder / "frames/pieces/cap_00004_1.vtu", folder / "frames/pieces/cap_00004_2.vtu"));
+    EXPECT_TRUE(Frames::is_piece_of("frames/pieces/cap_00004_2.vtu", "frames/cap_00004.pvtu"));
+    for (const char* other : {"frames/pieces/cap_00005_2.vtu", "frames/pieces/cap_00004_1_00004_0.vtu",
+                              "frames/pieces/base_00004_2.vtu", "frames/cap_00004.pvtu"})
+        EXPECT_FALSE(Frames::is_piece_of(other, "frames/cap_00004.pvtu")) << other;
+    EXPECT_FALSE(Frames::is_piece_of("frames/pieces/cap_00004_2.vtu", "frames/cap_00004.vtu"));
+    EXPECT_THAT(content(folder / "frames/cap_00004.pvtu"),
+                AllOf(HasSubstr("ComponentName5=\"XZ\""), HasSubstr("location=\"vtkDataArray\">Pa<")));
     std::vector<std::string> listed;
     for (const SeriesEntry& entry : read_series(folder / "series.pvd")) listed.push_back(entry.file);
     EXPECT_THAT(listed, ElementsAre("frames/base_00004.pvtu", "frames/cap_00004.pvtu", "frames/joint.slave_00004.vtp"));

@@ -48,6 +48,25 @@ protected:
         });
     }
 
+    /// A frame of one process and the pieces of several.
+    void expect_the_same_frames(const std::string& name, const std::vector<std::string>& fields, const fs::path& one,
+                                const fs::path& several, double tolerance) const {
+        const output::Frame whole = output::read_frame(one / "frames" / (name + ".vtu")),
+                            pieces = output::read_frame(several / "frames" / (name + ".pvtu"));
+        ASSERT_EQ(pieces.points, whole.points);
+        for (const std::string& field : fields) {
+            const std::vector<double>&a = whole.find(field)->values, &b = pieces.find(field)->values;
+            ASSERT_EQ(a.size(), b.size());
+            double largest = 0, apart = 0;
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                largest = std::max(largest, std::abs(a[i]));
+                apart = std::max(apart, std::abs(a[i] - b[i]));
+            }
+            EXPECT_GT(largest, 0) << field;
+            EXPECT_LT(apart, tolerance * largest) << field;
+        }
+    }
+
     // root, few processors and containers are no obstacles; processes that wait leave the processor to others
     const std::string for_mpi = "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
                                 "OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_mpi_yield_when_idle=1 ";
@@ -61,26 +80,14 @@ TEST_F(DistributedRun, GivesTheSameResultsWithAnyNumberOfProcesses) {
     for (const int ranks : {1, 2, 3, 4})
         ASSERT_EQ(with_ranks(ranks, scene, settings + " -o run_" + std::to_string(ranks)), 0)
             << content(folder / "said.txt");
-    const output::Frame whole = output::read_frame(folder / "run_1/frames/upper_00002.vtu");
     for (const int ranks : {2, 3, 4}) {
         const fs::path run = folder / ("run_" + std::to_string(ranks));
         expect_the_same(folder / "run_1", run, 1e-9);
-        const output::Frame pieces = output::read_frame(run / "frames/upper_00002.pvtu");
-        ASSERT_EQ(pieces.points, whole.points);
-        for (const char* field : {"displacement", "stress"}) {
-            const std::vector<double>&a = whole.find(field)->values, &b = pieces.find(field)->values;
-            ASSERT_EQ(a.size(), b.size());
-            double largest = 0, apart = 0;
-            for (std::size_t i = 0; i < a.size(); ++i) {
-                largest = std::max(largest, std::abs(a[i]));
-                apart = std::max(apart, std::abs(a[i] - b[i]));
-            }
-            EXPECT_LT(apart, 1e-8 * largest) << field;
-        }
+        expect_the_same_frames("upper_00002", {"displacement", "stress"}, folder / "run_1", run, 1e-8);
     }
     const Outcome report = osculate({"report", "run_3"});
     EXPECT_EQ(report.code, 0) << report.err;
-    EXPECT_THAT(report.err, testing::Not(testing::HasSubstr("frames")));
+    EXPECT_THAT(report.out, testing::Not(testing::HasSubstr("frames")));
     EXPECT_THAT(content(folder / "run_3/report.html"), testing::HasSubstr("<img")) << "a picture of the bodies";
 }
 
@@ -103,13 +110,16 @@ TEST_F(DistributedRun, SharesFiniteStrain) {
 
 /// With a plastic one, whose histories all processes keep.
 TEST_F(DistributedRun, SharesPlasticity) {
-    const std::string plastic = "'{elastic_plastic: {E: 100 MPa, nu: 0.3, yield_stress: 1 MPa}}'";
+    const std::string plastic = "'{elastic_plastic: {E: 100 MPa, nu: 0.3, yield_stress: 0.1 MPa}}'";
+    const std::string fields = " --set 'output.body_fields=[plastic_strain, stress]'";
     for (const int ranks : {1, 3})
         ASSERT_EQ(with_ranks(ranks, scene,
-                             settings + " --set bodies.upper.material=" + plastic + " -o run_" + std::to_string(ranks)),
+                             settings + " --set bodies.upper.material=" + plastic + fields + " -o run_" +
+                                 std::to_string(ranks)),
                   0)
             << content(folder / "said.txt");
     expect_the_same(folder / "run_1", folder / "run_3", 1e-9);
+    expect_the_same_frames("upper_00002", {"plastic_strain", "stress"}, folder / "run_1", folder / "run_3", 1e-8);
 }
 
 TEST_F(DistributedRun, SharesDynamics) {
@@ -245,6 +255,12 @@ TEST_F(DistributedRun, GoesOnFromACheckpointWithAnotherNumberOfProcesses) {
         EXPECT_TRUE(fs::exists(folder / ("run/frames/lower_00002" + std::string(ranks == 1 ? ".vtu" : ".pvtu"))));
         EXPECT_EQ(output::read_frame(folder / "run/frames/lower_00001.pvtu").points.size(), 729U)
             << "of before, by two processes";
+        const fs::directory_iterator begin(folder / "run/frames/pieces"), end;
+        EXPECT_EQ(
+            std::any_of(begin, end,
+                        [](const auto& entry) { return entry.path().filename().string().starts_with("lower_00002_"); }),
+            ranks > 1);
+        EXPECT_EQ(fs::exists(folder / "run/frames/lower_00002.pvtu"), ranks > 1);
         if (ranks == 2) {
             EXPECT_EQ(content(folder / "run/history.csv"), content(folder / "whole/history.csv"));
         }
@@ -349,8 +365,18 @@ TEST_F(DistributedRun, NamesAProcessThatHasNoRoom) {
     EXPECT_NE(said.find("/nowhere"), std::string::npos) << said;
 }
 
-TEST_F(DistributedRun, EndsWhereOneProcessFailsAlone) {
+TEST_F(DistributedRun, EndsTogetherWhereTheFolderCannotBeMade) {
     EXPECT_EQ(with_ranks(2, scene, settings + " -o /proc/run"), 3);
+    const std::string said = content(folder / "said.txt");
+    EXPECT_THAT(said, testing::HasSubstr("/proc/run"));
+    EXPECT_THAT(said, testing::Not(testing::HasSubstr("ends alone")));
+}
+
+/// The first has a disk of its own that is full.
+TEST_F(DistributedRun, EndsWhereOneProcessFailsAlone) {
+    std::ofstream(folder / "full.sh") << "trap '' XFSZ\n[ \"$OMPI_COMM_WORLD_RANK\" = 0 ] && ulimit -f 1\nexec "
+                                      << OSCULATE_PROGRAM << " run " << scene << " --distributed --quiet -o run\n";
+    EXPECT_EQ(mpirun(2, "bash full.sh"), 3);
     const std::string said = content(folder / "said.txt");
     EXPECT_NE(said.find("process 0 of 2 ends alone, with exit code 3"), std::string::npos) << said;
 }

@@ -106,6 +106,19 @@ TEST_F(GradientsOfRuns, FollowFrictionAlongACurvedSurface) {
     expect_as_forward(half_tube, coarse, "sliding", "rear", "face", of_half_tube);
 }
 
+/// So many steps that the first ones add nothing to most derivatives, but are all there is to two of them.
+TEST_F(GradientsOfRuns, LeaveOutNoStepsThatCount) {
+    Changes changes = coarse;
+    changes.emplace_back("stages.slide.steps=24");
+    changes.emplace_back("contact.sliding.friction=0.1");
+    changes.emplace_back("stages.press.friction.sliding=0.2");
+    changes.emplace_back("stages.slide.friction.sliding=0.1");
+    expect_as_forward(half_tube, changes, "sliding", "rear", "face",
+                      {{"mu", "stages.slide.friction.sliding"},
+                       {"pressure", "stages.press.pressure.top"},
+                       {"path", "stages.slide.displacement.rear.y"}});
+}
+
 TEST_F(GradientsOfRuns, FollowLargeStrains) {
     Changes changes = coarse;
     changes.emplace_back("bodies.contactor.material={neo_hookean: {E: 10 MPa, nu: 0.2}}");

@@ -18,7 +18,8 @@ struct Frame {
     [[nodiscard]] const Array* find(const std::string& name) const;
 };
 
-/// Reads a .vtp or .vtu file of this program, or all pieces of a .pvtu file, points in the order of the whole mesh. @throws std::runtime_error with the path if it is not one
+/// Reads a .vtp or .vtu file of this program, or all pieces of a .pvtu file, points in the order of the whole mesh.
+/// @throws std::runtime_error with the path if it is not one
 [[nodiscard]] Frame read_frame(const std::filesystem::path& path);
 
 /// Polygons of such a file; for a .vtu or .pvtu file the exterior of its elements. Node numbers index the points of the frame.

@@ -34,6 +34,9 @@ public:
     /// Files of frame `number`, those of all processes, relative to the directory.
     [[nodiscard]] std::vector<std::string> files(long number) const;
 
+    /// Whether a file is a piece of a listed one; both relative to the directory.
+    [[nodiscard]] static bool is_piece_of(const std::string& file, const std::string& listed);
+
     /// Writes frame number `number` and lists it in series.pvd, at the latest when the next frame is written or
     /// finish() is called.
     void write(const Snapshot& snapshot, long number);

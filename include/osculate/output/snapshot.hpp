@@ -31,7 +31,7 @@ public:
     /// The same for one process of several: what means over elements give is right at the nodes of its pieces alone. Pieces
     /// must outlive it. @param pieces  (bodies)
     [[nodiscard]] Snapshot of_pieces(const std::vector<Piece>& pieces) const;
-    /// (elements of the body) Which ones give nodal values; empty: all.
+    /// (elements of the body) Whether means at nodes are to be taken of it; empty: of all.
     [[nodiscard]] std::span<const char> elements(Index body) const;
 
     [[nodiscard]] const model::Model& model() const { return model_; }

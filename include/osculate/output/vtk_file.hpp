@@ -4,6 +4,7 @@
 #include "osculate/core/types.hpp"
 #include "osculate/mesh/mesh.hpp"
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct Array {
     bool integer = false;       ///< values are integers, written as Int32
     std::string unit{};         ///< SI, the array's UNITS_LABEL; empty: none
 };
+
+/// Components of an array of symmetric tensors.
+inline constexpr std::array<const char*, 6> voigt_names{"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
 
 /// The array of a piece that holds its points' numbers in the whole mesh.
 inline constexpr const char* point_numbers = "GlobalNodeId";

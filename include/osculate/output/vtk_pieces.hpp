@@ -10,9 +10,7 @@ namespace osculate::output {
 /// @param point_data  arrays as in them; their values are not used
 void write_pvtu(const std::filesystem::path& path, const std::vector<std::string>& pieces,
                 const std::vector<Array>& point_data, double time);
-/// The pieces that a file of a frame lists, none where it is no list (.pvtu).
-/// @param file  relative to `folder`, as the pieces are
-/// @throws std::runtime_error with the path if it cannot be read
-[[nodiscard]] std::vector<std::string> pieces_of(const std::filesystem::path& folder, const std::string& file);
+/// The pieces in such a list. @throws std::runtime_error with the path if it is none
+[[nodiscard]] std::vector<std::filesystem::path> pieces_in(const std::filesystem::path& path);
 
 } // namespace osculate::output

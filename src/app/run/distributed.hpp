@@ -7,8 +7,8 @@
 
 namespace osculate::app {
 
-/// The first process speaks and writes. The others do the same work, as they take the same decisions, but their files go to a
-/// folder that is removed, and what they say is kept for the case that one fails alone.
+/// The first process speaks and writes. The others do the same work, as they take the same decisions, and write their pieces of the
+/// frames; their other files go to a folder that is removed, and what they say is kept for the case that one fails alone.
 class Distributed {
 public:
     /// Ends all processes where this one has no room for its files.

@@ -132,8 +132,8 @@ output::Summary run(LoadedScene& loaded, const RunRecorder::Settings& settings, 
     return run(loaded, stepper, timings, settings, nullptr, true);
 }
 
-/// Whether anybody reads what this process writes.
-bool writes(const RunOptions& options) {
+/// Of several processes, or the only one: it writes all but the others' parts of the frames.
+bool is_first(const RunOptions& options) {
     return !options.ranks || options.ranks->rank() == 0;
 }
 
@@ -165,27 +165,37 @@ void leave_to_the_first(scene::Output& output) {
     output.plots.clear();
 }
 
-/// Enters the run's folder, or another one of a process that is not the first.
-/// @param frames  becomes the run's folder in a process that is not the first
+/// Enters the run's folder, or another one of a process that is not the first; all fail where one does, as the first one says.
+/// @param frames_folder  the run's folder, in a process that is not the first
 template <class Enter>
-std::unique_ptr<OutputFolder> entered(const RunOptions& options, fs::path& frames, Enter&& enter) {
+std::unique_ptr<OutputFolder> entered(const RunOptions& options, fs::path& frames_folder, Enter&& enter) {
+    if (!options.ranks) return enter();
+    const std::string bad_scene = "2", failure = "3"; // in place of a path, which begins with a slash
+    const bool first = is_first(options);
     std::unique_ptr<OutputFolder> folder;
-    std::string told;
+    const auto tell = [&](const std::string& what) { return options.ranks->said_by(0, what); };
     try {
         folder = enter();
-        told = fs::absolute(folder->path()).string();
-    } catch (const SceneError&) { // all end alike, with what the first one says
-        if (options.ranks && writes(options)) (void)options.ranks->said_by(0, {});
+    } catch (const SceneError&) {
+        if (first) (void)tell(bad_scene);
+        throw;
+    } catch (const RunFailure&) {
+        if (first) (void)tell(failure);
         throw;
     }
-    if (!options.ranks) return folder;
-    told = options.ranks->said_by(0, told);
-    if (told.empty()) refuse("the run's folder", "one that the first process can enter", "none");
-    if (!writes(options)) frames = told;
+    const std::string told = tell(first ? fs::absolute(folder->path()).string() : std::string());
+    if (told == bad_scene) refuse("the run's folder", "one that the first process can enter", "none");
+    if (told == failure) throw RunFailure("the first process cannot enter the run's folder");
+    std::error_code none;
+    const bool seen = fs::exists(fs::path(told) / OutputFolder::manifest, none);
+    if (const double blind = options.ranks->largest(seen ? -1 : options.ranks->rank()); blind >= 0)
+        refuse(told, "a folder that all processes see, as each writes its part of the frames",
+               fmt::format("process {} does not", blind));
+    if (!first) frames_folder = told;
     return folder;
 }
 
-/// For a process whose files nobody reads, but which goes on with them like the first.
+/// For a process whose tables nobody reads, but which goes on with them like the first.
 void copy_tables(const output::CheckpointFile& file, const fs::path& from, const fs::path& to) {
     for (const auto& [name, bytes] : file.tables) {
         fs::create_directories((to / name).parent_path());
@@ -225,17 +235,17 @@ output::Summary run(const std::string& scene_path, const std::vector<scene::Over
     const auto begin = std::chrono::steady_clock::now();
     Timings timings;
     LoadedScene loaded = load(scene_path, overrides, options.threads, timings, options.ranks);
-    if (!writes(options)) leave_to_the_first(loaded.scene.output);
+    if (!is_first(options)) leave_to_the_first(loaded.scene.output);
     const auto derivatives = derivatives_of(loaded, options, timings);
-    fs::path frames;
-    const auto folder = entered(options, frames, [&] {
+    fs::path frames_folder;
+    const auto folder = entered(options, frames_folder, [&] {
         return std::make_unique<OutputFolder>(folder_of(loaded, options), entry_of(options.folder),
                                               RunRecorder::files(loaded.scene, loaded.plan));
     });
     if (options.entered) options.entered(folder->path());
     RunRecorder::Settings settings{folder.get(), options.threads, options.quiet, begin, options.checkpoint_every};
     settings.derivatives = derivatives.get();
-    settings.frames = frames;
+    settings.frames_folder = frames_folder;
     return run(loaded, settings, timings);
 }
 
@@ -289,20 +299,20 @@ std::optional<output::Summary> resume(const fs::path& directory, const fs::path&
     if (const std::string asked = first_derivative(loaded.scene.output); !asked.empty())
         refuse(scene_path, "a scene without output.derivatives and output.gradients, which are in no checkpoint",
                "'" + asked + "'");
-    if (!writes(options)) {
+    if (!is_first(options)) {
         copy_tables(file, directory, options.directory);
         leave_to_the_first(loaded.scene.output);
         file.frames.clear();
     }
-    fs::path frames;
-    const auto folder = entered(options, frames, [&] {
-        return std::make_unique<OutputFolder>(writes(options) ? directory : options.directory,
+    fs::path frames_folder;
+    const auto folder = entered(options, frames_folder, [&] {
+        return std::make_unique<OutputFolder>(is_first(options) ? directory : options.directory,
                                               OutputFolder::Entry::adopt,
                                               RunRecorder::files(loaded.scene, loaded.plan));
     });
     RunRecorder::Settings settings{folder.get(), options.threads,          options.quiet,
                                    begin,        options.checkpoint_every, &file};
-    settings.frames = frames;
+    settings.frames_folder = frames_folder;
     return run(loaded, settings, timings);
 }
 

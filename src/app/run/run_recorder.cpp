@@ -11,13 +11,13 @@
 #include "osculate/core/file_content.hpp"
 #include "osculate/output/paraview_script.hpp"
 #include "osculate/output/post_mortem_file.hpp"
-#include "osculate/output/vtk_pieces.hpp"
 #include "osculate/scene/writer.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sys/resource.h>
 #include <utility>
@@ -77,7 +77,7 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
         if (out.frame_every > 0) {
             files.claim({series_file});
             frames_ = std::make_unique<output::Frames>(
-                settings_.frames.empty() ? folder : settings_.frames,
+                settings_.frames_folder.empty() ? folder : settings_.frames_folder,
                 output::FrameFields{out.body_fields, out.slave_fields, out.master_fields}, plan.model,
                 settings_.threads > 1, resumed() ? settings_.from->frames : std::vector<output::SeriesEntry>{},
                 plan.model.share.get());
@@ -128,11 +128,12 @@ std::vector<std::string> RunRecorder::files(const scene::Scene& scene, const Pla
     for (const PlannedProbe& probe : plan.probes) names.push_back(output::ProbeFile::relative_path(probe.name));
     const auto frames = [&](const std::string& folder) {
         names.push_back(folder + series_file);
-        for (const model::Body& body : plan.model.bodies) names.push_back(folder + "frames/" + body.name + "_*.vtu");
-        if (folder.empty())
-            for (const model::Body& body : plan.model.bodies)
+        for (const model::Body& body : plan.model.bodies) {
+            names.push_back(folder + "frames/" + body.name + "_*.vtu");
+            if (folder.empty()) // all processes write these together
                 names.insert(names.end(),
                              {"frames/" + body.name + "_*.pvtu", "frames/pieces/" + body.name + "_*_*.vtu"});
+        }
         for (const auto& pair : plan.model.pairs)
             for (const char* side : {".slave", ".master"})
                 names.push_back(folder + "frames/" + pair->name() + side + "_*.vtp");
@@ -157,8 +158,8 @@ void RunRecorder::remove_what_is_written_anew() {
     if (frames_) kept.insert(series_file);
     for (const output::SeriesEntry& frame : settings_.from->frames) {
         kept.insert(frame.file);
-        const std::vector<std::string> pieces = output::pieces_of(directory(), frame.file);
-        kept.insert(pieces.begin(), pieces.end());
+        std::ranges::copy_if(settings_.folder->files(), std::inserter(kept, kept.end()),
+                             [&](const std::string& file) { return output::Frames::is_piece_of(file, frame.file); });
     }
     settings_.folder->claim(rows);
     settings_.folder->remove_all_but(kept);
@@ -188,9 +189,9 @@ void RunRecorder::write_initial_frame() {
     const scene::Output& out = scene_.output;
     model::ContactEvaluations contact;
     const bool shows_contact = !out.slave_fields.empty() || !out.master_fields.empty();
-    const bool reads_it = settings_.frames.empty() || std::ranges::any_of(out.body_fields, [](const std::string& name) {
-                              return name.starts_with("contact_");
-                          });
+    const bool reads_it =
+        settings_.frames_folder.empty() ||
+        std::ranges::any_of(out.body_fields, [](const std::string& name) { return name.starts_with("contact_"); });
     if (shows_contact && reads_it)
         for (model::ContactEvaluation& evaluation :
              contact = model::contact_evaluations(model::pairs_of(stepper_.state().contact)))

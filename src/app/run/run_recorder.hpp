@@ -38,7 +38,7 @@ public:
         const output::CheckpointFile* from = nullptr; ///< what the run goes on from; null: it begins
         const Interruption* interruption = nullptr;   ///< null: nothing to heed
         Derivatives* derivatives = nullptr;           ///< whose runs the stepper leads; null: none
-        std::filesystem::path frames{}; ///< where frames go, of a process that is not the first; empty: into the folder
+        std::filesystem::path frames_folder{}; ///< of a process that is not the first; empty: frames go into the folder
     };
 
     /// Removes what an earlier run left in the folder, writes the resolved scene and the state before the first step; or

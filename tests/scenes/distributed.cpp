@@ -110,7 +110,7 @@ TEST_F(DistributedRun, SharesFiniteStrain) {
 
 /// With a plastic one, whose histories all processes keep.
 TEST_F(DistributedRun, SharesPlasticity) {
-    const std::string plastic = "'{elastic_plastic: {E: 100 MPa, nu: 0.3, yield_stress: 0.1 MPa}}'";
+    const std::string plastic = "'{elastic_plastic: {E: 100 MPa, nu: 0.3, yield_stress: 0.05 MPa}}'";
     const std::string fields = " --set 'output.body_fields=[plastic_strain, stress]'";
     for (const int ranks : {1, 3})
         ASSERT_EQ(with_ranks(ranks, scene,

@@ -34,8 +34,8 @@ struct Sum {
     double value = 0, sizes = 0; ///< so far; of what was added
 };
 
-/// The most that the first `steps` steps may add to one of the derivatives, over the derivative so far. That solutions grow backwards by no
-/// more than they have done so far is an assumption.
+/// The most that the steps before one may add to a derivative, over the derivative so far. That solutions grow backwards by no more than
+/// they have done so far is an assumption.
 /// @param w       of the step after them
 /// @param before  (numbers) sums of the sizes of changes in those steps
 double still_to_come(const Sizes& w, double growth, const std::vector<Sizes>& before, const std::vector<Sum>& sums) {
@@ -243,7 +243,8 @@ std::vector<std::vector<double>> AdjointRun::gradients(const std::vector<FinalQu
             const double tolerance = quantities[q].reactions.empty() ? linear_tolerance : linear_tolerance_of_reactions;
             double part = 1; // that this step may add
             if (!last && !now->dynamics) part = still_to_come(solved[q], growth, before[n + 1], sums[q]);
-            if (!equilibrium.solve_transposed(by, w, of, std::clamp(tolerance / part, tolerance, loosest))) return {};
+            const double here = part > tolerance / loosest ? std::max(tolerance, tolerance / part) : loosest;
+            if (!equilibrium.solve_transposed(by, w, of, here)) return {};
             add(q, -1, w, step, &Step::Change::residual);
             const Sizes size = sizes_of(of);
             if (!last) growth = std::max(growth, growth_of(solved[q], size));

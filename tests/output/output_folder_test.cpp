@@ -121,6 +121,14 @@ TEST_F(Folder, RefusesToOverwriteWhatItDidNotWrite) {
     EXPECT_EQ(content(folder / "steps.csv"), "mine");
 }
 
+TEST_F(Folder, APatternHasAsManyNumbersAsStars) {
+    run({"history.csv"});
+    write(folder / "frames/pieces/a_00003_12.vtu", "mine");
+    EXPECT_THAT(refusal(Entry::careful, {"frames/pieces/a_*_*.vtu"}), HasSubstr("a_00003_12.vtu"));
+    for (const char* other : {"frames/pieces/a_*.vtu", "frames/pieces/a_*_*_*.vtu", "frames/pieces/b_*_*.vtu"})
+        EXPECT_EQ(refusal(Entry::careful, {"history.csv", other}), "") << other;
+}
+
 TEST_F(Folder, ForcedOverwritesAndDeletesNothing) {
     for (const char* mine : {"history.csv", "notes.txt", "frames/a_00000.vtu", "frames/a_00001.vtu"})
         write(folder / mine, "mine");

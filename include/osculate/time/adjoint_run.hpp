@@ -17,7 +17,7 @@ struct FinalQuantity {
 ///     J_n^T w_n = dq/dz_n - (dF_{n+1}/dz_n)^T w_{n+1}
 ///     dq/dp = - sum_n w_n . dF_n/dp
 /// so that one solution a step serves all numbers p. In statics w shrinks by a factor in each step back where bodies slide: steps that add
-/// nothing that counts are left out, and systems with small solutions are solved to the error of the others. dF_n/dp is a
+/// nothing that counts are left out, and systems of steps that may add little are solved to the error of the others. dF_n/dp is a
 /// difference of residuals of two changed models, with p - dp and p + dp, at the unknowns of the run; its error is of order dp^2.
 /// In dynamics a state has velocities and accelerations, too, which are affine in the displacements, and all stages are dynamic.
 /// Bodies have a symmetric stiffness and no memory but that of temperatures. How patches are fitted anew is taken as given.

@@ -1,4 +1,4 @@
-#include "contact/past_end.hpp"
+#include "osculate/contact/past_end.hpp"
 
 #include <algorithm>
 
@@ -34,7 +34,8 @@ void PastEnd::evaluate(const Vec3& s, const FacetHit& hit, const PairPositions& 
     point.found = point.behind = false;
     point.facet = hit.facet;
     point.trace.reset();
-    facets_->evaluate(s, onto_facet(hit), at.vertices, end.facet);
+    end.hit = onto_facet(hit);
+    facets_->evaluate(s, end.hit, at.vertices, end.facet);
     if (!end.facet.found) {
         point.behind = end.facet.behind;
         point.gap = end.facet.gap;
@@ -88,7 +89,7 @@ void PastEnd::vary(const Vec3& s, const PairPositions& at, const Point& end, con
     const auto columns = 3 + 3 * static_cast<Index>(point.nodes.size());
     ContactVariation over_facet, of_side;
     over_facet.form = of_side.form = VariationForm::gap;
-    facets_->vary(s, onto_facet(end.closest), at.vertices, end.facet, over_facet);
+    facets_->vary(s, end.hit, at.vertices, end.facet, over_facet);
     at.master.vary(end.beside, onto_surface(end.closest, end.facet.gap), at.vertices, end.side, of_side);
 
     // ds' = dc + n_F dg_F + g_F dn_F

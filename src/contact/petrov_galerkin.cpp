@@ -1,8 +1,8 @@
 #include "contact/facet_rule.hpp"
-#include "contact/past_end.hpp"
 #include "osculate/contact/discretisation.hpp"
 #include "osculate/contact/dual_weights.hpp"
 #include "osculate/contact/master_filter.hpp"
+#include "osculate/contact/past_end.hpp"
 #include "osculate/core/parallel.hpp"
 
 #include <Eigen/Geometry>

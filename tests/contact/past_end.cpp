@@ -1,5 +1,7 @@
 /// Slave nodes past the end of a curved master.
 
+#include "osculate/contact/past_end.hpp"
+
 #include "contact/pairing.hpp"
 
 namespace osculate::contact::OSCULATE_THIS_FILE {
@@ -69,6 +71,41 @@ TEST_P(PastEnd, VariesAsItsDifferencesSay) {
         ++tried;
     }
     EXPECT_GE(tried, 6);
+}
+
+/// A diverged iterate: on such a facet Newton's method finds a foot from some starts only.
+TEST(PastEndOfAWarpedFacet, VariesWithTheStartOfItsEvaluation) {
+    const std::vector<Vec3> x{{-5.4157043546402441, -5.1869859305111579, -4.7349265767297695},
+                              {-3.9809992350759806, -6.8549849185452771, -3.8772838355737944},
+                              {8.1490233390705242, 7.6042325698138526, 1.1026632327467831},
+                              {9.5236322189038844, 12.574104797975338, 5.5256563904572573}};
+    const Vec3 s{94.299463921563643, 7.0879431997363049, 18.501366209219615};
+    mesh::Facet facet;
+    facet.count = 4;
+    for (int c = 0; c < 4; ++c) facet.nodes[c] = c;
+    const mesh::HalfEdgeSurface surface({facet}, x, mesh::default_feature_angle);
+    const auto master = make_facets_surface(surface);
+    const FacetSearch search(surface);
+    const std::vector<Vec3> slaves{s};
+    const PairPositions at{*master, search, slaves, x};
+    FacetHit hit = search.closest_on(0, s, x);
+    ContactPoint elsewhere;
+    FacetHit inside = hit;
+    inside.beyond = 0;
+    master->evaluate(s, inside, x, elsewhere);
+    ASSERT_FALSE(elsewhere.found);
+    hit.u = {-0.69072331969483569, 1};
+
+    const contact::PastEnd end(surface);
+    contact::PastEnd::Point place;
+    ContactPoint point;
+    end.evaluate(s, hit, at, place, point);
+    ASSERT_TRUE(place.facet.found);
+    ASSERT_TRUE(point.found);
+    ContactVariation variation;
+    end.vary(s, at, place, point, variation);
+    EXPECT_EQ(variation.dg.cols(), 15);
+    EXPECT_TRUE(variation.dg.allFinite());
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, PastEnd,

@@ -5,6 +5,7 @@
 #include "osculate/contact/radial_basis.hpp"
 #include "osculate/contact/search.hpp"
 #include "osculate/core/choices.hpp"
+#include "osculate/core/error.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <memory>
@@ -59,6 +60,7 @@ public:
         (void)point;
         ContactPoint again;
         evaluate(s, hit, x, again, &variation);
+        require(again.found, "MasterSurface: no point where there was one");
     }
     /// Whether a slave point between two facets that share a vertex may have different gaps above them. Points that
     /// alternate between such facets are latched to one of them.

@@ -20,6 +20,7 @@ public:
 
     /// A slave point past the end.
     struct Point {
+        FacetHit hit;        ///< from which its point over the facet was sought
         FacetHit closest;    ///< c
         int edge = -1;       ///< of the facet, on which c is, from its corner of this number; -1: at no edge's inside
         int corner = -1;     ///< of the facet, at which c is; -1: at none

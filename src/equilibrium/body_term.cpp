@@ -39,7 +39,10 @@ bool BodyTerm::update_stiffness(const Iterate& at) {
 }
 
 void BodyTerm::add_product(const Direction& d, Field& f, VectorRef) {
-    bodies_.tangent().multiply_add(d.u, f, threads_);
+    if (d.slices != nullptr)
+        bodies_.tangent().multiply_add(d.slices->nodes(), d.u, f, threads_);
+    else
+        bodies_.tangent().multiply_add(d.u, f, threads_);
 }
 
 void BodyTerm::add_transposed(const Weights& of, Weights& by) const {

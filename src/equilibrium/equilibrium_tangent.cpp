@@ -19,6 +19,30 @@ bool loose(const model::Body& body, const Field& X, const Constraints& constrain
             if (constraints.constraint(node, k) != nullptr) hold.hold(X[node], constraints.frame(node).col(k));
     return hold.free() > 0;
 }
+
+/// For products and preconditioner, on one of the processes that share the model.
+std::unique_ptr<linear::UnknownSlices> make_slices(const model::Model& model, const linear::Constraints& constraints,
+                                                   const linear::Unknowns& unknowns,
+                                                   const model::ContactEvaluations& contact,
+                                                   const linear::Dependence* dependence) {
+    std::vector<Index> read, hubs;
+    const auto add = [&](const std::vector<Index>& nodes) { read.insert(read.end(), nodes.begin(), nodes.end()); };
+    for (const Index row : model.share->nodes_of(model.share->ranks().rank())) // others have its pattern
+        for (Index k = model.K.row_begin(row); k < model.K.row_end(row); ++k)
+            if (!model.share->owns(model.K.column(k))) read.push_back(model.K.column(k));
+    for (const model::ContactEvaluation& evaluation : contact) {
+        const model::ContactPair& pair = evaluation.pair();
+        add(pair.slaves().node);
+        add(pair.master_nodes());
+        if (pair.slaves().edges) add(pair.slaves().edges->others);
+    }
+    if (dependence != nullptr)
+        for (const Index node : dependence->nodes())
+            for (const linear::Dependence::Carrier& carrier : dependence->carriers(node)) read.push_back(carrier.node);
+    for (const model::RigidBody& rigid : model.rigid) hubs.insert(hubs.end(), {rigid.reference, rigid.rotation()});
+    add(hubs);
+    return std::make_unique<linear::UnknownSlices>(*model.share, constraints, unknowns, read, hubs);
+}
 } // namespace
 
 EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::Constraints& constraints,
@@ -52,6 +76,8 @@ EquilibriumTangent::EquilibriumTangent(const model::Model& model, const linear::
             choice.multigrid ? solve::make_multigrid(model::nodal_unknowns(model, constraints_), threads) : nullptr,
             std::move(undeformed));
     }
+    if (model.share && preconditioner_)
+        slices_ = make_slices(model, constraints_, unknowns_, contact_.evaluations(), dependence_);
     if (choice.reduced)
         reduced_ = std::make_unique<linear::ReducedGmres>(constraints_, unknowns_, *preconditioner_, threads);
     if (!choice.condensed) return;
@@ -189,7 +215,7 @@ solve::FactorStatus EquilibriumTangent::refresh() {
 }
 
 void EquilibriumTangent::precondition(const ConstVectorRef& r, VectorRef z) {
-    preconditioner_->apply(unknowns_, r, z);
+    preconditioner_->apply(unknowns_, r, z, slices_.get());
 }
 
 void EquilibriumTangent::update_stiffness() {
@@ -206,23 +232,39 @@ void EquilibriumTangent::linearise() {
 
 void EquilibriumTangent::multiply(const ConstVectorRef& x, VectorRef y) {
     Field &u = product_u_, &f = product_f_;
-    u.reset(at_.u.size());
-    f.reset(at_.u.size());
-    for (Index node = 0; node < constraints_.nodes(); ++node) {
+    const auto unpack = [&](Index node) {
         Vec3 local = Vec3::Zero();
         for (int k = 0; k < 3; ++k)
             if (const Index e = constraints_.equation(node, k); e != linear::Constraints::held) local(k) = x[e];
         u[node] = constraints_.to_global(node, local);
-    }
-    if (dependence_ != nullptr) dependence_->move(u);
-    for (Term* term : terms_) term->add_product({u, x}, f, y);
-    if (dependence_ != nullptr) dependence_->fold(f);
-    for (Index node = 0; node < constraints_.nodes(); ++node) {
+    };
+    const auto pack = [&](Index node) {
         const Vec3 local = constraints_.to_local(node, f[node]);
         for (int k = 0; k < 3; ++k)
             if (const Index row = unknowns_.equilibrium_row(node, k); row != linear::Constraints::held)
                 y[row] = local(k);
+    };
+    if (slices_ == nullptr || u.empty()) {
+        u.reset(at_.u.size());
+        f.reset(at_.u.size());
     }
+    if (slices_ == nullptr) {
+        for (Index node = 0; node < constraints_.nodes(); ++node) unpack(node);
+    } else {
+        const auto begin = [&](Index node) {
+            unpack(node);
+            f[node].setZero();
+        };
+        for (const Index node : slices_->nodes()) begin(node);
+        for (const Index node : slices_->ghosts()) begin(node);
+    }
+    if (dependence_ != nullptr) dependence_->move(u);
+    for (Term* term : terms_) term->add_product({u, x, slices_.get()}, f, y);
+    if (dependence_ != nullptr) dependence_->fold(f);
+    if (slices_ == nullptr)
+        for (Index node = 0; node < constraints_.nodes(); ++node) pack(node);
+    else
+        for (const Index node : slices_->nodes()) pack(node);
 }
 
 std::optional<solve::Gmres::Result> EquilibriumTangent::solve_with(const ConstVectorRef& b, VectorRef x,

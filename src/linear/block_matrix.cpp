@@ -84,11 +84,19 @@ template <class Row> void BlockMatrix::add_rows(Field& y, int threads, Row&& row
     y.add(1, product);
 }
 
+Vec3 BlockMatrix::product(Index row, const Field& x) const {
+    Vec3 sum = Vec3::Zero();
+    for (Index k = row_start_[row]; k < row_start_[row + 1]; ++k) sum.noalias() += block_[k] * x[column_[k]];
+    return sum;
+}
+
 void BlockMatrix::multiply_add(const Field& x, Field& y, int threads) const {
-    add_rows(y, threads, [&](Index row) {
-        Vec3 sum = Vec3::Zero();
-        for (Index k = row_start_[row]; k < row_start_[row + 1]; ++k) sum.noalias() += block_[k] * x[column_[k]];
-        return sum;
+    add_rows(y, threads, [&](Index row) { return product(row, x); });
+}
+
+void BlockMatrix::multiply_add(std::span<const Index> rows, const Field& x, Field& y, int threads) const {
+    parallel_for(threads, static_cast<Index>(rows.size()), [&](Index begin, Index end) {
+        for (Index k = begin; k < end; ++k) y[rows[k]] += product(rows[k], x);
     });
 }
 

@@ -69,13 +69,22 @@ double ContactPreconditioner::effort() const {
     return multigrid_ ? of_multigrid + multigrid_->cycles_to_couple() : std::min(least + solver_->effort(), most);
 }
 
-void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const {
+void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z,
+                                  UnknownSlices* slices) const {
     const auto equilibrium_rows = [&](Index node, auto&& each) {
         for (int k = 0; k < 3; ++k)
             if (const Index e = constraints_.equation(node, k); e != Constraints::held) each(e, k);
     };
-    for (Index node = 0; node < constraints_.nodes(); ++node)
+    const auto take = [&](Index node) {
         equilibrium_rows(node, [&](Index e, int k) { load_(e) = r[rows.equilibrium_row(node, k)]; });
+    };
+    if (slices == nullptr) {
+        for (Index node = 0; node < constraints_.nodes(); ++node) take(node);
+    } else {
+        for (const Index node : slices->nodes()) take(node);
+        for (const Index node : slices->ghosts())
+            take(node); // filled in for hubs; nobody reads what contact adds to others
+    }
     const auto add = [&](Index node, const Vec3& force) {
         const Vec3 local = constraints_.to_local(node, force);
         equilibrium_rows(node, [&](Index e, int k) { load_(e) += local(k); });
@@ -97,6 +106,7 @@ void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r,
         multigrid_->cycle(load_.data(), z.data());
     else
         solver_->solve(load_.data(), z.data());
+    if (slices != nullptr) slices->fill_unknowns(z.data());
     const auto moved = [&](Index node) {
         Vec3 local = Vec3::Zero();
         equilibrium_rows(node, [&](Index e, int k) { local(k) = z[e]; });

@@ -36,6 +36,11 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
         return e == linear::Constraints::held ? -1 : e;
     };
     const std::vector<Index> group = joined_groups(model);
+    std::size_t free = 0;
+    for (Index node = 0; node < model.nodes(); ++node) free += constraints.free_components(node) > 0 ? 1 : 0;
+    for (auto* list : {&result.node, &result.body, &result.frame_number}) list->reserve(free);
+    result.arm.reserve(free);
+    result.equation.reserve(3 * free);
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const Body& body = model.bodies[b];
         const Index last = body.first_node + body.nodes();
@@ -44,7 +49,9 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
             if (constraints.free_components(node) == 0) continue;
             result.node.push_back(node);
             result.body.push_back(group[b]);
-            result.frame.push_back(constraints.frame(node));
+            const Mat3& frame = constraints.frame(node);
+            if (frame != result.frames.back() && !frame.isIdentity(0)) result.frames.push_back(frame);
+            result.frame_number.push_back(frame.isIdentity(0) ? 0 : static_cast<Index>(result.frames.size()) - 1);
             result.arm.push_back((model.X[node] - centre) / radius);
             for (int k = 0; k < 3; ++k) result.equation.push_back(equation(node, k));
         }
@@ -56,6 +63,7 @@ solve::NodalUnknowns nodal_unknowns(const Model& model, const linear::Constraint
                     {node, {equation(node, 0), equation(node, 1), equation(node, 2)}, constraints.frame(node)});
     std::ranges::sort(result.hubs, {}, &solve::NodalUnknowns::Hub::node);
     if (!model.share) return result;
+    result.owner.reserve(result.node.size());
     for (const Index node : result.node) result.owner.push_back(model.share->owner()[static_cast<std::size_t>(node)]);
     for (const auto& pair : model.pairs) {
         result.coupled.insert(result.coupled.end(), pair->slaves().node.begin(), pair->slaves().node.end());

@@ -33,12 +33,8 @@ Exchange::Exchange(const std::vector<Index>& own, const std::vector<Index>& ghos
         for (Index& number : list) number = static_cast<Index>(std::ranges::lower_bound(own, number) - own.begin());
 }
 
-namespace {
-
-constexpr int tag = 26;
-
-/// Sends buffers to those that have something to receive, and receives from those that send.
 void send_and_receive(const std::vector<std::vector<double>>& out, std::vector<std::vector<double>>& in) {
+    constexpr int tag = 26;
     std::vector<MPI_Request> open;
     for (std::size_t r = 0; r < in.size(); ++r)
         if (!in[r].empty())
@@ -50,8 +46,6 @@ void send_and_receive(const std::vector<std::vector<double>>& out, std::vector<s
                       MPI_COMM_WORLD, &open.emplace_back());
     MPI_Waitall(static_cast<int>(open.size()), open.data(), MPI_STATUSES_IGNORE);
 }
-
-} // namespace
 
 void Exchange::fill(double* x, int width) const {
     if (alone()) return;

@@ -36,6 +36,9 @@ template <class Number>
 
 [[nodiscard]] double largest_over_ranks(double own);
 
+/// Sends lists to those that have something to receive, and receives from those that send, in lists of the lengths that come.
+void send_and_receive(const std::vector<std::vector<double>>& out, std::vector<std::vector<double>>& in);
+
 /// Copies of what others own, behind one's own. Nothing is sent by a process that is alone.
 class Exchange {
 public:

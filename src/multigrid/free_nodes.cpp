@@ -45,7 +45,7 @@ void FreeNodes::add(const NodalUnknowns& unknowns, Index place) {
     bool whole = true;
     for (Index k = 0; k < 3; ++k)
         if (unknowns.equation[3 * static_cast<std::size_t>(place) + static_cast<std::size_t>(k)] >= 0) {
-            const Vec3 axis = unknowns.frame[place].col(k);
+            const Vec3 axis = unknowns.frame(place).col(k);
             projection += axis * axis.transpose();
         } else
             whole = false;

@@ -70,7 +70,6 @@ public:
         make_cycle();
         for (Vector* v : {&b_, &x_, &other_}) v->setZero(3 * nodes.with_copies());
         c_.setZero(Prolongation::modes * P_->with_copies());
-        order_equations();
     }
 
     void take(const NodalMatrix& bodies) override {
@@ -125,15 +124,14 @@ public:
         for_own_nodes([&](Index i, Index place) {
             Vec3 local = Vec3::Zero();
             for_equations(place, [&](Index k, SparseIndex e) { local(k) = b[e]; });
-            b_.segment<3>(3 * i) = unknowns_.frame[place] * local;
+            b_.segment<3>(3 * i) = unknowns_.frame(place) * local;
         });
         cycle_on_nodes(b_, other_);
         hubs_->correct(b, x, b_, other_);
         for_own_nodes([&](Index i, Index place) {
-            const Vec3 local = unknowns_.frame[place].transpose() * other_.segment<3>(3 * i);
+            const Vec3 local = unknowns_.frame(place).transpose() * other_.segment<3>(3 * i);
             for_equations(place, [&](Index k, SparseIndex e) { x[e] = local(k); });
         });
-        replicate(x);
     }
     [[nodiscard]] Index cycles_to_couple() const override { return hubs_ ? hubs_->cycles() : 0; }
 
@@ -166,36 +164,6 @@ private:
                 e >= 0)
                 each(k, e);
     }
-    /// Equations of rank 0, of rank 1, ...
-    void order_equations() {
-        if (alone_) return;
-        const std::size_t ranks = nodes_->exchange().ranks();
-        std::vector<std::vector<SparseIndex>> of_rank(ranks);
-        for (std::size_t place = 0; place < unknowns_.node.size(); ++place)
-            for_equations(static_cast<Index>(place), [&](Index, SparseIndex e) {
-                of_rank[static_cast<std::size_t>(unknowns_.owner[place])].push_back(e);
-            });
-        equations_.clear();
-        count_.clear();
-        begin_.assign(1, 0);
-        for (const auto& list : of_rank) {
-            equations_.insert(equations_.end(), list.begin(), list.end());
-            count_.push_back(static_cast<int>(list.size()));
-            begin_.push_back(begin_.back() + count_.back());
-        }
-    }
-    /// Takes what other processes have found for their equations.
-    void replicate(double* x) const {
-        if (alone_) return;
-        int rank = 0;
-        MPI_Comm_rank(comm_, &rank);
-        const auto r = static_cast<std::size_t>(rank);
-        std::vector<double> own, all(equations_.size());
-        for (int k = begin_[r]; k < begin_[r + 1]; ++k) own.push_back(x[equations_[static_cast<std::size_t>(k)]]);
-        MPI_Allgatherv(own.data(), count_[r], MPI_DOUBLE, all.data(), count_.data(), begin_.data(), MPI_DOUBLE, comm_);
-        for (std::size_t k = 0; k < all.size(); ++k) x[equations_[k]] = all[k];
-    }
-
     /// x += P of the coarser grids' answer to a residual.
     void correct(const Vector& residual, Vector& x) {
         const Index own = coarse_->rows();
@@ -381,10 +349,8 @@ private:
     std::vector<Mat> restriction_, half_way_; ///< their transposes, and products A P; of several processes alone
     PC cycle_ = nullptr;
     Vec coarse_residual_ = nullptr, correction_ = nullptr;
-    Vector b_, x_, other_;               ///< (3 n) with copies
-    Vector c_;                           ///< of aggregates, with copies
-    std::vector<SparseIndex> equations_; ///< see order_equations(); of several processes alone
-    std::vector<int> count_, begin_;     ///< of each rank in these
+    Vector b_, x_, other_; ///< (3 n) with copies
+    Vector c_;             ///< of aggregates, with copies
 };
 
 class MpiRanks final : public Ranks {
@@ -411,6 +377,10 @@ public:
         std::partial_sum(sizes.begin(), sizes.end() - 1, begin.begin() + 1);
         MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all, sizes.data(), begin.data(),
                        MPI_DOUBLE, MPI_COMM_WORLD);
+    }
+
+    void exchange(const std::vector<std::vector<double>>& out, std::vector<std::vector<double>>& in) override {
+        send_and_receive(out, in);
     }
 
     [[nodiscard]] bool agree_on_end(int code, double patience) override {

@@ -242,7 +242,8 @@ struct KinsolSolver::Impl {
             }
             const ScopedTimer timer(timings, Part::solve);
             const auto on_all_unknowns = [&] {
-                if (krylov == nullptr) krylov = std::make_unique<Gmres>(size, ranks, threads);
+                if (krylov == nullptr || krylov->slices() != problem->slices())
+                    krylov = std::make_unique<Gmres>(size, problem->slices(), threads);
                 return krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
             };
             const std::optional<Gmres::Result> own =

@@ -1,5 +1,4 @@
-#include "osculate/core/ranks.hpp"
-
+#include "osculate/core/halo.hpp"
 #include "support/thread_ranks.hpp"
 
 #include <gtest/gtest.h>
@@ -33,6 +32,24 @@ TEST(Share, SeesASingleBit) {
         EXPECT_TRUE(share.agree(field));
         if (ranks->rank() == 1) field[4].y() = std::nextafter(field[4].y(), 0);
         EXPECT_FALSE(share.agree(field));
+    });
+}
+
+TEST(Halo, TakesWhatItReadsFromOwners) {
+    support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+        // the first reads two numbers of the second and one of the last; the second none; the last one of the first
+        const std::vector<std::vector<std::vector<Index>>> wanted{{{}, {5, 3}, {8}}, {{}, {}, {}}, {{1}, {}, {}}};
+        const auto rank = static_cast<std::size_t>(ranks->rank());
+        Halo halo(*ranks, wanted[rank]);
+        for (const double size : {1.0, 10.0}) {
+            std::vector<double> x(9, -1), expected;
+            for (std::size_t i = 3 * rank; i < 3 * rank + 3; ++i) x[i] = size * static_cast<double>(i);
+            expected = x;
+            for (const auto& list : wanted[rank])
+                for (const Index i : list) expected[static_cast<std::size_t>(i)] = size * i;
+            halo.fill(x.data());
+            EXPECT_EQ(x, expected);
+        }
     });
 }
 

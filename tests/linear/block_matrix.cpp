@@ -125,6 +125,10 @@ TEST(BlockMatrix, MultipliesAsOneWhereProcessesShareItsRows) {
             EXPECT_LT((y[i] - expected[i]).norm(), 1e-14);
             EXPECT_LT((relative[i] - expected_relative[i]).norm(), 1e-14);
         }
+        Field of_own(9, Vec3(1, 2, 3));
+        own.multiply_add(share->nodes_of(ranks->rank()), x, of_own, 1);
+        for (Index i = 0; i < 9; ++i)
+            EXPECT_LT((of_own[i] - (share->owns(i) ? expected[i] : Vec3(1, 2, 3))).norm(), 1e-14);
         EXPECT_EQ(own.diagonal(), whole.diagonal());
         const BlockMatrix all = gathered(own);
         EXPECT_EQ(all.share(), nullptr);

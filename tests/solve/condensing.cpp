@@ -1,5 +1,6 @@
 /// Inverses on some of the unknowns, dense factors, GMRES on its own.
 
+#include "osculate/core/slices.hpp"
 #include "osculate/solve/dense_lu.hpp"
 #include "osculate/solve/direct_solver.hpp"
 #include "osculate/solve/gmres.hpp"
@@ -188,6 +189,39 @@ TEST(Gmres, HasTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
+/// Every n-th number is a process' own. What is not filled in is as wrong as can be.
+class EveryNth final : public Slices {
+public:
+    EveryNth(Ranks& ranks, Index size) : ranks_(ranks), size_(size) {
+        for (Index i = ranks.rank(); i < size; i += ranks.count()) own_.push_back(i);
+    }
+    [[nodiscard]] Ranks& ranks() const override { return ranks_; }
+    [[nodiscard]] const std::vector<Index>& own() const override { return own_; }
+    void fill_unknowns(double* x) override { fill(x); }
+    void fill_rows(double* r) override { fill(r); }
+    void gather(std::span<const double> own_values, double* x) const override {
+        const auto count = static_cast<Index>(ranks_.count());
+        std::vector<int> lengths;
+        for (Index r = 0; r < count; ++r)
+            lengths.push_back(static_cast<int>(r < size_ ? (size_ - r - 1) / count + 1 : 0));
+        std::vector<double> all(static_cast<std::size_t>(size_));
+        ranks_.gather(own_values, lengths, all.data());
+        const double* from = all.data();
+        for (Index r = 0; r < count; ++r)
+            for (Index i = r; i < size_; i += count) x[i] = *from++;
+    }
+
+private:
+    void fill(double* x) {
+        std::vector<double> values;
+        for (const Index i : own_) values.push_back(x[i]);
+        gather(values, x);
+    }
+    Ranks& ranks_;
+    Index size_;
+    std::vector<Index> own_;
+};
+
 TEST(Gmres, SharesItsDirectionsAmongProcesses) {
     Random random(9);
     const Matrix A = random_matrix(50, 4, random), M = Matrix(A.diagonal().cwiseInverse().asDiagonal());
@@ -200,11 +234,22 @@ TEST(Gmres, SharesItsDirectionsAmongProcesses) {
     Vector alone(50);
     const auto expected = Gmres(50).solve(by(A), by(M), b.data(), alone.data(), 1e-9);
     ASSERT_TRUE(expected.converged);
+    const auto own_alone = [](const LinearMap& map, const Slices& slices) -> LinearMap {
+        return [&map, &slices](const double* x, double* y) {
+            Vector all(50);
+            map(x, all.data());
+            Eigen::Map<Vector>(y, 50).setConstant(1e300);
+            for (const Index i : slices.own()) y[i] = all(i);
+        };
+    };
     for (const int count : {1, 3, 60}) { // more processes than numbers, too
         std::vector<Vector> found(static_cast<std::size_t>(count), Vector::Zero(50));
         osculate::support::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
             Vector& x = found[static_cast<std::size_t>(ranks->rank())];
-            const auto result = Gmres(50, ranks.get()).solve(by(A), by(M), b.data(), x.data(), 1e-9);
+            EveryNth slices(*ranks, 50);
+            const LinearMap times = by(A), nearly = by(M);
+            const auto result =
+                Gmres(50, &slices).solve(own_alone(times, slices), own_alone(nearly, slices), b.data(), x.data(), 1e-9);
             EXPECT_TRUE(result.converged);
             EXPECT_NEAR(result.iterations, expected.iterations, 1);
         });

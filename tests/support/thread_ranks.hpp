@@ -14,9 +14,10 @@ namespace osculate::support {
 /// Calls body(ranks) on `count` threads that are processes to each other.
 inline void on_ranks(int count, const std::function<void(std::shared_ptr<Ranks>)>& body) {
     struct Shared {
-        explicit Shared(int n) : all_here(n), own(static_cast<std::size_t>(n)) {}
+        explicit Shared(int n) : all_here(n), own(static_cast<std::size_t>(n)), out(own.size()) {}
         std::barrier<> all_here;
         std::vector<std::vector<double>> own;
+        std::vector<const std::vector<std::vector<double>>*> out;
     };
     class ThreadRank final : public Ranks {
     public:
@@ -27,6 +28,16 @@ inline void on_ranks(int count, const std::function<void(std::shared_ptr<Ranks>)
             shared_.own[static_cast<std::size_t>(rank_)].assign(own.begin(), own.end());
             shared_.all_here.arrive_and_wait();
             for (const std::vector<double>& one : shared_.own) all = std::ranges::copy(one, all).out;
+            shared_.all_here.arrive_and_wait();
+        }
+        void exchange(const std::vector<std::vector<double>>& out, std::vector<std::vector<double>>& in) override {
+            shared_.out[static_cast<std::size_t>(rank_)] = &out;
+            shared_.all_here.arrive_and_wait();
+            for (std::size_t r = 0; r < in.size(); ++r) {
+                const std::vector<double>& from = (*shared_.out[r])[static_cast<std::size_t>(rank_)];
+                if (from.size() != in[r].size()) throw std::logic_error("another length comes than is expected");
+                in[r] = from;
+            }
             shared_.all_here.arrive_and_wait();
         }
         [[nodiscard]] bool agree_on_end(int, double) override { return true; }

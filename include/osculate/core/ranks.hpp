@@ -20,6 +20,10 @@ public:
     /// @param sizes  (count) how many each has
     /// @param all    those of rank 0, then those of rank 1, ...
     virtual void gather(std::span<const double> own, std::span<const int> sizes, double* all) = 0;
+    /// Sends a list to each rank, and gets one from each. An empty list costs no message.
+    /// @param out  (count) lists for each
+    /// @param in   (count) of the lengths that come
+    virtual void exchange(const std::vector<std::vector<double>>& out, std::vector<std::vector<double>>& in) = 0;
     /// Ends the run of all processes once each has called this, with the exit code of its own.
     /// @returns  false where some process still works after `patience` s, or has another code: nothing can be done together then
     [[nodiscard]] virtual bool agree_on_end(int code, double patience) = 0;
@@ -44,6 +48,12 @@ public:
     [[nodiscard]] Ranks& ranks() const { return *ranks_; }
     [[nodiscard]] const std::vector<int>& owner() const { return owner_; }
     [[nodiscard]] bool owns(Index node) const { return owner_[static_cast<std::size_t>(node)] == ranks_->rank(); }
+    /// Nodes of a rank, ascending.
+    [[nodiscard]] std::span<const Index> nodes_of(int rank) const {
+        const auto r = static_cast<std::size_t>(rank);
+        return std::span(by_owner_).subspan(static_cast<std::size_t>(begin_[r]),
+                                            static_cast<std::size_t>(begin_[r + 1] - begin_[r]));
+    }
     /// Takes the values of all nodes from their owners.
     void replicate(Field& field) const;
     /// Whether all processes hold the same bits.

@@ -81,6 +81,7 @@ public:
     [[nodiscard]] solve::Preconditioner* preconditioner() override {
         return tangent_.preconditions() ? &tangent_ : nullptr;
     }
+    [[nodiscard]] Slices* slices() override { return tangent_.slices(); }
     [[nodiscard]] bool factorisable() const override { return factorisable_ && !(sparing_ && multigrid_); }
     [[nodiscard]] solve::Tangent* tangent() override { return tangent_.by_products() ? &tangent_ : nullptr; }
 

@@ -50,6 +50,8 @@ public:
 
     [[nodiscard]] bool preconditions() const { return preconditioner_ != nullptr; }
     [[nodiscard]] bool by_products() const { return products_; }
+    /// Of products and preconditioner; null: there is one process, or none of these.
+    [[nodiscard]] Slices* slices() { return slices_.get(); }
     [[nodiscard]] const solve::SparseMatrix& jacobian();
 
     [[nodiscard]] solve::FactorStatus factorise() override;
@@ -61,6 +63,7 @@ public:
                                                                  double allowed) override;
     [[nodiscard]] solve::SparseIndex failing_equation() const override { return preconditioner_->failing_equation(); }
     void linearise() override;
+    /// Where there are slices, of these alone, with x filled in.
     void multiply(const ConstVectorRef& x, VectorRef y) override;
     [[nodiscard]] bool solves() const override {
         return condensed_ && !bodies_.bodies().stabilised() && condensed_->serves(contact_.bearing());
@@ -113,6 +116,7 @@ private:
     std::unique_ptr<linear::BlockMatrix> whole_;   ///< see whole_stiffness(); null: one process, or not needed yet
     std::unique_ptr<linear::SystemMatrix> matrix_; ///< null: not needed yet
     std::unique_ptr<linear::ContactPreconditioner> preconditioner_; ///< see TangentChoice; null: not used
+    std::unique_ptr<linear::UnknownSlices> slices_;                 ///< see slices()
     linear::KeptFactors made_for_,
         kept_for_;          ///< the preconditioner's factors: those that serve, those at the last commit
     solve::Wear kept_wear_; ///< at the last commit

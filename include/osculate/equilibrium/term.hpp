@@ -5,6 +5,7 @@
 #include "osculate/equilibrium/weights.hpp"
 #include "osculate/linear/contact_preconditioner.hpp"
 #include "osculate/linear/system_matrix.hpp"
+#include "osculate/linear/unknown_slices.hpp"
 #include "osculate/linear/unknowns.hpp"
 #include "osculate/model/model.hpp"
 
@@ -33,6 +34,7 @@ struct Iterate {
 struct Direction {
     const Field& u; ///< (nodes) global components
     const ConstVectorRef& z;
+    const linear::UnknownSlices* slices = nullptr; ///< whose nodes' forces and rows are wanted; null: those of all
 };
 
 /// The residual is a list of terms. Rows of equilibrium are sums of nodal forces over all terms; a term with its own

@@ -4,6 +4,7 @@
 #include "osculate/core/ranks.hpp"
 #include "osculate/solve/nodal_matrix.hpp"
 
+#include <span>
 #include <vector>
 
 namespace osculate::linear {
@@ -37,6 +38,8 @@ public:
     [[nodiscard]] solve::NodalMatrix view() const { return {row_start_, column_, block_}; }
     /// y += A x over 3-vectors per node.
     void multiply_add(const Field& x, Field& y, int threads) const;
+    /// The same at some rows alone, which this process has; on no other process.
+    void multiply_add(std::span<const Index> rows, const Field& x, Field& y, int threads) const;
     /// y_i += A_ij (x_j - x_i), which is A x if the blocks of each row sum to zero, as in a stiffness: a translation of
     /// all nodes causes no further loss of digits than in x itself.
     void multiply_add_relative(const Field& x, Field& y, int threads) const;
@@ -51,6 +54,7 @@ public:
     [[nodiscard]] bool has_row(Index node) const { return share_ == nullptr || share_->owns(node); }
 
 private:
+    [[nodiscard]] Vec3 product(Index row, const Field& x) const;
     /// y += the product whose row is row(i), y_i for those that it has.
     template <class Row> void add_rows(Field& y, int threads, Row&& row) const;
 

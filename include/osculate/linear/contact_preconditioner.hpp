@@ -3,7 +3,7 @@
 
 #include "osculate/linear/penalty_stiffness.hpp"
 #include "osculate/linear/soft_contact.hpp"
-#include "osculate/linear/unknowns.hpp"
+#include "osculate/linear/unknown_slices.hpp"
 #include "osculate/solve/direct_solver.hpp"
 #include "osculate/solve/multigrid.hpp"
 
@@ -44,7 +44,8 @@ public:
     /// Factorises for the given contacts, which include every coupling of the pairs.
     [[nodiscard]] solve::FactorStatus factorise(std::vector<SoftContact> contacts);
     /// z = P^-1 r; `rows` gives the numbering of the residual's rows.
-    void apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const;
+    /// @param slices  of which z is wanted, with r filled in; null: there is one process
+    void apply(const Unknowns& rows, const ConstVectorRef& r, VectorRef z, UnknownSlices* slices = nullptr) const;
     /// z = P^-T r: r as the unknowns are numbered, z as the rows are.
     void apply_transposed(const Unknowns& rows, const ConstVectorRef& r, VectorRef z) const;
     [[nodiscard]] solve::SparseIndex failing_equation() const { return solver_ ? solver_->failing_equation() : -1; }

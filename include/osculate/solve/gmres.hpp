@@ -7,7 +7,7 @@
 #include <memory>
 
 namespace osculate {
-class Ranks;
+class Slices;
 }
 
 namespace osculate::solve {
@@ -26,14 +26,15 @@ public:
         int iterations = 0;
     };
 
-    /// @param ranks  processes among which the directions are shared out, which take most of the memory; each has a slice of
-    ///               every one, and all get x. Null: there is one process
+    /// @param slices  of b and of directions, of which each process has its own; all get x. Maps then find what they read filled in,
+    ///                and owe the process' own rows or unknowns alone. Null: there is one process
     /// @param threads  share the work on directions; bits do not depend on them
-    explicit Gmres(Index size, Ranks* ranks = nullptr, int threads = 1);
+    explicit Gmres(Index size, Slices* slices = nullptr, int threads = 1);
     ~Gmres();
     Gmres(const Gmres&) = delete;
     Gmres& operator=(const Gmres&) = delete;
 
+    [[nodiscard]] const Slices* slices() const;
     /// Computes x with |b - A x| <= tolerance in the 2-norm.
     /// @param M  approximate inverse of A; empty: none
     [[nodiscard]] Result solve(const LinearMap& A, const LinearMap& M, const double* b, double* x, double tolerance);

@@ -11,6 +11,7 @@
 
 namespace osculate {
 class Ranks;
+class Slices;
 class Timings;
 } // namespace osculate
 
@@ -91,6 +92,8 @@ public:
     [[nodiscard]] virtual Preconditioner* preconditioner() { return nullptr; }
     /// J without its matrix, if the problem has that; jacobian() is then called only for factorisation.
     [[nodiscard]] virtual Tangent* tangent() { return nullptr; }
+    /// The processes' parts of vectors for GMRES; null: there is one process.
+    [[nodiscard]] virtual Slices* slices() { return nullptr; }
     /// Whether jacobian() may be factorised if GMRES fails.
     [[nodiscard]] virtual bool factorisable() const { return true; }
 };
@@ -135,7 +138,8 @@ struct KinsolResult {
 /// Interpretation of KINSOL's return codes: 0 and 1 converged; 2 (step test) only if the residual test holds too.
 class KinsolSolver {
 public:
-    /// @param ranks, threads  see Gmres
+    /// @param ranks    processes that solve together; null: there is one
+    /// @param threads  see Gmres
     KinsolSolver(Index size, Timings& timings, Ranks* ranks = nullptr, int threads = 1);
     ~KinsolSolver();
     KinsolSolver(const KinsolSolver&) = delete;

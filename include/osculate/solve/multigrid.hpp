@@ -15,10 +15,12 @@ struct NodalUnknowns {
     std::vector<Index> node;           ///< (n) those with a free component, ascending
     std::vector<Index> body;           ///< (n) the body of each
     std::vector<SparseIndex> equation; ///< (3 n) of each local component; -1: held
-    std::vector<Mat3> frame;           ///< (n) columns: the axes of the local components
-    std::vector<Vec3> arm;             ///< (n) from the middle of its body, over the body's size
-    std::vector<int> owner;            ///< (n) the process of each, see Share; empty: there is one process
-    std::vector<Index> coupled;        ///< nodes that may be coupled, ascending; of several processes alone
+    std::vector<Index> frame_number;   ///< (n) of each in frames
+    std::vector<Mat3> frames{
+        Mat3::Identity()};      ///< columns: the axes of the local components; first those of most nodes
+    std::vector<Vec3> arm;      ///< (n) from the middle of its body, over the body's size
+    std::vector<int> owner;     ///< (n) the process of each, see Share; empty: there is one process
+    std::vector<Index> coupled; ///< nodes that may be coupled, ascending; of several processes alone
 
     /// A node of no body that many nodes follow, as those of rigid bodies.
     struct Hub {
@@ -28,6 +30,9 @@ struct NodalUnknowns {
     };
     std::vector<Hub> hubs; ///< with a free component, ascending by node
 
+    [[nodiscard]] const Mat3& frame(Index place) const {
+        return frames[static_cast<std::size_t>(frame_number[static_cast<std::size_t>(place)])];
+    }
     /// (3 x 6) displacements of a node by motions of its body without strain, in global components, held ones included.
     [[nodiscard]] Eigen::Matrix<double, 3, 6> motions(Index place) const {
         Eigen::Matrix<double, 3, 6> rows;
@@ -52,7 +57,8 @@ public:
     /// Makes the matrices for the sum of bodies and coupling.
     /// @returns  singular: some motion of bodies without strain is not held
     [[nodiscard]] virtual FactorStatus couple(std::span<const NodalBlock> coupling) = 0;
-    /// x approximates A^-1 b: linear and symmetric in b; b and x (equations) must not overlap.
+    /// x approximates A^-1 b: linear and symmetric in b; b and x (equations) must not overlap. Where several processes share it, it
+    /// reads and sets the equations of one's own nodes, and of hubs.
     virtual void cycle(const double* b, double* x) = 0;
     /// Cycles that the last couple() took, for hubs.
     [[nodiscard]] virtual Index cycles_to_couple() const = 0;

@@ -140,7 +140,6 @@ void MasterFilter::make_rows() {
         }
         row_start_.push_back(columns_.size());
     }
-    derivatives_.assign(Q_.size(), Mat3::Zero());
     for (Stencil& stencil : stencils_)
         for (const Entry& to : stencil.entries) {
             const auto row = this->row(to.vertex);
@@ -197,6 +196,7 @@ void MasterFilter::apply(const std::vector<Vec3>& x, std::span<const Vec3> tails
 }
 
 void MasterFilter::differentiate(const std::vector<Vec3>& x) {
+    make_room();
     for (std::size_t k = 0; k < Q_.size(); ++k) derivatives_[k] = Q_[k] * Mat3::Identity();
     std::vector<Mat3> by;
     for (const Stencil& stencil : stencils_) {

@@ -46,6 +46,7 @@ public:
     void begin(const PairPositions& at, const FacetTracking& tracking, int threads) override {
         nodes_->begin(at, tracking, threads);
         weights_.begin(at);
+        if (filter_.active()) filter_.make_room();
         parallel_for(threads, weights_.facet_count(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f)
                 below_[f] =

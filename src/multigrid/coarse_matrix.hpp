@@ -27,6 +27,8 @@ public:
     [[nodiscard]] PetscInt* row_start() { return row_start_.data(); }
     [[nodiscard]] PetscInt* column() { return column_.data(); }
     [[nodiscard]] double* value() { return value_.data(); }
+    /// Forgets the values of the last couple(), once they are copied.
+    void drop_values() { value_ = {}; }
 
 private:
     using Square = Eigen::Matrix<double, Prolongation::modes, Prolongation::modes, Eigen::RowMajor>;

@@ -58,6 +58,7 @@ public:
 
     void coarsen(const NodalMatrix& undeformed) override {
         clear();
+        require(unknowns_.arm.size() == unknowns_.node.size(), "grids are chosen once where processes share them");
         const FreeNodes& nodes = nodes_.emplace(unknowns_, undeformed);
         hubs_.emplace(nodes, unknowns_).take(undeformed);
         if (nothing_free()) return;
@@ -66,10 +67,12 @@ public:
         coarse_.emplace(nodes, *P_, undeformed, threads_);
         coarse_->couple({});
         wrap_coarse();
+        if (!alone_) coarse_->drop_values();
         choose_grids();
         make_cycle();
         for (Vector* v : {&b_, &x_, &other_}) v->setZero(3 * nodes.with_copies());
         c_.setZero(Prolongation::modes * P_->with_copies());
+        if (!alone_) unknowns_.arm = {}; // of all nodes of all processes; the grids are chosen once
     }
 
     void take(const NodalMatrix& bodies) override {
@@ -91,8 +94,10 @@ public:
         if (coarse_->loose()) return FactorStatus::singular;
         if (alone_)
             changed(below_.back());
-        else
+        else {
             check(MatUpdateMPIAIJWithArray(below_.back(), coarse_->value()));
+            coarse_->drop_values();
+        }
         for (std::size_t level = below_.size(); level-- > 0;) {
             Mat& A = below_[level];
             if (level + 1 < below_.size()) {

@@ -18,10 +18,6 @@ constexpr int success = 0, no_success = -1; // names differ between SUNDIALS 6 a
 
 struct Gmres::Impl {
     Impl(Index n, Slices* shared, int threads) : size(n), slices(shared) {
-        if (slices != nullptr) {
-            whole_in.resize(static_cast<std::size_t>(size));
-            whole_out.resize(static_cast<std::size_t>(size));
-        }
         Ranks* const ranks = slices != nullptr ? &slices->ranks() : nullptr;
         const Index length = slices != nullptr ? static_cast<Index>(slices->own().size()) : size;
         x = make_gmres_vector(length, ranks, threads, context);
@@ -60,15 +56,15 @@ struct Gmres::Impl {
         const double* in = N_VGetArrayPointer(from);
         double* out = N_VGetArrayPointer(to);
         for (std::size_t k = 0; k < own.size(); ++k) whole_in[own[k]] = in[k];
-        (slices->*fill)(whole_in.data());
-        map(whole_in.data(), whole_out.data());
+        (slices->*fill)(whole_in);
+        map(whole_in, whole_out);
         for (std::size_t k = 0; k < own.size(); ++k) out[k] = whole_out[own[k]];
     }
 
     sundials::Context context;
     Index size;
     Slices* slices;
-    std::vector<double> whole_in, whole_out; ///< (size) what maps act on, where there are slices
+    double *whole_in = nullptr, *whole_out = nullptr; ///< (size) what maps act on, where there are slices
     N_Vector b = nullptr, x = nullptr;
     SUNLinearSolver linear = nullptr;
     const LinearMap *A = nullptr, *M = nullptr;
@@ -81,24 +77,23 @@ const Slices* Gmres::slices() const {
     return impl_->slices;
 }
 
+void Gmres::lend(double* in, double* out) {
+    impl_->whole_in = in;
+    impl_->whole_out = out;
+}
+
 Gmres::Result Gmres::solve(const LinearMap& A, const LinearMap& M, const double* b, double* x, double tolerance) {
     Impl& s = *impl_;
     s.A = &A;
     s.M = &M;
-    if (s.slices != nullptr) {
-        double* to = N_VGetArrayPointer(s.b);
-        for (const Index place : s.slices->own()) *to++ = b[place];
-    } else {
-        N_VSetArrayPointer(const_cast<double*>(b), s.b);
-        N_VSetArrayPointer(x, s.x);
-    }
+    N_VSetArrayPointer(const_cast<double*>(b), s.b);
+    N_VSetArrayPointer(x, s.x);
     N_VConst(0, s.x);
     SUNLinSol_SPGMRSetPrecType(s.linear, M ? SUN_PREC_RIGHT : SUN_PREC_NONE);
     SUNLinSolSetZeroGuess(s.linear, SUNTRUE);
     const int flag = SUNLinSolSetup(s.linear, nullptr) == success
                          ? SUNLinSolSolve(s.linear, nullptr, s.x, s.b, tolerance)
                          : no_success;
-    if (s.slices != nullptr) s.slices->gather({N_VGetArrayPointer(s.x), s.slices->own().size()}, x);
     return {flag == success, SUNLinSolNumIters(s.linear)};
 }
 

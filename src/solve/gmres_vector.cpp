@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <nvector/nvector_serial.h>
 #include <span>
 #include <vector>
@@ -134,6 +136,24 @@ N_Vector extended(N_Vector serial, Ranks* ranks, int threads) {
     return serial;
 }
 
+/// Of all slices.
+double largest(N_Vector v) {
+    double own = 0; // of absolute values; of what is no number, it may be anything: callers look for these first
+    for (Index i = 0; i < length_of(v); ++i) own = std::max(own, std::abs(values(v)[i]));
+    return content(v).ranks->largest(own);
+}
+double smallest(N_Vector v) {
+    double own = -std::numeric_limits<double>::max(); // of negatives
+    for (Index i = 0; i < length_of(v); ++i) own = std::max(own, -values(v)[i]);
+    return -content(v).ranks->largest(own);
+}
+double weighted_norm(N_Vector v, N_Vector weight) {
+    double sum = 0;
+    for (Index i = 0; i < length_of(v); ++i) sum += std::pow(values(v)[i] * values(weight)[i], 2);
+    content(v).ranks->sum({&sum, 1});
+    return std::sqrt(sum);
+}
+
 N_Vector clone(N_Vector of) {
     return extended(N_VClone_Serial(of), content(of).ranks, content(of).threads);
 }
@@ -141,14 +161,23 @@ N_Vector clone(N_Vector of) {
 } // namespace
 
 N_Vector make_gmres_vector(Index length, Ranks* ranks, int threads, SUNContext context) {
-    N_Vector v = extended(ranks == nullptr ? N_VMake_Serial(length, nullptr, context) : N_VNew_Serial(length, context),
-                          ranks, threads);
+    N_Vector v = extended(N_VMake_Serial(length, nullptr, context), ranks, threads);
     if (ranks != nullptr) N_VEnableFusedOps_Serial(v, SUNTRUE);
     v->ops->nvclone = clone;
     v->ops->nvdotprod = dot;
     if (ranks != nullptr) {
         v->ops->nvdotprodmulti = dots;
         v->ops->nvlinearcombination = combine;
+        v->ops->nvmaxnorm = largest;
+        v->ops->nvmin = smallest;
+        v->ops->nvwl2norm = weighted_norm;
+        // those that nobody calls would speak of a slice alone
+        v->ops->nvwrmsnorm = nullptr;
+        v->ops->nvwrmsnormmask = nullptr;
+        v->ops->nvl1norm = nullptr;
+        v->ops->nvinvtest = nullptr;
+        v->ops->nvconstrmask = nullptr;
+        v->ops->nvminquotient = nullptr;
     }
     v->ops->nvlinearsum = linear_sum;
     v->ops->nvscale = scale;

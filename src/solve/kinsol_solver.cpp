@@ -1,8 +1,10 @@
 #include "osculate/solve/kinsol_solver.hpp"
 
 #include "osculate/core/error.hpp"
+#include "osculate/core/slices.hpp"
 #include "osculate/core/timing.hpp"
 #include "osculate/solve/direct_on_first.hpp"
+#include "solve/gmres_vector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,9 +60,6 @@ struct KinsolSolver::Impl {
 #if SUNDIALS_VERSION_MAJOR >= 7
         SUNContext_ClearErrHandlers(context);
 #endif
-        z.reset(N_VNew_Serial(n, context));
-        u_scale.reset(N_VNew_Serial(n, context));
-        f_scale.reset(N_VNew_Serial(n, context));
         handle = SUNMatNewEmpty(context);
         handle->content = this;
         handle->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
@@ -88,8 +87,45 @@ struct KinsolSolver::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    [[nodiscard]] Eigen::Map<Vector> values(N_Vector of) const {
-        return {N_VGetArrayPointer(of), size};
+    [[nodiscard]] Slices* slices() const {
+        return problem->slices();
+    }
+    /// Makes vectors for the problem, unless there are such.
+    void make_vectors() {
+        if (z && shaped_for == slices()) return;
+        shaped_for = slices();
+        krylov = nullptr;
+        for (VectorPtr* v : {&z, &u_scale, &f_scale}) {
+            if (shaped_for == nullptr) {
+                v->reset(N_VNew_Serial(size, context));
+                continue;
+            }
+            const VectorPtr like(
+                make_gmres_vector(static_cast<Index>(slices()->own().size()), ranks, threads, context));
+            v->reset(N_VClone(like.get()));
+        }
+        for (Vector* whole : {&whole_in, &whole_out}) whole->setZero(shaped_for == nullptr ? 0 : size);
+    }
+    /// A whole vector, of which KINSOL has a slice.
+    void take(const ConstVectorRef& whole, N_Vector to) const {
+        double* own = N_VGetArrayPointer(to);
+        if (shaped_for == nullptr)
+            values(own) = whole;
+        else
+            for (const Index place : slices()->own()) *own++ = whole[place];
+    }
+    void give(N_Vector from, VectorRef whole) const {
+        if (shaped_for == nullptr)
+            whole = values(N_VGetArrayPointer(from));
+        else
+            slices()->gather({N_VGetArrayPointer(from), slices()->own().size()}, whole.data());
+    }
+    /// Of a vector of KINSOL's, on all processes.
+    [[nodiscard]] bool finite(N_Vector v) const {
+        const auto length = shaped_for == nullptr ? static_cast<std::size_t>(size) : slices()->own().size();
+        const double* first = N_VGetArrayPointer(v);
+        const bool own = std::all_of(first, first + length, [](double value) { return std::isfinite(value); });
+        return shaped_for == nullptr ? own : ranks->largest(own ? 0 : 1) == 0;
     }
     [[nodiscard]] Eigen::Map<Vector> values(double* of) const {
         return {of, size};
@@ -110,8 +146,10 @@ struct KinsolSolver::Impl {
 
     int residual(N_Vector at, N_Vector F) {
         return guarded([&] {
-            double* f = N_VGetArrayPointer(F);
-            const auto verdict = problem->residual(values(at), values(F));
+            double* f = shaped_for == nullptr ? N_VGetArrayPointer(F) : whole_out.data();
+            if (shaped_for != nullptr) give(at, whole_in);
+            const double* u = shaped_for == nullptr ? N_VGetArrayPointer(at) : whole_in.data();
+            const auto verdict = problem->residual(values(u), values(f));
             if (verdict == NonlinearProblem::Verdict::stop) {
                 stopped = true;
                 return fatal;
@@ -126,6 +164,7 @@ struct KinsolSolver::Impl {
                 largest = std::max(largest, std::abs(f[i]));
             }
             last_residual = largest * residual_scale;
+            if (shaped_for != nullptr) take(whole_out, F);
             return 0;
         });
     }
@@ -178,12 +217,9 @@ struct KinsolSolver::Impl {
             const bool solved = solve_by_own(b, x) ||
                                 (problem->preconditioner() != nullptr ? solve_by_krylov(b, x) : solve_directly(b, x));
             if (!solved) return fatal;
-            for (Index i = 0; i < size; ++i)
-                if (!std::isfinite(N_VGetArrayPointer(x)[i])) {
-                    singular = true;
-                    return fatal;
-                }
-            return 0;
+            if (finite(x)) return 0;
+            singular = true;
+            return fatal;
         });
     }
 
@@ -199,7 +235,9 @@ struct KinsolSolver::Impl {
         Tangent* tangent = problem->tangent();
         if (tangent == nullptr || !tangent->solves() || own_failures >= worth_trying) return false;
         const int before = tangent->factorisations();
-        const bool solved = tangent->solve(values(b), values(x), allowed_error(b));
+        require(shaped_for == nullptr, "a solver of the problem's own has no slices");
+        const bool solved =
+            tangent->solve(values(N_VGetArrayPointer(b)), values(N_VGetArrayPointer(x)), allowed_error(b));
         factorisations += tangent->factorisations() - before;
         own_failures += solved ? 0 : 1;
         return solved;
@@ -207,7 +245,13 @@ struct KinsolSolver::Impl {
 
     bool solve_directly(N_Vector b, N_Vector x) {
         const ScopedTimer timer(timings, Part::solve);
-        direct->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+        if (shaped_for == nullptr) {
+            direct->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+            return true;
+        }
+        give(b, whole_in);
+        direct->solve(whole_in.data(), whole_out.data());
+        take(whole_out, x);
         return true;
     }
 
@@ -242,12 +286,16 @@ struct KinsolSolver::Impl {
             }
             const ScopedTimer timer(timings, Part::solve);
             const auto on_all_unknowns = [&] {
-                if (krylov == nullptr || krylov->slices() != problem->slices())
-                    krylov = std::make_unique<Gmres>(size, problem->slices(), threads);
+                if (krylov == nullptr) {
+                    krylov = std::make_unique<Gmres>(size, shaped_for, threads);
+                    krylov->lend(whole_in.data(), whole_out.data());
+                }
                 return krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
             };
-            const std::optional<Gmres::Result> own =
-                problem->preconditioner()->solve_with(values(b), values(x), allowed);
+            std::optional<Gmres::Result> own;
+            if (shaped_for == nullptr)
+                own = problem->preconditioner()->solve_with(values(N_VGetArrayPointer(b)),
+                                                            values(N_VGetArrayPointer(x)), allowed);
             const Gmres::Result result = own ? *own : on_all_unknowns();
             gmres_iterations += result.iterations;
             const double digits = std::max(1.0, std::log10(std::sqrt(N_VDotProd(b, b)) / allowed));
@@ -275,6 +323,7 @@ struct KinsolSolver::Impl {
         if (Preconditioner* p = solved.preconditioner(); p != nullptr && !p->lasts()) p->wear() = {};
         failing_equation = -1;
         error = nullptr;
+        if (size > 0) make_vectors();
     }
 
     /// KINSOL keeps counters and scalings between calls; a fresh memory block per solve keeps calls independent.
@@ -303,6 +352,8 @@ struct KinsolSolver::Impl {
     Ranks* ranks;
     int threads;
     VectorPtr z, u_scale, f_scale;
+    Slices* shaped_for = nullptr; ///< vectors have its slices; null: they are whole
+    Vector whole_in, whole_out;   ///< scratch where there are slices
     SUNMatrix handle = nullptr;
     SUNLinearSolver linear = nullptr;
     void* memory = nullptr;
@@ -351,11 +402,12 @@ bool KinsolSolver::solve_linear(const Vector& b, Vector& x) {
     require(b.size() == s.size && s.linear_alone, "KinsolSolver: nothing was linearised");
     x = Vector::Zero(s.size);
     if (s.size == 0 || b.isZero(0)) return true;
-    Vector right = b;
-    const VectorPtr bs(N_VMake_Serial(s.size, right.data(), s.context)),
-        xs(N_VMake_Serial(s.size, x.data(), s.context));
+    const VectorPtr bs(N_VClone(s.z.get())), xs(N_VClone(s.z.get()));
+    s.take(b, bs.get());
+    N_VConst(0, xs.get());
     const bool done = s.linear_solve(bs.get(), xs.get()) == 0;
     if (s.error) std::rethrow_exception(s.error);
+    s.give(xs.get(), x);
     return done;
 }
 
@@ -376,8 +428,8 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
         return nothing;
     }
     const long factorisations_before = s.factorisations;
-    s.values(s.z.get()) = unknowns;
-    s.values(s.u_scale.get()) = options.unknown_scale;
+    s.take(unknowns, s.z.get());
+    s.take(options.unknown_scale, s.u_scale.get());
     N_VConst(options.residual_scale, s.f_scale.get());
     s.create(options);
 
@@ -385,9 +437,10 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     result.return_code =
         KINSol(s.memory, s.z.get(), options.line_search ? KIN_LINESEARCH : KIN_NONE, s.u_scale.get(), s.f_scale.get());
     if (s.error) std::rethrow_exception(s.error);
-    unknowns = s.values(s.z.get());
+    s.give(s.z.get(), unknowns);
     long iterations = 0;
     KINGetNumNonlinSolvIters(s.memory, &iterations);
+    KINFree(&s.memory); // its vectors are as long as the others
     result.iterations = static_cast<int>(iterations);
     result.factorisations = static_cast<int>(s.factorisations - factorisations_before);
     result.residual = s.last_residual;

@@ -26,8 +26,8 @@ public:
         int iterations = 0;
     };
 
-    /// @param slices  of b and of directions, of which each process has its own; all get x. Maps then find what they read filled in,
-    ///                and owe the process' own rows or unknowns alone. Null: there is one process
+    /// @param slices  each process has its own of b, x and directions. Maps act on whole vectors, find what they read filled in, and
+    ///                owe the process' own rows or unknowns alone. Null: there is one process
     /// @param threads  share the work on directions; bits do not depend on them
     explicit Gmres(Index size, Slices* slices = nullptr, int threads = 1);
     ~Gmres();
@@ -35,6 +35,8 @@ public:
     Gmres& operator=(const Gmres&) = delete;
 
     [[nodiscard]] const Slices* slices() const;
+    /// Room for two whole vectors (size), on which maps act where there are slices, and which must outlive this object.
+    void lend(double* in, double* out);
     /// Computes x with |b - A x| <= tolerance in the 2-norm.
     /// @param M  approximate inverse of A; empty: none
     [[nodiscard]] Result solve(const LinearMap& A, const LinearMap& M, const double* b, double* x, double tolerance);

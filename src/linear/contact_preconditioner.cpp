@@ -58,7 +58,9 @@ solve::FactorStatus ContactPreconditioner::couple(const std::vector<Spring>& spr
     changed_ = false;
     std::vector<solve::NodalBlock> blocks;
     for (const Spring& s : springs)
-        for_each_block(s, [&](Index row, Index column, const Mat3& block) { blocks.push_back({row, column, block}); });
+        for_each_block(s, [&](Index row, Index column, const Mat3& block) {
+            if (multigrid_->reads_row(row)) blocks.push_back({row, column, block});
+        });
     return multigrid_->couple(blocks);
 }
 

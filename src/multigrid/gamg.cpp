@@ -82,14 +82,20 @@ public:
         coarse_->take(bodies);
     }
 
+    [[nodiscard]] bool reads_row(Index node) const override {
+        const Index row = nodes_->number(node);
+        return (row >= 0 && row < nodes_->size()) || hubs_->has(node);
+    }
+
     FactorStatus couple(std::span<const NodalBlock> blocks) override {
         if (nothing_free()) return hubs_->eliminate(blocks, {}, {});
         Coupling coupling(*nodes_, blocks);
         const bool grown = coarse_->couple(coupling);
         fine_->couple(std::move(coupling));
         if (grown) {
+            PCDestroy(&cycle_); // it keeps what is replaced, some of it even where it gets another pattern
             wrap_coarse();
-            make_cycle(); // that of another pattern keeps some of it
+            make_cycle();
         }
         if (coarse_->loose()) return FactorStatus::singular;
         if (alone_)

@@ -27,6 +27,7 @@ public:
     /// @returns singular: some motion of hubs costs no energy
     [[nodiscard]] FactorStatus eliminate(std::span<const NodalBlock> coupling, const Operation& multiply,
                                          const Operation& cycle);
+    [[nodiscard]] bool has(Index node) const { return hub(node) >= 0; }
     /// Cycles that the last eliminate() took.
     [[nodiscard]] Index cycles() const { return cycles_; }
     /// Sets the hubs' part of an answer x (equations), from that of a right-hand side b, and takes W z_h from z = M r.

@@ -54,7 +54,10 @@ public:
     virtual void coarsen(const NodalMatrix& undeformed) = 0;
     /// Takes other values in the pattern of coarsen().
     virtual void take(const NodalMatrix& bodies) = 0;
+    /// Whether this process reads the coupling's blocks in the row of a node. @pre coarsen()
+    [[nodiscard]] virtual bool reads_row(Index node) const = 0;
     /// Makes the matrices for the sum of bodies and coupling.
+    /// @param coupling  rows that are not read may be missing
     /// @returns  singular: some motion of bodies without strain is not held
     [[nodiscard]] virtual FactorStatus couple(std::span<const NodalBlock> coupling) = 0;
     /// x approximates A^-1 b: linear and symmetric in b; b and x (equations) must not overlap. Where several processes share it, it

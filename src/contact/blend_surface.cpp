@@ -34,8 +34,8 @@ public:
             for (const Creases::Neighbour& other : creases_.of(f)) add(other.facet);
             std::sort(nodes.begin(), nodes.end());
             nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-            reach_.emplace_back(nodes.begin(),
-                                nodes.end()); // patches share most: there was room for several times as many
+            // without the room that the patches took, which share most of their nodes
+            reach_.emplace_back(nodes.begin(), nodes.end());
         }
     }
 

@@ -184,6 +184,7 @@ void BodyForces::add_pressure_tangent(const mesh::SurfaceFace& face, const Field
     const Matrix tangent = fe::pressure_tangent(face, x, pressure);
     const Index first = nodes.front(); // a node that carries elements is folded with them
     if (dependence_ == nullptr || !dependence_->depends(first) ||
+        !tangent_.has_row(first) || // as its carriers have none
         tangent_.row_end(first) - tangent_.row_begin(first) > 1) {
         tangent_.add(nodes, tangent);
         return;

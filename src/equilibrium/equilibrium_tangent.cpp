@@ -36,9 +36,14 @@ std::unique_ptr<linear::UnknownSlices> make_slices(const model::Model& model, co
         add(pair.master_nodes());
         if (pair.slaves().edges) add(pair.slaves().edges->others);
     }
-    if (dependence != nullptr)
+    if (dependence != nullptr) { // what the nodes that are read here follow, and one's own
+        std::vector<char> here(static_cast<std::size_t>(constraints.nodes()), 0);
+        for (const Index node : read) here[static_cast<std::size_t>(node)] = 1;
         for (const Index node : dependence->nodes())
-            for (const linear::Dependence::Carrier& carrier : dependence->carriers(node)) read.push_back(carrier.node);
+            if (here[static_cast<std::size_t>(node)] != 0 || model.share->owns(node))
+                for (const linear::Dependence::Carrier& carrier : dependence->carriers(node))
+                    read.push_back(carrier.node);
+    }
     for (const model::RigidBody& rigid : model.rigid) hubs.insert(hubs.end(), {rigid.reference, rigid.rotation()});
     add(hubs);
     return std::make_unique<linear::UnknownSlices>(*model.share, constraints, unknowns, read, hubs);

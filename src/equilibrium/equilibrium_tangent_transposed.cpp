@@ -118,6 +118,7 @@ bool EquilibriumTangent::solve_condensed(const Vector& b, Vector& w, double tole
 }
 
 bool EquilibriumTangent::solve_transposed(const Weights& weights, Vector& w, Weights& of, double tolerance) {
+    require(slices_ == nullptr, "a transposed tangent is that of one process");
     constexpr int worth_keeping = 20; // iterations beyond which factors are worth making anew
     constexpr int most_restarts = 5;
     const Index size = unknowns_.size(), forces = 3 * unknowns_.couplings();

@@ -84,8 +84,8 @@ void ContactPreconditioner::apply(const Unknowns& rows, const ConstVectorRef& r,
         for (Index node = 0; node < constraints_.nodes(); ++node) take(node);
     } else {
         for (const Index node : slices->nodes()) take(node);
-        for (const Index node : slices->ghosts())
-            take(node); // filled in for hubs; nobody reads what contact adds to others
+        // filled in for hubs; nobody reads what contact adds to others
+        for (const Index node : slices->ghosts()) take(node);
     }
     const auto add = [&](Index node, const Vec3& force) {
         const Vec3 local = constraints_.to_local(node, force);

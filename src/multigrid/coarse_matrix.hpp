@@ -28,7 +28,7 @@ public:
     [[nodiscard]] PetscInt* column() { return column_.data(); }
     [[nodiscard]] double* value() { return value_.data(); }
     /// Forgets the values of the last couple(), once they are copied.
-    void drop_values() { value_ = {}; }
+    void drop_values() { std::vector<double>().swap(value_); }
 
 private:
     using Square = Eigen::Matrix<double, Prolongation::modes, Prolongation::modes, Eigen::RowMajor>;

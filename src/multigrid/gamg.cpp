@@ -72,7 +72,7 @@ public:
         make_cycle();
         for (Vector* v : {&b_, &x_, &other_}) v->setZero(3 * nodes.with_copies());
         c_.setZero(Prolongation::modes * P_->with_copies());
-        if (!alone_) unknowns_.arm = {}; // of all nodes of all processes; the grids are chosen once
+        if (!alone_) std::vector<Vec3>().swap(unknowns_.arm); // of all processes' nodes; the grids are chosen once
     }
 
     void take(const NodalMatrix& bodies) override {

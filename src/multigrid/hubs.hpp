@@ -27,6 +27,7 @@ public:
     /// @returns singular: some motion of hubs costs no energy
     [[nodiscard]] FactorStatus eliminate(std::span<const NodalBlock> coupling, const Operation& multiply,
                                          const Operation& cycle);
+    /// Whether a node is one.
     [[nodiscard]] bool has(Index node) const { return hub(node) >= 0; }
     /// Cycles that the last eliminate() took.
     [[nodiscard]] Index cycles() const { return cycles_; }

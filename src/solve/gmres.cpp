@@ -4,11 +4,9 @@
 #include "osculate/core/slices.hpp"
 #include "solve/gmres_vector.hpp"
 
-#include <algorithm>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.hpp>
 #include <sunlinsol/sunlinsol_spgmr.h>
-#include <vector>
 
 namespace osculate::solve {
 
@@ -73,10 +71,6 @@ struct Gmres::Impl {
 Gmres::Gmres(Index size, Slices* slices, int threads) : impl_(std::make_unique<Impl>(size, slices, threads)) {}
 Gmres::~Gmres() = default;
 
-const Slices* Gmres::slices() const {
-    return impl_->slices;
-}
-
 void Gmres::lend(double* in, double* out) {
     impl_->whole_in = in;
     impl_->whole_out = out;
@@ -84,6 +78,7 @@ void Gmres::lend(double* in, double* out) {
 
 Gmres::Result Gmres::solve(const LinearMap& A, const LinearMap& M, const double* b, double* x, double tolerance) {
     Impl& s = *impl_;
+    require(s.slices == nullptr || (s.whole_in != nullptr && s.whole_out != nullptr), "Gmres: no whole vectors");
     s.A = &A;
     s.M = &M;
     N_VSetArrayPointer(const_cast<double*>(b), s.b);

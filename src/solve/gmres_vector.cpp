@@ -178,6 +178,8 @@ N_Vector make_gmres_vector(Index length, Ranks* ranks, int threads, SUNContext c
         v->ops->nvinvtest = nullptr;
         v->ops->nvconstrmask = nullptr;
         v->ops->nvminquotient = nullptr;
+        v->ops->nvwrmsnormvectorarray = nullptr;
+        v->ops->nvwrmsnormmaskvectorarray = nullptr;
     }
     v->ops->nvlinearsum = linear_sum;
     v->ops->nvscale = scale;

@@ -101,7 +101,7 @@ struct KinsolSolver::Impl {
                 continue;
             }
             const VectorPtr like(
-                make_gmres_vector(static_cast<Index>(slices()->own().size()), ranks, threads, context));
+                make_gmres_vector(static_cast<Index>(slices()->own().size()), &slices()->ranks(), threads, context));
             v->reset(N_VClone(like.get()));
         }
         for (Vector* whole : {&whole_in, &whole_out}) whole->setZero(shaped_for == nullptr ? 0 : size);
@@ -125,7 +125,7 @@ struct KinsolSolver::Impl {
         const auto length = shaped_for == nullptr ? static_cast<std::size_t>(size) : slices()->own().size();
         const double* first = N_VGetArrayPointer(v);
         const bool own = std::all_of(first, first + length, [](double value) { return std::isfinite(value); });
-        return shaped_for == nullptr ? own : ranks->largest(own ? 0 : 1) == 0;
+        return shaped_for == nullptr ? own : slices()->ranks().largest(own ? 0 : 1) == 0;
     }
     [[nodiscard]] Eigen::Map<Vector> values(double* of) const {
         return {of, size};

@@ -122,6 +122,41 @@ TEST_F(DistributedRun, SharesPlasticity) {
     expect_the_same_frames("upper_00002", {"plastic_strain", "stress"}, folder / "run_1", folder / "run_3", 1e-8);
 }
 
+/// On faces whose nodes follow a coupling, with elements of their own, and on those of a rigid body, which have none.
+TEST_F(DistributedRun, SharesPressuresThatFollow) {
+    std::ofstream(folder / "follower.yaml") << R"(
+bodies:
+  bar:
+    mesh: {block: {origin: [0, 0, 0], size: [2, 0.4, 0.4], divisions: [10, 2, 2]}}
+    material: {neo_hookean: {E: 1 MPa, nu: 0.3}}
+  ball:
+    mesh: {ball: {radius: 0.25 m, divisions: [4, 1, 3]}, translate: [1, 0.2, 0.649]}
+    rigid: {density: 2000, reference_point: [1.1, 0.25, 0.8], fix: [rx, ry, rz]}
+sets:
+  root: {body: bar, surface: x_min}
+  tip: {body: bar, surface: x_max}
+  side: {body: bar, surface: y_max}
+  top: {body: bar, surface: z_max}
+  below: {body: ball, normal: {direction: [0, 0, -1], angle: 60 deg}}
+  above: {body: ball, normal: {direction: [0, 0, 1], angle: 60 deg}}
+couplings:
+  end: {set: tip, kind: rigid}
+supports:
+  root: {fix: [x, y, z]}
+contact:
+  touch: {slave: top, master: {set: below, surface: blend}, friction: 0.3, initial_overlap_limit: 1}
+stages:
+  press: {analysis: static, duration: 1 s, steps: 2, follower_pressure: {side: 1 kPa, tip: 2 kPa, above: 3 kPa}}
+)";
+    const std::string follower = (folder / "follower.yaml").string(), options = "--set solver.tolerance=1e-10 ";
+    ASSERT_EQ(osculate({"run", follower, "--quiet", "--set", "solver.tolerance=1e-10", "-o", "alone"}).code, 0);
+    for (const int ranks : {2, 3}) {
+        const std::string name = "run_" + std::to_string(ranks);
+        ASSERT_EQ(with_ranks(ranks, follower, options + "-o " + name), 0) << content(folder / "said.txt");
+        expect_the_same(folder / "alone", folder / name, 1e-8);
+    }
+}
+
 TEST_F(DistributedRun, SharesDynamics) {
     const std::string material = "'{linear_elastic: {E: 100 MPa, nu: 0.3, density: 1000 kg/m^3}}'";
     const std::string options = settings + " --set bodies.lower.material=" + material +

@@ -34,7 +34,7 @@ public:
     /// @param tails  (vertices) rounding errors of x, m, or empty
     void apply(const std::vector<Vec3>& x, std::span<const Vec3> tails, std::vector<Vec3>& filtered,
                std::vector<Vec3>& filtered_tails) const;
-    /// Makes room for derivatives, which a filter of which there are only copies does without.
+    /// Makes room for derivatives. Prototypes, which are only copied, need none.
     void make_room() { derivatives_.resize(Q_.size(), Mat3::Zero()); }
     /// Computes the derivatives at positions x.
     void differentiate(const std::vector<Vec3>& x);

@@ -7,6 +7,7 @@
 
 namespace osculate {
 
+/// Who sends what is agreed upon once; then each fill() is a message to and from each neighbour.
 class Halo {
 public:
     /// @param wanted  (ranks) places in a vector of the numbers that each owns and this one reads; collective

@@ -125,7 +125,7 @@ private:
     std::unique_ptr<linear::ReducedGmres> reduced_;            ///< see TangentChoice; null: not used
     std::unique_ptr<Condensation> condensed_;                  ///< see TangentChoice; null: not used
     bool stale_preconditioner_ = false, stale_matrix_ = false; ///< the stiffness of the bodies has changed since
-    Field product_u_, product_f_;                              ///< scratch of multiply()
+    Field product_u_, product_f_; ///< scratch of multiply(); with slices, left over where nothing is read
     std::optional<solve::SparseMatrix> transposed_; ///< of linearise_transposed(); none: products of the terms serve
     Weights weights_of_, weights_by_;               ///< scratch of multiply_transposed()
     bool worn_ = true; ///< the preconditioner takes solve_transposed() many iterations, or has no factors

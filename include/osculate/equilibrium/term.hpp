@@ -32,7 +32,7 @@ struct Iterate {
 
 /// A direction of motion, and the corresponding change of all unknowns.
 struct Direction {
-    const Field& u; ///< (nodes) global components
+    const Field& u; ///< (nodes) global components; with slices, of one's own, ghosts, and what depends on these
     const ConstVectorRef& z;
     const linear::UnknownSlices* slices = nullptr; ///< whose nodes' forces and rows are wanted; null: those of all
 };

@@ -18,7 +18,8 @@ public:
     BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements);
     /// Pattern of given rows.
     /// @param columns  of each row, ascending
-    /// @param share    rows of others' nodes stay empty; null: there is one process. Products are of all rows on all processes
+    /// @param share    rows of others' nodes stay empty; null: there is one process. Products are of all rows on all processes,
+    ///                 but for those of given rows
     explicit BlockMatrix(const std::vector<std::vector<Index>>& columns, std::shared_ptr<const Share> share = nullptr);
 
     [[nodiscard]] Index rows() const { return static_cast<Index>(row_start_.size()) - 1; }

@@ -34,7 +34,6 @@ public:
     Gmres(const Gmres&) = delete;
     Gmres& operator=(const Gmres&) = delete;
 
-    [[nodiscard]] const Slices* slices() const;
     /// Room for two whole vectors (size), on which maps act where there are slices, and which must outlive this object.
     void lend(double* in, double* out);
     /// Computes x with |b - A x| <= tolerance in the 2-norm.

@@ -93,7 +93,8 @@ public:
     /// J without its matrix, if the problem has that; jacobian() is then called only for factorisation.
     [[nodiscard]] virtual Tangent* tangent() { return nullptr; }
     /// The processes' parts of the vectors of KINSOL and GMRES; null: there is one process, or each has whole ones. The residual is
-    /// of whole vectors on all, the tangent and the preconditioner see whole ones with what they read filled in.
+    /// of whole vectors on all, the tangent and the preconditioner see whole ones with what they read filled in. They are as long as
+    /// the solver lives.
     [[nodiscard]] virtual Slices* slices() { return nullptr; }
     /// Whether jacobian() may be factorised if GMRES fails.
     [[nodiscard]] virtual bool factorisable() const { return true; }

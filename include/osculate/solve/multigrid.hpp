@@ -16,9 +16,9 @@ struct NodalUnknowns {
     std::vector<Index> body;           ///< (n) the body of each
     std::vector<SparseIndex> equation; ///< (3 n) of each local component; -1: held
     std::vector<Index> frame_number;   ///< (n) of each in frames
-    std::vector<Mat3> frames{
-        Mat3::Identity()};      ///< columns: the axes of the local components; first those of most nodes
-    std::vector<Vec3> arm;      ///< (n) from the middle of its body, over the body's size
+    /// Columns: the axes of the local components. The first are those of most nodes.
+    std::vector<Mat3> frames{Mat3::Identity()};
+    std::vector<Vec3> arm;      ///< (n) from the middle of its body, over the body's size; only to choose grids
     std::vector<int> owner;     ///< (n) the process of each, see Share; empty: there is one process
     std::vector<Index> coupled; ///< nodes that may be coupled, ascending; of several processes alone
 

@@ -9,7 +9,7 @@ namespace osculate::app {
 /// Estimated peak memory of processes that share a run, in bytes.
 struct ProcessMemory {
     double everywhere = 0; ///< program, MPI, mesh, surfaces and contact
-    double shared = 0;     ///< matrices, grids of multigrid, directions of GMRES
+    double shared = 0;     ///< matrices, grids of multigrid, vectors of KINSOL and GMRES
     double first = 0;      ///< what the first process needs besides, to share out the nodes and to write
 
     /// Of one of n processes, and of the first of them.

@@ -12,7 +12,7 @@
 namespace osculate::app {
 
 ProcessMemory process_memory(const Plan& plan) {
-    constexpr double program = 2.8e7, mpi_and_petsc = 5e7, element = 3000, unknown = 1660, writing = 190;
+    constexpr double program = 2.8e7, mpi_and_petsc = 5e7, element = 1600, unknown = 2230, sharing_out = 30;
     constexpr std::array<std::string_view, 2> in_rows{"nonlinear elements", "inertia"};
     constexpr std::array<std::string_view, 4> in_unknowns{"stiffness", "multigrid", "condensation",
                                                           "Cholesky factorisation"};
@@ -23,7 +23,7 @@ ProcessMemory process_memory(const Plan& plan) {
     for (const model::Body& body : plan.model.bodies) memory.everywhere += element * body.mesh.element_count();
     const double unknowns = 3.0 * plan.model.nodes();
     memory.shared += unknown * unknowns;
-    memory.first = writing * unknowns;
+    memory.first = sharing_out * unknowns;
     return memory;
 }
 
@@ -45,7 +45,7 @@ std::string processes_in_words(const Plan& plan, int processes) {
     return fmt::format(
         "{} processes, estimates of memory: {} of each, {} of the first, {} of all\n"
         "  shared by nodes, {} of each: rows of stiffness and mass, nonlinear elements, grids of multigrid, "
-        "directions of GMRES\n"
+        "vectors of KINSOL and GMRES\n"
         "  in every process, {}: program, MPI, mesh, surfaces, contact, audit, values at nodes\n"
         "  in the first, {}: sharing out the nodes, files\n",
         processes, mega(memory.of_one(processes)), mega(memory.of_first(processes)), mega(memory.of_all(processes)),

@@ -56,7 +56,8 @@ std::vector<int> share_nodes(const std::vector<std::vector<Index>>& neighbours, 
     idx_t options[METIS_NOPTIONS];
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 26;
-    options[METIS_OPTION_UFACTOR] = 3; // thousandths by which a part may be larger than others: the slowest makes all wait
+    // thousandths by which a part may be larger than the mean: the slowest makes all wait
+    options[METIS_OPTION_UFACTOR] = 3;
     auto nodes = static_cast<idx_t>(members.size()), parts = static_cast<idx_t>(ranks);
     idx_t constraints = 1, cut = 0;
     std::vector<idx_t> part(members.size());

@@ -1,10 +1,9 @@
 #include "osculate/solve/kinsol_solver.hpp"
 
 #include "osculate/core/error.hpp"
-#include "osculate/core/slices.hpp"
 #include "osculate/core/timing.hpp"
 #include "osculate/solve/direct_on_first.hpp"
-#include "solve/gmres_vector.hpp"
+#include "solve/kinsol_vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,11 +31,6 @@ std::string describe(KinsolOutcome outcome) {
 }
 
 namespace {
-struct VectorDeleter {
-    void operator()(N_Vector v) const { N_VDestroy(v); }
-};
-using VectorPtr = std::unique_ptr<std::remove_pointer_t<N_Vector>, VectorDeleter>;
-
 constexpr int recoverable = 1, fatal = -1;
 
 /// KINSOL's own messages: outcomes carry the cause.
@@ -56,7 +50,8 @@ constexpr int worth_trying = 2;
 } // namespace
 
 struct KinsolSolver::Impl {
-    Impl(Index n, Timings& t, Ranks* r, int side_by_side) : size(n), timings(t), ranks(r), threads(side_by_side) {
+    Impl(Index n, Timings& t, Ranks* r, int side_by_side)
+        : size(n), timings(t), ranks(r), threads(side_by_side), vectors(n, side_by_side, context) {
 #if SUNDIALS_VERSION_MAJOR >= 7
         SUNContext_ClearErrHandlers(context);
 #endif
@@ -87,46 +82,6 @@ struct KinsolSolver::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    [[nodiscard]] Slices* slices() const {
-        return problem->slices();
-    }
-    /// Makes vectors for the problem, unless there are such.
-    void make_vectors() {
-        if (z && shaped_for == slices()) return;
-        shaped_for = slices();
-        krylov = nullptr;
-        for (VectorPtr* v : {&z, &u_scale, &f_scale}) {
-            if (shaped_for == nullptr) {
-                v->reset(N_VNew_Serial(size, context));
-                continue;
-            }
-            const VectorPtr like(
-                make_gmres_vector(static_cast<Index>(slices()->own().size()), &slices()->ranks(), threads, context));
-            v->reset(N_VClone(like.get()));
-        }
-        for (Vector* whole : {&whole_in, &whole_out}) whole->setZero(shaped_for == nullptr ? 0 : size);
-    }
-    /// A whole vector, of which KINSOL has a slice.
-    void take(const ConstVectorRef& whole, N_Vector to) const {
-        double* own = N_VGetArrayPointer(to);
-        if (shaped_for == nullptr)
-            values(own) = whole;
-        else
-            for (const Index place : slices()->own()) *own++ = whole[place];
-    }
-    void give(N_Vector from, VectorRef whole) const {
-        if (shaped_for == nullptr)
-            whole = values(N_VGetArrayPointer(from));
-        else
-            slices()->gather({N_VGetArrayPointer(from), slices()->own().size()}, whole.data());
-    }
-    /// Of a vector of KINSOL's, on all processes.
-    [[nodiscard]] bool finite(N_Vector v) const {
-        const auto length = shaped_for == nullptr ? static_cast<std::size_t>(size) : slices()->own().size();
-        const double* first = N_VGetArrayPointer(v);
-        const bool own = std::all_of(first, first + length, [](double value) { return std::isfinite(value); });
-        return shaped_for == nullptr ? own : slices()->ranks().largest(own ? 0 : 1) == 0;
-    }
     [[nodiscard]] Eigen::Map<Vector> values(double* of) const {
         return {of, size};
     }
@@ -146,9 +101,9 @@ struct KinsolSolver::Impl {
 
     int residual(N_Vector at, N_Vector F) {
         return guarded([&] {
-            double* f = shaped_for == nullptr ? N_VGetArrayPointer(F) : whole_out.data();
-            if (shaped_for != nullptr) give(at, whole_in);
-            const double* u = shaped_for == nullptr ? N_VGetArrayPointer(at) : whole_in.data();
+            double* f = !vectors.in_slices() ? N_VGetArrayPointer(F) : vectors.whole_out.data();
+            if (vectors.in_slices()) vectors.give(at, vectors.whole_in);
+            const double* u = !vectors.in_slices() ? N_VGetArrayPointer(at) : vectors.whole_in.data();
             const auto verdict = problem->residual(values(u), values(f));
             if (verdict == NonlinearProblem::Verdict::stop) {
                 stopped = true;
@@ -164,7 +119,7 @@ struct KinsolSolver::Impl {
                 largest = std::max(largest, std::abs(f[i]));
             }
             last_residual = largest * residual_scale;
-            if (shaped_for != nullptr) take(whole_out, F);
+            if (vectors.in_slices()) vectors.take(vectors.whole_out, F);
             return 0;
         });
     }
@@ -217,7 +172,7 @@ struct KinsolSolver::Impl {
             const bool solved = solve_by_own(b, x) ||
                                 (problem->preconditioner() != nullptr ? solve_by_krylov(b, x) : solve_directly(b, x));
             if (!solved) return fatal;
-            if (finite(x)) return 0;
+            if (vectors.finite(x)) return 0;
             singular = true;
             return fatal;
         });
@@ -235,7 +190,7 @@ struct KinsolSolver::Impl {
         Tangent* tangent = problem->tangent();
         if (tangent == nullptr || !tangent->solves() || own_failures >= worth_trying) return false;
         const int before = tangent->factorisations();
-        require(shaped_for == nullptr, "a solver of the problem's own has no slices");
+        require(!vectors.in_slices(), "a solver of the problem's own has no slices");
         const bool solved =
             tangent->solve(values(N_VGetArrayPointer(b)), values(N_VGetArrayPointer(x)), allowed_error(b));
         factorisations += tangent->factorisations() - before;
@@ -245,13 +200,13 @@ struct KinsolSolver::Impl {
 
     bool solve_directly(N_Vector b, N_Vector x) {
         const ScopedTimer timer(timings, Part::solve);
-        if (shaped_for == nullptr) {
+        if (!vectors.in_slices()) {
             direct->solve(N_VGetArrayPointer(b), N_VGetArrayPointer(x));
             return true;
         }
-        give(b, whole_in);
-        direct->solve(whole_in.data(), whole_out.data());
-        take(whole_out, x);
+        vectors.give(b, vectors.whole_in);
+        direct->solve(vectors.whole_in.data(), vectors.whole_out.data());
+        vectors.take(vectors.whole_out, x);
         return true;
     }
 
@@ -287,13 +242,13 @@ struct KinsolSolver::Impl {
             const ScopedTimer timer(timings, Part::solve);
             const auto on_all_unknowns = [&] {
                 if (krylov == nullptr) {
-                    krylov = std::make_unique<Gmres>(size, shaped_for, threads);
-                    krylov->lend(whole_in.data(), whole_out.data());
+                    krylov = std::make_unique<Gmres>(size, vectors.slices(), threads);
+                    krylov->lend(vectors.whole_in.data(), vectors.whole_out.data());
                 }
                 return krylov->solve(times, nearly, N_VGetArrayPointer(b), N_VGetArrayPointer(x), allowed);
             };
             std::optional<Gmres::Result> own;
-            if (shaped_for == nullptr)
+            if (!vectors.in_slices())
                 own = problem->preconditioner()->solve_with(values(N_VGetArrayPointer(b)),
                                                             values(N_VGetArrayPointer(x)), allowed);
             const Gmres::Result result = own ? *own : on_all_unknowns();
@@ -323,7 +278,9 @@ struct KinsolSolver::Impl {
         if (Preconditioner* p = solved.preconditioner(); p != nullptr && !p->lasts()) p->wear() = {};
         failing_equation = -1;
         error = nullptr;
-        if (size > 0) make_vectors();
+        if (size == 0 || !vectors.shape_for(solved.slices())) return;
+        krylov = nullptr;
+        for (VectorPtr* v : {&z, &u_scale, &f_scale}) *v = vectors.make();
     }
 
     /// KINSOL keeps counters and scalings between calls; a fresh memory block per solve keeps calls independent.
@@ -351,9 +308,8 @@ struct KinsolSolver::Impl {
     Timings& timings;
     Ranks* ranks;
     int threads;
+    KinsolVectors vectors;
     VectorPtr z, u_scale, f_scale;
-    Slices* shaped_for = nullptr; ///< vectors have its slices; null: they are whole
-    Vector whole_in, whole_out;   ///< scratch where there are slices
     SUNMatrix handle = nullptr;
     SUNLinearSolver linear = nullptr;
     void* memory = nullptr;
@@ -402,12 +358,12 @@ bool KinsolSolver::solve_linear(const Vector& b, Vector& x) {
     require(b.size() == s.size && s.linear_alone, "KinsolSolver: nothing was linearised");
     x = Vector::Zero(s.size);
     if (s.size == 0 || b.isZero(0)) return true;
-    const VectorPtr bs(N_VClone(s.z.get())), xs(N_VClone(s.z.get()));
-    s.take(b, bs.get());
+    const VectorPtr bs = s.vectors.make(), xs = s.vectors.make();
+    s.vectors.take(b, bs.get());
     N_VConst(0, xs.get());
     const bool done = s.linear_solve(bs.get(), xs.get()) == 0;
     if (s.error) std::rethrow_exception(s.error);
-    s.give(xs.get(), x);
+    s.vectors.give(xs.get(), x);
     return done;
 }
 
@@ -428,8 +384,8 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
         return nothing;
     }
     const long factorisations_before = s.factorisations;
-    s.take(unknowns, s.z.get());
-    s.take(options.unknown_scale, s.u_scale.get());
+    s.vectors.take(unknowns, s.z.get());
+    s.vectors.take(options.unknown_scale, s.u_scale.get());
     N_VConst(options.residual_scale, s.f_scale.get());
     s.create(options);
 
@@ -437,7 +393,7 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     result.return_code =
         KINSol(s.memory, s.z.get(), options.line_search ? KIN_LINESEARCH : KIN_NONE, s.u_scale.get(), s.f_scale.get());
     if (s.error) std::rethrow_exception(s.error);
-    s.give(s.z.get(), unknowns);
+    s.vectors.give(s.z.get(), unknowns);
     long iterations = 0;
     KINGetNumNonlinSolvIters(s.memory, &iterations);
     KINFree(&s.memory); // its vectors are as long as the others

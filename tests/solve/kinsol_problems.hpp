@@ -91,4 +91,18 @@ inline Problem scalar(std::function<double(double)> f, std::function<double(doub
     return p;
 }
 
+/// The cubic problem, with another matrix to invert in place of its tangent.
+struct Preconditioned : Problem, Preconditioner {
+    Preconditioned(Problem problem, SparseMatrix matrix) : Problem(std::move(problem)), P(std::move(matrix)) {
+        J.symmetric_positive_definite = false;
+    }
+    Preconditioner* preconditioner() override { return this; }
+    FactorStatus factorise() override { return inverse->factorise(P); }
+    void precondition(const ConstVectorRef& r, VectorRef z) override { inverse->solve(r.data(), z.data()); }
+    [[nodiscard]] SparseIndex failing_equation() const override { return inverse->failing_equation(); }
+
+    SparseMatrix P;
+    std::unique_ptr<DirectSolver> inverse = make_cholesky();
+};
+
 } // namespace osculate::solve::fixtures

@@ -1,11 +1,8 @@
 #include "osculate/solve/kinsol_solver.hpp"
 
-#include "every_nth.hpp"
 #include "kinsol_problems.hpp"
 #include "osculate/core/error.hpp"
 #include "osculate/core/timing.hpp"
-#include "support/floating_point_traps.hpp"
-#include "support/thread_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -226,20 +223,6 @@ TEST(KinsolSolver, AsksForLinearSolutionsInTheUnitsOfTheResidual) {
     }
 }
 
-/// The cubic problem, with another matrix to invert in place of its tangent.
-struct Preconditioned : Problem, Preconditioner {
-    Preconditioned(Problem problem, SparseMatrix matrix) : Problem(std::move(problem)), P(std::move(matrix)) {
-        J.symmetric_positive_definite = false;
-    }
-    Preconditioner* preconditioner() override { return this; }
-    FactorStatus factorise() override { return inverse->factorise(P); }
-    void precondition(const ConstVectorRef& r, VectorRef z) override { inverse->solve(r.data(), z.data()); }
-    [[nodiscard]] SparseIndex failing_equation() const override { return inverse->failing_equation(); }
-
-    SparseMatrix P;
-    std::unique_ptr<DirectSolver> inverse = make_cholesky();
-};
-
 /// One whose tangent knows a way of its own to solve, which never gets anywhere.
 struct Hopeless : Preconditioned, Tangent {
     using Preconditioned::Preconditioned;
@@ -328,81 +311,6 @@ TEST_F(PreconditionedNewton, SaysSoWhereTheTangentIsTooLargeToFactorise) {
     EXPECT_EQ(result.outcome, KinsolOutcome::unsolved);
     EXPECT_TRUE(is_singular(result.outcome));
     EXPECT_EQ(u, Vector::Zero(p.size()));
-}
-
-/// One that processes share.
-struct InSlices : Preconditioned {
-    InSlices(Preconditioned problem, Ranks& ranks)
-        : Preconditioned(std::move(problem)), parts(std::make_unique<EveryNth>(ranks, size())) {}
-    Slices* slices() override { return parts.get(); }
-
-    std::unique_ptr<EveryNth> parts;
-};
-
-TEST(SharedNewton, TakesTheIteratesOfOneProcess) {
-    constexpr int n = 3; // 27 unknowns: with 30 processes three have none
-    const Vector load = Vector::Constant(n * n * n, 10);
-    KinsolOptions options;
-    options.unknown_scale = Vector::LinSpaced(n * n * n, 1, 2);
-    options.tolerance = 1e-10;
-    for (const bool line_search : {false, true})
-        for (const double of_preconditioner : {1.0, 0.0}) { // that of none: the tangent is factorised
-            options.line_search = line_search;
-            const auto problem = [&] {
-                Preconditioned p(cubic(n, load), laplacian(n, 3));
-                for (double& v : p.P.value) v *= of_preconditioner;
-                return p;
-            };
-            Timings timings;
-            Preconditioned alone = problem();
-            Vector expected = Vector::Zero(alone.size());
-            const KinsolResult by_one = KinsolSolver(alone.size(), timings).solve(alone, expected, options);
-            ASSERT_EQ(by_one.outcome, KinsolOutcome::converged);
-            for (const int count : {1, 3, 30}) {
-                std::vector<Vector> found(static_cast<std::size_t>(count), Vector::Zero(expected.size()));
-                osculate::support::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
-                    Timings own_timings;
-                    InSlices shared(problem(), *ranks);
-                    Vector& u = found[static_cast<std::size_t>(ranks->rank())];
-                    KinsolSolver solver(shared.size(), own_timings, ranks.get());
-                    const KinsolResult result = solver.solve(shared, u, options);
-                    EXPECT_EQ(result.outcome, KinsolOutcome::converged);
-                    EXPECT_EQ(result.iterations, by_one.iterations);
-                    EXPECT_EQ(result.factorisations, by_one.factorisations);
-                    Vector x;
-                    EXPECT_TRUE(solver.linearise(shared));
-                    EXPECT_TRUE(solver.solve_linear(load, x));
-                    Vector product(x.size());
-                    shared.jacobian().multiply(x.data(), product.data());
-                    EXPECT_LT((product - load).norm(), 2e-10 * load.norm());
-                });
-                for (const Vector& u : found) {
-                    EXPECT_EQ(u, found.front());
-                    EXPECT_LT((u - expected).cwiseAbs().maxCoeff(), 4 * options.tolerance);
-                }
-            }
-        }
-}
-
-TEST(SharedNewton, SaysOnAllProcessesThatAStepIsNotFinite) {
-    constexpr int n = 3;
-    osculate::support::on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {
-        const osculate::support::FloatingPointTraps suspended(false);
-        struct Nowhere : InSlices {
-            using InSlices::InSlices;
-            void precondition(const ConstVectorRef& r, VectorRef z) override {
-                z = r;
-                z(7) = std::numeric_limits<double>::infinity(); // of one process
-            }
-            [[nodiscard]] bool factorisable() const override { return false; }
-        } shared(Preconditioned(cubic(n, Vector::Constant(n * n * n, 10)), laplacian(n)), *ranks);
-        Timings timings;
-        KinsolOptions options;
-        options.unknown_scale = Vector::Ones(n * n * n);
-        Vector u = Vector::Zero(shared.size());
-        KinsolSolver solver(shared.size(), timings, ranks.get());
-        EXPECT_TRUE(is_singular(solver.solve(shared, u, options).outcome));
-    });
 }
 
 /// Factors that may serve the next solve, for as many wasted iterations as `cost`.

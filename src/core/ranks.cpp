@@ -16,19 +16,28 @@ Share::Share(std::shared_ptr<Ranks> ranks, std::vector<int> owner)
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
 }
 
-void Share::replicate(Field& field) const {
-    const auto place = [](Index node) { return static_cast<std::size_t>(node); };
+template <class Each> void Share::for_each(const std::vector<Vec3>& own, Each&& each) const {
     std::vector<int> sizes;
     for (std::size_t r = 0; r + 1 < begin_.size(); ++r) sizes.push_back(3 * (begin_[r + 1] - begin_[r]));
-    const auto rank = static_cast<std::size_t>(ranks_->rank());
-    std::vector<double> own, all(3 * by_owner_.size());
-    own.reserve(static_cast<std::size_t>(sizes[rank]));
-    for (int k = begin_[rank]; k < begin_[rank + 1]; ++k) {
-        const Vec3& value = field[place(by_owner_[place(k)])];
-        own.insert(own.end(), value.data(), value.data() + 3);
-    }
-    ranks_->gather(own, sizes, all.data());
-    for (std::size_t k = 0; k < by_owner_.size(); ++k) field[place(by_owner_[k])] = Eigen::Map<const Vec3>(&all[3 * k]);
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    const double* first = own.empty() ? nullptr : own.front().data();
+    ranks_->gather_in_turns({first, 3 * own.size()}, sizes, [&](int rank, const double* numbers) {
+        for (const Index node : nodes_of(rank)) {
+            each(static_cast<std::size_t>(node), Eigen::Map<const Vec3>(numbers));
+            numbers += 3;
+        }
+    });
+}
+
+void Share::replicate(Field& field) const {
+    std::vector<Vec3> own;
+    own.reserve(nodes_of(ranks_->rank()).size());
+    for (const Index node : nodes_of(ranks_->rank())) own.push_back(field[static_cast<std::size_t>(node)]);
+    for_each(own, [&](std::size_t node, const auto& value) { field[node] = value; });
+}
+
+void Share::add(const std::vector<Vec3>& own, Field& field) const {
+    for_each(own, [&](std::size_t node, const auto& value) { field[node] += value; });
 }
 
 bool Share::agree(const Field& field) const {
@@ -40,6 +49,25 @@ bool Share::agree(const Field& field) const {
         if (ranks_->largest(own) != -ranks_->largest(-own)) return false;
     }
     return true;
+}
+
+void Ranks::gather_in_turns(std::span<const double> own, std::span<const int> sizes,
+                            const std::function<void(int rank, const double* numbers)>& each) {
+    constexpr std::size_t most = 100000; // at a time, unless one rank has more
+    std::vector<double> some;
+    for (std::size_t begin = 0, end = 0; begin < sizes.size(); begin = end) {
+        std::vector<int> now(sizes.size(), 0);
+        std::size_t numbers = 0;
+        while (end < sizes.size() && (end == begin || numbers + static_cast<std::size_t>(sizes[end]) <= most)) {
+            now[end] = sizes[end];
+            numbers += static_cast<std::size_t>(sizes[end++]);
+        }
+        some.resize(numbers);
+        const auto self = static_cast<std::size_t>(rank());
+        gather(self >= begin && self < end ? own : std::span<const double>(), now, some.data());
+        const double* first = some.data();
+        for (std::size_t r = begin; r < end; first += sizes[r++]) each(static_cast<int>(r), first);
+    }
 }
 
 void Ranks::sum(std::span<double> values) {

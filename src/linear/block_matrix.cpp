@@ -74,14 +74,16 @@ Field BlockMatrix::diagonal() const {
 }
 
 template <class Row> void BlockMatrix::add_rows(Field& y, int threads, Row&& row) const {
-    Field product(share_ != nullptr ? y.size() : 0);
-    Field& to = share_ != nullptr ? product : y;
-    parallel_for(threads, rows(), [&](Index begin, Index end) {
-        for (Index i = begin; i < end; ++i) to[i] += row(i);
+    if (share_ == nullptr)
+        return parallel_for(threads, rows(), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i) y[i] += row(i);
+        });
+    const std::span<const Index> own = share_->nodes_of(share_->ranks().rank());
+    std::vector<Vec3> product(own.size(), Vec3::Zero());
+    parallel_for(threads, static_cast<Index>(own.size()), [&](Index begin, Index end) {
+        for (Index k = begin; k < end; ++k) product[k] += row(own[k]);
     });
-    if (share_ == nullptr) return;
-    share_->replicate(product);
-    y.add(1, product);
+    share_->add(product, y);
 }
 
 Vec3 BlockMatrix::product(Index row, const Field& x) const {

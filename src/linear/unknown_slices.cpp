@@ -53,10 +53,9 @@ UnknownSlices::UnknownSlices(const Share& share, const Constraints& constraints,
 }
 
 void UnknownSlices::gather(std::span<const double> own_values, double* x) const {
-    std::vector<double> all(static_cast<std::size_t>(unknowns_.size()));
-    share_.ranks().gather(own_values, lengths_, all.data());
-    const double* from = all.data();
-    for (int r = 0; r < share_.ranks().count(); ++r) for_each(r, [&](Index place) { x[place] = *from++; });
+    share_.ranks().gather_in_turns(own_values, lengths_, [&](int rank, const double* from) {
+        for_each(rank, [&](Index place) { x[place] = *from++; });
+    });
 }
 
 } // namespace osculate::linear

@@ -2,7 +2,8 @@
 
 #include "multigrid/coarse_matrix.hpp"
 #include "multigrid/hubs.hpp"
-#include "osculate/core/error.hpp"
+#include "multigrid/petsc_check.hpp"
+#include "multigrid/third_matrix.hpp"
 #include "osculate/core/parallel.hpp"
 #include "osculate/core/ranks.hpp"
 #include "osculate/solve/multigrid.hpp"
@@ -18,13 +19,6 @@
 
 namespace osculate::solve {
 namespace {
-
-void check(PetscErrorCode code) {
-    if (code == 0) return;
-    const char* text = nullptr;
-    PetscErrorMessage(code, &text, nullptr);
-    throw RunFailure(std::string("PETSc: ") + (text != nullptr ? text : "unknown error"));
-}
 
 void begin_petsc() {
     static const bool begun = [] {
@@ -67,7 +61,6 @@ public:
         coarse_.emplace(nodes, *P_, undeformed, threads_);
         coarse_->couple({});
         wrap_coarse();
-        if (!alone_) coarse_->drop_values();
         choose_grids();
         make_cycle();
         for (Vector* v : {&b_, &x_, &other_}) v->setZero(3 * nodes.with_copies());
@@ -98,18 +91,19 @@ public:
             make_cycle();
         }
         if (coarse_->loose()) return FactorStatus::singular;
-        if (alone_)
-            changed(below_.back());
-        else {
-            check(MatUpdateMPIAIJWithArray(below_.back(), coarse_->value()));
-            coarse_->drop_values();
-        }
+        changed(below_.back());
+        if (grown) third_.reset();
         for (std::size_t level = below_.size(); level-- > 0;) {
             Mat& A = below_[level];
             if (level + 1 < below_.size()) {
                 if (grown) MatDestroy(&A);
-                alone_ ? project(below_[level + 1], interpolation_[level], A) : project_row_by_row(level, A);
-                mend(A);
+                if (alone_)
+                    project(below_[level + 1], interpolation_[level], A);
+                else if (level + 2 == below_.size())
+                    project_blocks(interpolation_[level], A);
+                else
+                    project_row_by_row(level, A);
+                if (alone_ || level + 2 < below_.size()) mend(A);
             }
             KSP smoother = nullptr;
             check(PCMGGetSmoother(cycle_, static_cast<PetscInt>(level), &smoother));
@@ -177,7 +171,7 @@ private:
     }
     /// x += P of the coarser grids' answer to a residual.
     void correct(const Vector& residual, Vector& x) {
-        const Index own = coarse_->rows();
+        const Index own = Prolongation::modes * P_->aggregates();
         P_->to_coarse(residual.data(), c_.data());
         double* to = nullptr;
         check(VecGetArrayWrite(coarse_residual_, &to));
@@ -194,8 +188,16 @@ private:
     static void project(Mat A, Mat P, Mat& coarse) {
         check(MatPtAP(A, P, coarse == nullptr ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse));
     }
-    /// The same for several processes. Each computes its rows of A P and of P^T (A P) from rows that it asks for. PETSc's own
-    /// product adds up what comes from others as it comes, with other bits each time, or takes half as long again.
+    /// The same for several processes, of the grid below ours.
+    void project_blocks(Mat P, Mat& coarse) {
+        if (third_) {
+            third_->take(coarse_->values());
+            return changed(coarse);
+        }
+        third_.emplace(P, coarse_->rows(), coarse_->values());
+        coarse = wrap(third_->rows(), third_->values());
+    }
+    /// The same for several processes. Each computes its rows of A P and of P^T (A P) from rows that it asks for, in the same bits each time.
     void project_row_by_row(std::size_t level, Mat& coarse) {
         restriction_.resize(interpolation_.size());
         half_way_.resize(interpolation_.size());
@@ -230,18 +232,25 @@ private:
         changed(coarse);
     }
 
-    /// The matrix below the finest grid in the arrays of coarse_.
+    /// A matrix in the arrays of blocks.
+    [[nodiscard]] Mat wrap(BlockRows& rows, BlockRows::Values& values) const {
+        const PetscInt own = BlockRows::modes * rows.own();
+        Mat matrix = nullptr;
+        if (alone_)
+            check(MatCreateSeqAIJWithArrays(comm_, own, own, rows.row_start(0), rows.column(0), values[0].data(),
+                                            &matrix));
+        else
+            check(MatCreateMPIAIJWithSplitArrays(comm_, own, own, PETSC_DETERMINE, PETSC_DETERMINE, rows.row_start(0),
+                                                 rows.column(0), values[0].data(), rows.row_start(1), rows.column(1),
+                                                 values[1].data(), &matrix));
+        check(MatSetBlockSize(matrix, BlockRows::modes));
+        check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
+        return matrix;
+    }
     void wrap_coarse() {
         if (below_.empty()) below_.push_back(nullptr);
         check(MatDestroy(&below_.back()));
-        if (alone_)
-            check(MatCreateSeqAIJWithArrays(comm_, coarse_->rows(), coarse_->rows(), coarse_->row_start(),
-                                            coarse_->column(), coarse_->value(), &below_.back()));
-        else
-            check(MatCreateMPIAIJWithArrays(comm_, coarse_->rows(), coarse_->rows(), PETSC_DETERMINE, PETSC_DETERMINE,
-                                            coarse_->row_start(), coarse_->column(), coarse_->value(), &below_.back()));
-        check(MatSetBlockSize(below_.back(), Prolongation::modes));
-        check(MatSetOption(below_.back(), MAT_SPD, PETSC_TRUE));
+        below_.back() = wrap(coarse_->rows(), coarse_->values());
     }
 
     /// Aggregates and interpolations of GAMG below ours.
@@ -260,7 +269,8 @@ private:
             check(VecDuplicate(like, &v));
             double* to = nullptr;
             check(VecGetArrayWrite(v, &to));
-            std::copy_n(Q.col(c).data() + Prolongation::modes * P_->first_number(), coarse_->rows(), to);
+            std::copy_n(Q.col(c).data() + Prolongation::modes * P_->first_number(),
+                        Prolongation::modes * P_->aggregates(), to);
             check(VecRestoreArrayWrite(v, &to));
         }
         check(VecDuplicate(like, &coarse_residual_));
@@ -340,6 +350,7 @@ private:
         VecDestroy(&coarse_residual_);
         VecDestroy(&correction_);
         hubs_.reset();
+        third_.reset();
         coarse_.reset();
         P_.reset();
         fine_.reset();
@@ -354,6 +365,7 @@ private:
     std::optional<FineGrid> fine_;
     std::optional<Prolongation> P_;
     std::optional<CoarseMatrix> coarse_;
+    std::optional<ThirdMatrix> third_; ///< of several processes alone
     std::optional<Hubs> hubs_;
     std::vector<Mat> below_;         ///< by level, 0 the coarsest, without the finest grid; last that of coarse_
     std::vector<Mat> interpolation_; ///< from level i to i + 1 of these

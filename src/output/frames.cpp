@@ -32,6 +32,7 @@ Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& 
 Array at(const std::vector<Index>& points, const Array& all) {
     Array some{all.name, all.components, {}, all.integer, all.unit};
     const auto n = static_cast<std::ptrdiff_t>(all.components);
+    some.values.reserve(points.size() * static_cast<std::size_t>(n));
     for (const Index point : points)
         some.values.insert(some.values.end(), all.values.begin() + n * point, all.values.begin() + n * (point + 1));
     return some;
@@ -113,27 +114,32 @@ bool Frames::is_piece_of(const std::string& file, const std::string& listed) {
     return rank.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-std::vector<Frames::File> Frames::files_of(const Snapshot& snapshot, long number) const {
+std::vector<Frames::File> Frames::files_of(const model::Model& model, long number) const {
     std::vector<File> files;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        const model::Body& body = snapshot.model().bodies[b];
-        File& one = files.emplace_back(File{nullptr, &body, nullptr, body.name, file(body.name, number, "vtu"), {}});
-        if (share_ != nullptr) {
-            one.piece = &pieces_[b];
-            one.name = piece_file(body.name, number, share_->ranks().rank());
-        }
-        for (const OutputField* f : body_fields_) {
-            Array values = evaluate(*f, snapshot, static_cast<Index>(b));
-            one.arrays.push_back(one.piece == nullptr ? std::move(values) : at(one.piece->nodes, values));
-        }
+        const model::Body& body = model.bodies[b];
+        File& one = files.emplace_back(
+            File{nullptr, static_cast<Index>(b), &body, nullptr, body.name, file(body.name, number, "vtu"), {}});
+        if (share_ == nullptr) continue;
+        one.piece = &pieces_[b];
+        one.name = piece_file(body.name, number, share_->ranks().rank());
     }
-    for (const Surface& surface : surfaces_) {
-        File& one =
-            files.emplace_back(File{&surface, nullptr, nullptr, surface.name, file(surface.name, number, "vtp"), {}});
-        one.arrays.push_back(displacement_of(surface.nodes, snapshot.state().u));
-        for (const OutputField* f : surface.fields) one.arrays.push_back(evaluate(*f, snapshot, surface.pair));
-    }
+    for (const Surface& surface : surfaces_)
+        files.push_back(File{&surface, -1, nullptr, nullptr, surface.name, file(surface.name, number, "vtp"), {}});
     return files;
+}
+
+void Frames::take_values(File& one, const Snapshot& snapshot) const {
+    if (one.surface != nullptr) {
+        one.arrays.push_back(displacement_of(one.surface->nodes, snapshot.state().u));
+        for (const OutputField* f : one.surface->fields)
+            one.arrays.push_back(evaluate(*f, snapshot, one.surface->pair));
+        return;
+    }
+    for (const OutputField* f : body_fields_) {
+        Array values = evaluate(*f, snapshot, one.number);
+        one.arrays.push_back(one.piece == nullptr ? std::move(values) : at(one.piece->nodes, values));
+    }
 }
 
 void Frames::write(const Snapshot& snapshot, long number) {
@@ -154,34 +160,39 @@ void Frames::write(const Snapshot& snapshot, long number) {
                 throw std::runtime_error(fmt::format("process {}: {}", failed, ranks.said_by(failed, problem)));
         };
         together([&] {
-            files = files_of(snapshot.of_pieces(pieces_), number);
-            write_files(files, origin, time);
+            files = files_of(snapshot.model(), number);
+            const Snapshot of_pieces = snapshot.of_pieces(pieces_);
+            for (File& one : files) { // one after the other: only one's values are held
+                take_values(one, of_pieces);
+                of_pieces.forget_stress();
+                write_file(one, origin, time);
+                for (Array& array : one.arrays) std::vector<double>().swap(array.values);
+            }
         });
         return together([&] { list(files, number, time); });
     }
-    std::vector<File> files = files_of(snapshot, number); // values are taken here: the state does not wait
+    std::vector<File> files = files_of(snapshot.model(), number);
+    for (File& one : files) take_values(one, snapshot); // here: the state does not wait
     finish();
     const auto put = [this, files = std::move(files), origin, time, number] {
-        write_files(files, origin, time);
+        for (const File& one : files) write_file(one, origin, time);
         list(files, number, time);
     };
     if (!beside_) return put();
     writing_ = std::async(std::launch::async, put);
 }
 
-void Frames::write_files(const std::vector<File>& files, const Vec3& origin, double time) const {
-    for (const File& one : files) {
-        if (one.surface != nullptr) {
-            write_vtp(directory_ / one.name, one.surface->points, one.surface->facets, one.arrays, time);
-        } else if (one.piece == nullptr) {
-            std::vector<Vec3> points = one.body->mesh.nodes;
-            for (Vec3& X : points) X += origin;
-            write_vtu(directory_ / one.name, points, one.body->mesh.blocks, one.arrays, time);
-        } else if (!one.piece->nodes.empty()) {
-            std::vector<Vec3> points;
-            for (const Index node : one.piece->nodes) points.push_back(one.body->mesh.nodes[node] + origin);
-            write_vtu(directory_ / one.name, points, one.piece->blocks, one.arrays, time, one.piece->nodes);
-        }
+void Frames::write_file(const File& one, const Vec3& origin, double time) const {
+    if (one.surface != nullptr) {
+        write_vtp(directory_ / one.name, one.surface->points, one.surface->facets, one.arrays, time);
+    } else if (one.piece == nullptr) {
+        std::vector<Vec3> points = one.body->mesh.nodes;
+        for (Vec3& X : points) X += origin;
+        write_vtu(directory_ / one.name, points, one.body->mesh.blocks, one.arrays, time);
+    } else if (!one.piece->nodes.empty()) {
+        std::vector<Vec3> points;
+        for (const Index node : one.piece->nodes) points.push_back(one.body->mesh.nodes[node] + origin);
+        write_vtu(directory_ / one.name, points, one.piece->blocks, one.arrays, time, one.piece->nodes);
     }
 }
 

@@ -7,8 +7,9 @@ namespace osculate::output {
 Snapshot::Snapshot(const model::Model& model, const model::State& state, const model::ContactEvaluations& contact,
                    std::vector<Vec3> reactions, std::vector<Vec3> out_of_balance, double dt,
                    const contact::AuditResult* audit)
-    : model_(model), state_(state), contact_(contact), reactions_(std::move(reactions)),
-      out_of_balance_(std::move(out_of_balance)), dt_(dt), audit_(audit) {}
+    : model_(model), state_(state), contact_(contact),
+      reactions_(std::make_shared<const std::vector<Vec3>>(std::move(reactions))),
+      out_of_balance_(std::make_shared<const std::vector<Vec3>>(std::move(out_of_balance))), dt_(dt), audit_(audit) {}
 
 const Field& Snapshot::x() const {
     if (x_.empty()) x_ = sum(model_.X, state_.u);
@@ -16,7 +17,9 @@ const Field& Snapshot::x() const {
 }
 
 Snapshot Snapshot::of_pieces(const std::vector<Piece>& pieces) const {
-    Snapshot part = *this;
+    Snapshot part(model_, state_, contact_, {}, {}, dt_, audit_);
+    part.reactions_ = reactions_;
+    part.out_of_balance_ = out_of_balance_;
     part.pieces_ = &pieces;
     return part;
 }

@@ -87,6 +87,13 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
     vtkNew<vtkCellArray> cells;
     vtkNew<vtkUnsignedCharArray> types;
     std::array<vtkIdType, mesh::most_nodes_per_cell> nodes{};
+    vtkIdType elements = 0, ends = 0;
+    for (const mesh::ElementBlock& block : blocks) {
+        elements += block.size();
+        ends += static_cast<vtkIdType>(block.connectivity.size());
+    }
+    cells->AllocateExact(elements, ends);
+    types->Allocate(elements);
     for (const mesh::ElementBlock& block : blocks) {
         const int count = nodes_per_cell(block.type);
         for (Index e = 0; e < block.size(); ++e) {
@@ -104,6 +111,7 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
         require(numbers.size() == points.size(), "each point of a piece has a number");
         vtkNew<vtkIdTypeArray> ids;
         ids->SetName(point_numbers);
+        ids->Allocate(static_cast<vtkIdType>(numbers.size()));
         for (const Index number : numbers) ids->InsertNextValue(number);
         grid->GetPointData()->SetGlobalIds(ids);
     }

@@ -283,6 +283,15 @@ struct KinsolSolver::Impl {
         for (VectorPtr* v : {&z, &u_scale, &f_scale}) *v = vectors.make();
     }
 
+    /// Slices are made anew for each solve: beside them there are whole vectors, of all processes, and the basis of GMRES.
+    void end() {
+        KINFree(&memory); // its vectors are as long as the others
+        if (!vectors.in_slices()) return;
+        krylov = nullptr;
+        for (VectorPtr* v : {&z, &u_scale, &f_scale}) *v = nullptr;
+        vectors.release();
+    }
+
     /// KINSOL keeps counters and scalings between calls; a fresh memory block per solve keeps calls independent.
     void create(const KinsolOptions& options) {
         if (memory != nullptr) KINFree(&memory);
@@ -367,7 +376,7 @@ bool KinsolSolver::solve_linear(const Vector& b, Vector& x) {
     return done;
 }
 
-KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, const KinsolOptions& options) {
+KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, KinsolOptions options) {
     Impl& s = *impl_;
     require(problem.size() == s.size && unknowns.size() == s.size && options.unknown_scale.size() == s.size,
             "KinsolSolver: sizes differ");
@@ -386,6 +395,7 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     const long factorisations_before = s.factorisations;
     s.vectors.take(unknowns, s.z.get());
     s.vectors.take(options.unknown_scale, s.u_scale.get());
+    options.unknown_scale.resize(0); // as long as the model
     N_VConst(options.residual_scale, s.f_scale.get());
     s.create(options);
 
@@ -396,7 +406,7 @@ KinsolResult KinsolSolver::solve(NonlinearProblem& problem, Vector& unknowns, co
     s.vectors.give(s.z.get(), unknowns);
     long iterations = 0;
     KINGetNumNonlinSolvIters(s.memory, &iterations);
-    KINFree(&s.memory); // its vectors are as long as the others
+    s.end();
     result.iterations = static_cast<int>(iterations);
     result.factorisations = static_cast<int>(s.factorisations - factorisations_before);
     result.residual = s.last_residual;

@@ -22,6 +22,11 @@ public:
 
     /// Null: vectors are whole. @returns whether those made before have another shape, or there are none
     [[nodiscard]] bool shape_for(Slices* slices);
+    /// Lets go of the scratch; shape_for() makes it again.
+    void release() {
+        shaped_ = false;
+        for (Vector* whole : {&whole_in, &whole_out}) whole->resize(0);
+    }
     [[nodiscard]] bool in_slices() const { return slices_ != nullptr; }
     [[nodiscard]] Slices* slices() const { return slices_; }
     /// One more vector. @pre shape_for()

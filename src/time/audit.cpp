@@ -56,9 +56,9 @@ Audit::Audit(const model::Model& model, const std::vector<std::vector<mesh::Face
 }
 
 const contact::AuditResult& Audit::examine(const Field& u) {
-    x_ = sum(model_.X, u);
-    result_ = surfaces_.examine(x_);
-    if (!exact_.empty()) exact_.examine(x_, result_);
+    const Field x = sum(model_.X, u);
+    result_ = surfaces_.examine(x);
+    if (!exact_.empty()) exact_.examine(x, result_);
     return result_;
 }
 

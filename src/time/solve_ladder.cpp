@@ -221,10 +221,10 @@ LadderResult solve_trial(equilibrium::Equilibrium& equilibrium, solve::KinsolSol
 }
 
 LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
-                   const Vector& unpredicted, const equilibrium::Statuses& start, bool force_first,
+                   const std::function<Vector()>& unpredicted, const equilibrium::Statuses& start, bool force_first,
                    const LadderOptions& options) {
     LadderOptions now = options;
-    const bool predicted = z != unpredicted;
+    const bool predicted = z != unpredicted();
     LadderResult result;
     struct Sprung {
         LadderResult result;
@@ -262,7 +262,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         singular = found_singular();
         if (start.empty()) return singular;
         equilibrium.set_impatient(false);
-        z = unpredicted;
+        z = unpredicted();
         if (options.settles) equilibrium.forget_paths();
         LadderResult rubbed = settle_friction(equilibrium, solver, z, start, now);
         rubbed.iterations += result.iterations;
@@ -272,7 +272,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
             return singular;
         }
         result.iterations = rubbed.iterations;
-        z = unpredicted;
+        z = unpredicted();
         if (options.settles) equilibrium.forget_paths();
         if (predicted && newton("semismooth Newton without predictor", options.unpredicted, force_first))
             return singular;
@@ -281,7 +281,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
             z = equilibrium.midpoint();
             if (newton("semismooth Newton from the mean of two iterates", {}, false)) return singular;
         }
-        z = unpredicted;
+        z = unpredicted();
         LadderResult settled = settle(equilibrium, solver, z, start, now);
         settled.iterations += result.iterations;
         settled.reference_force = now.reference_force;
@@ -289,7 +289,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         if (result.converged() && !admitted(result)) result.outcome = KinsolOutcome::stopped;
         if (result.converged() || !options.settles) return singular || found_singular();
         const Vector failed = z;
-        z = unpredicted;
+        z = unpredicted();
         equilibrium.forget_paths();
         LadderResult held = settle_geometry(equilibrium, solver, z, start, now);
         result.iterations += held.iterations;

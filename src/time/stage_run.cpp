@@ -111,7 +111,6 @@ StepAttempt StageRun::prepare() {
     const double reference = reference_force(context_, stage_, constraints_, state, load, attempt.dt);
     equilibrium().begin_attempt(state, load, attempt.dt);
     attempt.z = equilibrium().unknowns(u, state.contact);
-    attempt.unpredicted = equilibrium().unknowns(state.u, state.contact);
     const Field start = equilibrium().displacements(attempt.z);
 
     LadderOptions& ladder = attempt.ladder;
@@ -177,8 +176,10 @@ void StageRun::trial(StepAttempt& attempt) {
 }
 
 void StageRun::solve(StepAttempt& attempt) {
-    attempt.result = climb(equilibrium(), machinery_->solver, attempt.z, attempt.unpredicted, attempt.statuses,
-                           attempt.forced, attempt.ladder);
+    const model::State& state = progress_.state;
+    const auto unpredicted = [&] { return equilibrium().unknowns(state.u, state.contact); };
+    attempt.result = climb(equilibrium(), machinery_->solver, attempt.z, unpredicted, attempt.statuses, attempt.forced,
+                           attempt.ladder);
     attempt.iterations += attempt.result.iterations;
     const int every = context_.options.reject_every;
     StepEvidence& evidence = attempt.evidence;

@@ -22,7 +22,7 @@ struct StepAttempt {
     double proposed = 0;     ///< dt where no time to hit were near
     bool on_target = false;
     Field force;                    ///< (nodes) dead loads of the step's equations, N; of dynamic steps alone
-    Vector z, unpredicted;          ///< start values, the last iterate afterwards; the same without prediction
+    Vector z;                       ///< start values, the last iterate afterwards
     equilibrium::Statuses statuses; ///< to start from
     bool forced = false;            ///< contact made by hand, see starting_statuses()
     LadderOptions ladder;

@@ -3,6 +3,7 @@
 
 #include "osculate/core/field.hpp"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,10 @@ public:
     /// @param sizes  (count) how many each has
     /// @param all    those of rank 0, then those of rank 1, ...
     virtual void gather(std::span<const double> own, std::span<const int> sizes, double* all) = 0;
+    /// The same, from a few ranks at a time, so that the numbers of all need no room.
+    /// @param each  called with a rank and its numbers, rank by rank
+    void gather_in_turns(std::span<const double> own, std::span<const int> sizes,
+                         const std::function<void(int rank, const double* numbers)>& each);
     /// Sends a list to each rank, and gets one from each. An empty list costs no message.
     /// @param out  (count) lists for each
     /// @param in   (count) of the lengths that come
@@ -56,10 +61,15 @@ public:
     }
     /// Takes the values of all nodes from their owners.
     void replicate(Field& field) const;
+    /// field += the values of owners. @param own  (own nodes)
+    void add(const std::vector<Vec3>& own, Field& field) const;
     /// Whether all processes hold the same bits.
     [[nodiscard]] bool agree(const Field& field) const;
 
 private:
+    /// Calls each(node, value) with the values of owners.
+    template <class Each> void for_each(const std::vector<Vec3>& own, Each&& each) const;
+
     std::shared_ptr<Ranks> ranks_;
     std::vector<int> owner_;
     std::vector<Index> by_owner_; ///< nodes of rank 0, of rank 1, ...

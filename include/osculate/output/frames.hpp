@@ -56,13 +56,16 @@ private:
     };
     struct File {
         const Surface* surface = nullptr; ///< null: of a body
+        Index number = -1;                ///< of the body
         const model::Body* body = nullptr;
         const Piece* piece = nullptr; ///< of the body; null: all of it
         std::string part, name;
         std::vector<Array> arrays;
     };
-    [[nodiscard]] std::vector<File> files_of(const Snapshot& snapshot, long number) const;
-    void write_files(const std::vector<File>& files, const Vec3& origin, double time) const;
+    /// Without values.
+    [[nodiscard]] std::vector<File> files_of(const model::Model& model, long number) const;
+    void take_values(File& file, const Snapshot& snapshot) const;
+    void write_file(const File& file, const Vec3& origin, double time) const;
     void list(const std::vector<File>& files, long number, double time);
     [[nodiscard]] bool first() const { return share_ == nullptr || share_->ranks().rank() == 0; }
     void add_surface(const model::Model& model, std::string name, Index pair, const std::vector<Index>& nodes,

@@ -8,6 +8,7 @@
 #include "osculate/output/piece.hpp"
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,15 +37,17 @@ public:
 
     [[nodiscard]] const model::Model& model() const { return model_; }
     [[nodiscard]] const model::State& state() const { return state_; }
-    [[nodiscard]] const std::vector<Vec3>& reactions() const { return reactions_; }
+    [[nodiscard]] const std::vector<Vec3>& reactions() const { return *reactions_; }
     /// Empty if the state is an equilibrium.
-    [[nodiscard]] const std::vector<Vec3>& out_of_balance() const { return out_of_balance_; }
+    [[nodiscard]] const std::vector<Vec3>& out_of_balance() const { return *out_of_balance_; }
     [[nodiscard]] double dt() const { return dt_; }
     [[nodiscard]] const contact::AuditResult* audit() const { return audit_; }
     /// Current positions x = X + u of all nodes, m; computed at the first call.
     [[nodiscard]] const Field& x() const;
     /// Nodal stress of a body (nodes x 6), Pa; computed at the first call.
     [[nodiscard]] const Stress& stress(Index body) const;
+    /// Lets go of it, of all bodies.
+    void forget_stress() const { stress_.clear(); }
     /// Contact of all pairs, node by node; computed at the first call.
     [[nodiscard]] const NodalContact& nodal_contact() const;
     /// Contact evaluation of a pair.
@@ -60,7 +63,7 @@ private:
     const model::Model& model_;
     const model::State& state_;
     const model::ContactEvaluations& contact_;
-    std::vector<Vec3> reactions_, out_of_balance_;
+    std::shared_ptr<const std::vector<Vec3>> reactions_, out_of_balance_; ///< those of pieces are the same
     double dt_;
     const contact::AuditResult* audit_;
     const std::vector<Piece>* pieces_ = nullptr; ///< null: whole bodies

@@ -149,7 +149,7 @@ public:
 
     /// Solves F(z) = 0 from the start value in z (n), which contains the last iterate afterwards. Rethrows whatever the
     /// problem's callbacks threw.
-    [[nodiscard]] KinsolResult solve(NonlinearProblem& problem, Vector& z, const KinsolOptions& options);
+    [[nodiscard]] KinsolResult solve(NonlinearProblem& problem, Vector& z, KinsolOptions options);
     /// Linearises at the problem's last residual. @returns false if J is singular
     [[nodiscard]] bool linearise(NonlinearProblem& problem);
     /// x = J^-1 b (n), to |b - J x| <= 1e-10 |b|. @returns false if J is singular, or too large to be factorised where GMRES fails. @pre linearise(), and no residual since

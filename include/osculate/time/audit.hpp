@@ -34,7 +34,6 @@ private:
     const model::Model& model_;
     contact::SurfaceAudit surfaces_;
     ExactAudit exact_;
-    Field x_;
     contact::AuditResult result_;
     std::set<std::pair<Index, Index>> apart_;         ///< see pass_over()
     std::map<std::pair<Index, Index>, double> drawn_; ///< excess in the reference configuration, m

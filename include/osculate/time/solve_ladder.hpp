@@ -73,11 +73,11 @@ struct LadderResult {
 ///   that nothing determines remain as they are
 /// The stepper decides about a smaller step or a failure.
 /// @param z            predicted start values; last iterate afterwards
-/// @param unpredicted  start values without prediction
+/// @param unpredicted  gives start values without prediction
 /// @param start        statuses at the start
 /// @param force_first  use these for the first iterate of rung 1, even if the complementarity functions differ
 [[nodiscard]] LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
-                                 const Vector& unpredicted, const equilibrium::Statuses& start, bool force_first,
-                                 const LadderOptions& options);
+                                 const std::function<Vector()>& unpredicted, const equilibrium::Statuses& start,
+                                 bool force_first, const LadderOptions& options);
 
 } // namespace osculate::time

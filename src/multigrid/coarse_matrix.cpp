@@ -3,6 +3,7 @@
 #include "multigrid/triple_product.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <utility>
 
 namespace osculate::solve {
@@ -22,14 +23,16 @@ struct NodeRows {
 } // namespace
 
 CoarseMatrix::CoarseMatrix(const FreeNodes& nodes, const Prolongation& P, const NodalMatrix& bodies, int threads)
-    : nodes_(nodes), P_(P), threads_(threads), rows_(P.exchange(), P.aggregates(), P.first_number()) {
+    : nodes_(nodes), P_(P), threads_(threads), rows_(P.exchange(), P.aggregates(), P.first_number()), of_bodies_(rows_),
+      more_(static_cast<std::size_t>(P.with_copies())) {
     rows_.lay_out(neighbours_of_product(NodeRows{nodes, bodies}, P));
+    of_bodies_ = rows_.without_columns();
     take(bodies);
 }
 
 void CoarseMatrix::take(const NodalMatrix& bodies) {
-    rows_.set_zero(bodies_);
-    add_product(NodeRows{nodes_, bodies}, P_, threads_, rows_, bodies_);
+    of_bodies_.set_zero(bodies_);
+    add_product(NodeRows{nodes_, bodies}, P_, threads_, of_bodies_, bodies_);
 }
 
 bool CoarseMatrix::couple(const Coupling& coupling) {
@@ -41,39 +44,41 @@ bool CoarseMatrix::couple(const Coupling& coupling) {
                     for (Index n = P_.row_begin(j); n < P_.row_end(j); ++n) each(coupling.block(b), i, k, j, n);
             }
     };
-    BlockRows::Neighbours neighbours(static_cast<std::size_t>(P_.with_copies()));
-    bool grown = false;
+    // the pattern depends on this coupling alone, not on those before: PETSc's sums go along patterns
+    BlockRows::Neighbours more(static_cast<std::size_t>(P_.with_copies()));
     for_each([&](const Mat3&, Index, Index k, Index, Index n) {
         const Index row = P_.aggregate(k), column = P_.number(P_.aggregate(n));
-        if (rows_.has(row, column)) return;
-        neighbours[row].push_back(column);
-        grown = true;
+        std::vector<Index>& list = more[row];
+        if ((list.empty() || list.back() != column) && !of_bodies_.has(row, column)) list.push_back(column);
     });
-    if (!P_.exchange().alone()) grown = sum_over_ranks({grown ? 1.0 : 0.0}).front() > 0;
-    if (grown) {
-        for (Index a = 0; a < rows_.rows(); ++a)
-            rows_.for_row(a, bodies_,
-                          [&](Index number, const double*, std::size_t) { neighbours[a].push_back(number); });
-        const BlockRows before = rows_.without_columns();
-        rows_.lay_out(std::move(neighbours));
-        rows_.set_zero(values_);
-        for (Index a = 0; a < before.rows(); ++a)
-            before.for_row(a, bodies_, [&](Index number, const double* first, std::size_t length) {
-                BlockRows::Square block;
-                for (Index r = 0; r < modes; ++r, first += length)
-                    for (Index m = 0; m < modes; ++m) block(r, m) = first[m];
-                rows_.add(a, number, block, values_);
-            });
-        std::swap(bodies_, values_);
+    for (std::vector<Index>& list : more) {
+        std::ranges::sort(list);
+        list.erase(std::unique(list.begin(), list.end()), list.end());
     }
-    values_ = bodies_; // in the same memory where the pattern is the same
+    bool changed = more != more_;
+    if (!P_.exchange().alone()) changed = sum_over_ranks({changed ? 1.0 : 0.0}).front() > 0;
+    if (changed) {
+        more_ = more;
+        for (Index a = 0; a < of_bodies_.rows(); ++a)
+            of_bodies_.for_row(a, bodies_,
+                               [&](Index number, const double*, std::size_t) { more[a].push_back(number); });
+        rows_.lay_out(std::move(more));
+    }
+    rows_.set_zero(values_);
+    for (Index a = 0; a < of_bodies_.rows(); ++a)
+        of_bodies_.for_row(a, bodies_, [&](Index number, const double* first, std::size_t length) {
+            BlockRows::Square block;
+            for (Index r = 0; r < modes; ++r, first += length)
+                for (Index m = 0; m < modes; ++m) block(r, m) = first[m];
+            rows_.add(a, number, block, values_);
+        });
     for_each([&](const Mat3& block, Index i, Index k, Index j, Index n) {
         rows_.add(P_.aggregate(k), P_.number(P_.aggregate(n)), P_.block(i, k).transpose() * (block * P_.block(j, n)),
                   values_);
     });
     rows_.take_from_others(values_);
     rows_.mend(values_);
-    return grown;
+    return changed;
 }
 
 bool CoarseMatrix::loose() const {

@@ -14,21 +14,22 @@ public:
     /// Takes the values of the bodies.
     void take(const NodalMatrix& bodies);
     /// Sum of the bodies' last values and a coupling.
-    /// @returns  whether the pattern has grown
+    /// @returns  whether the pattern has changed
     bool couple(const Coupling& coupling);
     /// Whether some motion of bodies without strain costs no energy. Only such a motion can: the energy of the bodies and that of
     /// their coupling are never negative.
     [[nodiscard]] bool loose() const;
 
     [[nodiscard]] BlockRows& rows() { return rows_; }
-    /// Of the last couple(), in the same place until the pattern grows.
+    /// Of the last couple(), in the same place until the pattern changes.
     [[nodiscard]] BlockRows::Values& values() { return values_; }
 
 private:
     const FreeNodes& nodes_;
     const Prolongation& P_;
     int threads_;
-    BlockRows rows_;
+    BlockRows rows_, of_bodies_; ///< of the last couple(), of the bodies alone
+    BlockRows::Neighbours more_; ///< what the first has beyond the second
     BlockRows::Values bodies_, values_;
 };
 

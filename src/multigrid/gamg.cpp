@@ -83,20 +83,20 @@ public:
     FactorStatus couple(std::span<const NodalBlock> blocks) override {
         if (nothing_free()) return hubs_->eliminate(blocks, {}, {});
         Coupling coupling(*nodes_, blocks);
-        const bool grown = coarse_->couple(coupling);
+        const bool replaced = coarse_->couple(coupling); // the pattern
         fine_->couple(std::move(coupling));
-        if (grown) {
+        if (replaced) {
             PCDestroy(&cycle_); // it keeps what is replaced, some of it even where it gets another pattern
             wrap_coarse();
             make_cycle();
         }
         if (coarse_->loose()) return FactorStatus::singular;
         changed(below_.back());
-        if (grown) third_.reset();
+        if (replaced) third_.reset();
         for (std::size_t level = below_.size(); level-- > 0;) {
             Mat& A = below_[level];
             if (level + 1 < below_.size()) {
-                if (grown) MatDestroy(&A);
+                if (replaced) MatDestroy(&A);
                 if (alone_)
                     project(below_[level + 1], interpolation_[level], A);
                 else if (level + 2 == below_.size())

@@ -3,6 +3,7 @@
 #include "osculate/core/error.hpp"
 #include "osculate/core/ranks.hpp"
 #include "osculate/solve/join_ranks.hpp"
+#include "solve/blas_threads.hpp"
 
 #include <dlfcn.h>
 #include <string>
@@ -25,6 +26,7 @@ template <class Function> Function of_module(const char* name, const char* what,
 } // namespace
 
 std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns, int threads) {
+    use_one_blas_thread(); // before PETSc's first sum: those of other kernels have other last digits
     using Make = Multigrid* (*)(NodalUnknowns*, int);
     static const auto make =
         of_module<Make>("osculate_make_multigrid", "multigrid", "solver.linear_solver: iterative does not need it");

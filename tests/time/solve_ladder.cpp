@@ -115,7 +115,8 @@ TEST_F(Ladder, TakesBackHalfOfTheReleasedNodesAndStartsFromTheLastSolution) {
 
     begin();
     Vector z = start;
-    const LadderResult result = climb(*equilibrium, *solver, z, start, all, true, ladder);
+    const LadderResult result = climb(
+        *equilibrium, *solver, z, [&] { return start; }, all, true, ladder);
     EXPECT_STREQ(result.rung, "frozen statuses");
     EXPECT_THAT(equilibrium->recent_statuses(), Contains(pressed));
     EXPECT_THAT(equilibrium->recent_statuses(), Contains(half)) << "not half, or tried where the base was lost";
@@ -134,7 +135,8 @@ TEST_F(Ladder, TakesItsSecondRungFromTheStartWithoutPrediction) {
     trap = {pair().vertices(x), 0.5 * ahead.norm()};
 
     Vector z = equilibrium->unknowns(predicted, state.contact);
-    const LadderResult result = climb(*equilibrium, *solver, z, start, all, true, ladder);
+    const LadderResult result = climb(
+        *equilibrium, *solver, z, [&] { return start; }, all, true, ladder);
     EXPECT_TRUE(result.converged());
     EXPECT_STREQ(result.rung, "semismooth Newton without predictor");
 }
@@ -172,7 +174,8 @@ TEST_F(Ladder, TakesItsSpringsAwayFromABodyThatNothingHolds) {
                             .gap = [] { return 0.1; },
                             .farthest = 0.5};
     Vector z = start;
-    const LadderResult result = climb(*equilibrium, *solver, z, start, all, true, ladder);
+    const LadderResult result = climb(
+        *equilibrium, *solver, z, [&] { return start; }, all, true, ladder);
     EXPECT_EQ(result.outcome, KinsolOutcome::singular);
     EXPECT_GT(result.stabilised_solves, 0);
     EXPECT_GE(result.adrift, model.bodies[1].first_node);

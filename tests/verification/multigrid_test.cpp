@@ -155,6 +155,30 @@ TEST_F(Multigrid, TakesMoreSpringsThanBefore) {
     EXPECT_EQ(one_by_one.cycle(b), at_once.cycle(b));
 }
 
+/// As a run that goes on from a checkpoint does, or one that has taken a step back.
+TEST_F(Multigrid, ForgetsSpringsThatAreGone) {
+    const Blocks before(24, 1), afresh(24, 1);
+    const Vector b = Vector::Ones(before.size());
+    ASSERT_EQ(before.couple(), solve::FactorStatus::ok);
+    ASSERT_EQ(before.couple(1, 12), solve::FactorStatus::ok);
+    ASSERT_EQ(afresh.couple(1, 12), solve::FactorStatus::ok);
+    EXPECT_EQ(before.cycle(b), afresh.cycle(b));
+    ASSERT_EQ(before.couple(), solve::FactorStatus::ok);
+    ASSERT_EQ(afresh.couple(), solve::FactorStatus::ok);
+    EXPECT_EQ(before.cycle(b), afresh.cycle(b));
+}
+
+/// Factorisations choose the kernels of BLAS, whose sums have other last digits.
+TEST_F(Multigrid, HasTheSameBitsAfterAFactorisation) {
+    const Blocks blocks(24, 1);
+    const Vector b = Vector::Ones(blocks.size());
+    ASSERT_EQ(blocks.couple(), solve::FactorStatus::ok);
+    const Vector before = blocks.cycle(b);
+    ASSERT_EQ(solve::make_cholesky()->factorise(blocks.stiffness->matrix()), solve::FactorStatus::ok);
+    ASSERT_EQ(blocks.couple(), solve::FactorStatus::ok);
+    EXPECT_EQ(blocks.cycle(b), before);
+}
+
 TEST_F(Multigrid, HasTheSameBitsForAnyNumberOfThreads) {
     const Blocks alone(12, 1);
     ASSERT_EQ(alone.couple(), solve::FactorStatus::ok);

@@ -4,6 +4,7 @@
 #include "osculate/core/file_content.hpp"
 #include "osculate/solve/join_ranks.hpp"
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -44,7 +45,10 @@ void Distributed::leave(int code, bool surprise) {
     // the first process comes last: it writes a report, or the last iterate
     constexpr double little = 20, much = 300, no_end = 1e9; // s, for others to come to the same end
     const double patience = code == 0 ? no_end : surprise || first() ? little : much;
-    if (ranks_->agree_on_end(code, patience)) return;
+    if (ranks_->agree_on_end(code, patience)) { // the run has ended: a signal changes no exit code any more
+        for (const int late : {SIGINT, SIGTERM}) std::signal(late, SIG_IGN);
+        return;
+    }
     std::fflush(nullptr);
     std::error_code none;
     const std::string said = first() ? std::string() : file_content(scratch_ / "said", none);

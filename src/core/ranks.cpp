@@ -52,8 +52,7 @@ bool Share::agree(const Field& field) const {
 }
 
 void Ranks::gather_in_turns(std::span<const double> own, std::span<const int> sizes,
-                            const std::function<void(int rank, const double* numbers)>& each) {
-    constexpr std::size_t most = 100000; // at a time, unless one rank has more
+                            const std::function<void(int rank, const double* numbers)>& each, std::size_t most) {
     std::vector<double> some;
     for (std::size_t begin = 0, end = 0; begin < sizes.size(); begin = end) {
         std::vector<int> now(sizes.size(), 0);

@@ -159,9 +159,10 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
     return assembled;
 }
 
-linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes,
+linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, std::vector<std::vector<Index>> neighbours,
                                        const std::shared_ptr<const Share>& share) {
-    linear::BlockMatrix K(neighbours(bodies, nodes), share);
+    linear::BlockMatrix K(neighbours, share);
+    std::vector<std::vector<Index>>().swap(neighbours);
     for (const Body& body : bodies) {
         if (body.rigid) continue;
         Matrix Ke;

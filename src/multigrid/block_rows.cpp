@@ -1,22 +1,23 @@
 #include "multigrid/block_rows.hpp"
 
+#include "osculate/core/error.hpp"
+
 namespace osculate::solve {
 namespace {
 
 /// For as much, and for some growth, as bodies touch in other places: memory of other lengths would leave holes behind.
 template <class Number> void make_room(std::vector<Number>& list, std::size_t size) {
-    constexpr std::size_t part = 8; // of it, which takes no memory before it is written
+    constexpr std::size_t spare = 8; // one part in eight more; pages that nobody writes take no memory
     if (list.capacity() >= size) return;
     std::vector<Number>().swap(list);
-    list.reserve(size + size / part);
+    list.reserve(size + size / spare);
 }
 
 } // namespace
 
 void BlockRows::lay_out(Neighbours neighbours) {
     const auto in_order = [&](std::vector<Index>& list) {
-        std::ranges::sort(list);
-        list.erase(std::unique(list.begin(), list.end()), list.end());
+        make_unique(list);
         std::ranges::stable_partition(list, [&](Index number) { return owns(number); });
     };
     for (std::vector<Index>& list : neighbours) in_order(list);
@@ -102,6 +103,7 @@ bool BlockRows::has(Index row, Index number) const {
 void BlockRows::add(Index row, Index number, const Square& block, Values& to) const {
     const Part& part = part_of(number);
     const std::size_t begin = part.start[row], length = modes * (part.start[row + 1] - begin);
+    require(has(row, number), "a coarse matrix was asked for a block that its pattern lacks");
     double* first = to[owns(number) ? 0 : 1].data() + modes * (modes * begin + slot(part, row, number) - begin);
     for (Index r = 0; r < modes; ++r, first += length)
         for (Index m = 0; m < modes; ++m) first[m] += block(r, m);
@@ -109,6 +111,7 @@ void BlockRows::add(Index row, Index number, const Square& block, Values& to) co
 
 void BlockRows::take_from_others(Values& values) const {
     if (exchange_->alone()) return;
+    require(of_ranks_.size() == exchange_->ranks(), "a pattern of this process alone has no rows of others");
     std::vector<std::vector<double>> lists(exchange_->ranks());
     for (std::size_t r = 0; r < lists.size(); ++r)
         for (Index a = exchange_->first_from(r); a < exchange_->end_from(r); ++a)

@@ -39,7 +39,7 @@ public:
     /// Unknowns without stiffness, of aggregates with fewer motions than six, get a diagonal for smoothers to divide by.
     void mend(Values& values) const;
 
-    /// A pattern that is not PETSc's.
+    /// The same pattern for values of this process alone: not for PETSc, nor for take_from_others().
     [[nodiscard]] BlockRows without_columns() const;
     [[nodiscard]] Index rows() const { return static_cast<Index>(parts_[0].start.size()) - 1; } ///< with copies
     [[nodiscard]] Index own() const { return own_; }

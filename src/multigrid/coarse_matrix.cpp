@@ -49,20 +49,21 @@ bool CoarseMatrix::couple(const Coupling& coupling) {
     for_each([&](const Mat3&, Index, Index k, Index, Index n) {
         const Index row = P_.aggregate(k), column = P_.number(P_.aggregate(n));
         std::vector<Index>& list = more[row];
-        if ((list.empty() || list.back() != column) && !of_bodies_.has(row, column)) list.push_back(column);
+        if ((!list.empty() && list.back() == column) || of_bodies_.has(row, column)) return;
+        if (list.size() == list.capacity()) make_unique(list); // many blocks join the same two aggregates
+        if (4 * list.size() >= 3 * list.capacity()) list.reserve(2 * list.size() + 8);
+        list.push_back(column);
     });
-    for (std::vector<Index>& list : more) {
-        std::ranges::sort(list);
-        list.erase(std::unique(list.begin(), list.end()), list.end());
-    }
+    std::ranges::for_each(more, make_unique);
     bool changed = more != more_;
     if (!P_.exchange().alone()) changed = sum_over_ranks({changed ? 1.0 : 0.0}).front() > 0;
     if (changed) {
-        more_ = more;
+        BlockRows::Neighbours of_coupling = more;
         for (Index a = 0; a < of_bodies_.rows(); ++a)
             of_bodies_.for_row(a, bodies_,
                                [&](Index number, const double*, std::size_t) { more[a].push_back(number); });
         rows_.lay_out(std::move(more));
+        more_ = std::move(of_coupling);
     }
     rows_.set_zero(values_);
     for (Index a = 0; a < of_bodies_.rows(); ++a)

@@ -29,7 +29,7 @@ private:
     const Prolongation& P_;
     int threads_;
     BlockRows rows_, of_bodies_; ///< of the last couple(), of the bodies alone
-    BlockRows::Neighbours more_; ///< what the first has beyond the second
+    BlockRows::Neighbours more_; ///< what the coupling here adds to the second
     BlockRows::Values bodies_, values_;
 };
 

@@ -3,10 +3,17 @@
 
 #include "osculate/core/types.hpp"
 
+#include <algorithm>
 #include <mpi.h>
 #include <vector>
 
 namespace osculate::solve {
+
+/// Numbers, ascending, each once.
+inline void make_unique(std::vector<Index>& list) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
 
 /// Each process sends one list to each, and gets one from each.
 template <class Number>

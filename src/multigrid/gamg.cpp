@@ -15,6 +15,7 @@
 #include <numeric>
 #include <optional>
 #include <petscksp.h>
+#include <span>
 #include <thread>
 
 namespace osculate::solve {
@@ -61,6 +62,8 @@ public:
         coarse_.emplace(nodes, *P_, undeformed, threads_);
         coarse_->couple({});
         wrap_coarse();
+        check(MatSetOption(below_.back(), MAT_SPD,
+                           PETSC_TRUE)); // as GAMG asks; smoothers of a tangent may not trust in it
         choose_grids();
         make_cycle();
         for (Vector* v : {&b_, &x_, &other_}) v->setZero(3 * nodes.with_copies());
@@ -87,16 +90,16 @@ public:
         fine_->couple(std::move(coupling));
         if (replaced) {
             PCDestroy(&cycle_); // it keeps what is replaced, some of it even where it gets another pattern
+            for (Mat& A : std::span(below_).first(below_.size() - 1)) MatDestroy(&A); // before any return
+            third_.reset();
             wrap_coarse();
             make_cycle();
         }
         if (coarse_->loose()) return FactorStatus::singular;
         changed(below_.back());
-        if (replaced) third_.reset();
         for (std::size_t level = below_.size(); level-- > 0;) {
             Mat& A = below_[level];
             if (level + 1 < below_.size()) {
-                if (replaced) MatDestroy(&A);
                 if (alone_)
                     project(below_[level + 1], interpolation_[level], A);
                 else if (level + 2 == below_.size())
@@ -188,16 +191,17 @@ private:
     static void project(Mat A, Mat P, Mat& coarse) {
         check(MatPtAP(A, P, coarse == nullptr ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse));
     }
-    /// The same for several processes, of the grid below ours.
+    /// P^T A P of the grid below ours, for several processes.
     void project_blocks(Mat P, Mat& coarse) {
         if (third_) {
             third_->take(coarse_->values());
             return changed(coarse);
         }
-        third_.emplace(P, coarse_->rows(), coarse_->values());
+        third_.emplace(P, coarse_->rows(), coarse_->values(), threads_);
         coarse = wrap(third_->rows(), third_->values());
     }
-    /// The same for several processes. Each computes its rows of A P and of P^T (A P) from rows that it asks for, in the same bits each time.
+    /// P^T A P of the grids below that. Each process computes its rows of A P and of P^T (A P) from rows that it asks for, in the
+    /// same bits each time.
     void project_row_by_row(std::size_t level, Mat& coarse) {
         restriction_.resize(interpolation_.size());
         half_way_.resize(interpolation_.size());
@@ -244,7 +248,6 @@ private:
                                                  rows.column(0), values[0].data(), rows.row_start(1), rows.column(1),
                                                  values[1].data(), &matrix));
         check(MatSetBlockSize(matrix, BlockRows::modes));
-        check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
         return matrix;
     }
     void wrap_coarse() {

@@ -79,8 +79,7 @@ Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const F
         for (Index i = begin; i < end; ++i) {
             reached.assign(1, aggregate_of(i));
             nodes.for_row(A, i, [&](Index j, const Mat3&) { reached.push_back(aggregate_of(j)); });
-            std::ranges::sort(reached);
-            reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+            make_unique(reached);
             const auto place = [&](Index a) { return std::ranges::lower_bound(reached, a) - reached.begin(); };
             row.assign(reached.size(), Block::Zero());
             const Mat3 D = w * grid.inverse_diagonal(i);
@@ -123,8 +122,7 @@ void Prolongation::store(const Rows& rows, const std::vector<Index>& first_of_ra
     for (const auto& row : rows)
         for (const auto& entry : row)
             if (!own(entry.first)) copied.push_back(entry.first);
-    std::ranges::sort(copied);
-    copied.erase(std::unique(copied.begin(), copied.end()), copied.end());
+    make_unique(copied);
     for (Index a = 0; a < aggregates_; ++a) number_.push_back(first_number_ + a);
     if (!nodes_.exchange().alone()) {
         std::vector<int> owner;

@@ -73,11 +73,6 @@ Exchange exchange_of(const std::vector<Index>& own, const std::vector<Index>& ot
     return {own, others, owner};
 }
 
-void make_unique(std::vector<Index>& list) {
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 std::vector<Index> numbers(Index first, Index count) {
     std::vector<Index> list;
     for (Index k = 0; k < count; ++k) list.push_back(first + k);
@@ -143,15 +138,15 @@ AggregateInterpolation::AggregateInterpolation(Mat P, const BlockRows& A) {
     }
 }
 
-ThirdMatrix::ThirdMatrix(Mat P, const BlockRows& A, const BlockRows::Values& values)
-    : A_(A), P_(P, A), rows_(P_.exchange(), P_.aggregates(), P_.first_number()) {
+ThirdMatrix::ThirdMatrix(Mat P, const BlockRows& A, const BlockRows::Values& values, int threads)
+    : A_(A), threads_(threads), P_(P, A), rows_(P_.exchange(), P_.aggregates(), P_.first_number()) {
     rows_.lay_out(neighbours_of_product(AggregateRows{A, values, P_.row_of_others()}, P_));
     take(values);
 }
 
 void ThirdMatrix::take(const BlockRows::Values& A) {
     rows_.set_zero(values_);
-    add_product(AggregateRows{A_, A, P_.row_of_others()}, P_, 1, rows_, values_);
+    add_product(AggregateRows{A_, A, P_.row_of_others()}, P_, threads_, rows_, values_);
     rows_.take_from_others(values_);
     rows_.mend(values_);
 }

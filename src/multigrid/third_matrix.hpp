@@ -37,11 +37,13 @@ private:
 };
 
 /// Each process multiplies its rows of A, block by block. PETSc's own product adds up what comes from others as it comes, with
-/// other bits each time, or holds A P, P^T and copies of all three.
+/// other bits each time, or keeps A P, P^T, and copies of rows of A and P.
 class ThirdMatrix {
 public:
     /// @param A  must outlive this object
-    ThirdMatrix(Mat P, const BlockRows& A, const BlockRows::Values& values);
+    ThirdMatrix(Mat P, const BlockRows& A, const BlockRows::Values& values, int threads);
+    ThirdMatrix(const ThirdMatrix&) = delete;
+    ThirdMatrix& operator=(const ThirdMatrix&) = delete;
     /// Takes other values of A.
     void take(const BlockRows::Values& A);
 
@@ -50,6 +52,7 @@ public:
 
 private:
     const BlockRows& A_;
+    int threads_;
     AggregateInterpolation P_;
     BlockRows rows_;
     BlockRows::Values values_;

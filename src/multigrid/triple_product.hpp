@@ -18,14 +18,12 @@ template <class Rows, class Interpolation>
         A.for_row(i, [&](Index j, const auto&) {
             for (Index k = P.row_begin(j); k < P.row_end(j); ++k) reached.push_back(P.number(P.aggregate(k)));
         });
-        std::ranges::sort(reached);
-        reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+        make_unique(reached);
         for (Index k = P.row_begin(i); k < P.row_end(i); ++k) {
             std::vector<Index>& list = neighbours[P.aggregate(k)];
             if (std::ranges::includes(list, reached)) continue;
             list.insert(list.end(), reached.begin(), reached.end());
-            std::ranges::sort(list);
-            list.erase(std::unique(list.begin(), list.end()), list.end());
+            make_unique(list);
         }
     }
     return neighbours;

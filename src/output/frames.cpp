@@ -162,7 +162,8 @@ void Frames::write(const Snapshot& snapshot, long number) {
         together([&] {
             files = files_of(snapshot.model(), number);
             const Snapshot of_pieces = snapshot.of_pieces(pieces_);
-            for (File& one : files) { // one after the other: only one's values are held
+            for (File& one :
+                 files) { // only one's values are held; no field is collective, so that one process may fail alone
                 take_values(one, of_pieces);
                 of_pieces.forget_stress();
                 write_file(one, origin, time);

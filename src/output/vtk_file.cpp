@@ -87,12 +87,12 @@ void write_vtu(const std::filesystem::path& path, const std::vector<Vec3>& point
     vtkNew<vtkCellArray> cells;
     vtkNew<vtkUnsignedCharArray> types;
     std::array<vtkIdType, mesh::most_nodes_per_cell> nodes{};
-    vtkIdType elements = 0, ends = 0;
+    vtkIdType elements = 0, connectivity = 0;
     for (const mesh::ElementBlock& block : blocks) {
         elements += block.size();
-        ends += static_cast<vtkIdType>(block.connectivity.size());
+        connectivity += static_cast<vtkIdType>(block.connectivity.size());
     }
-    cells->AllocateExact(elements, ends);
+    cells->AllocateExact(elements, connectivity);
     types->Allocate(elements);
     for (const mesh::ElementBlock& block : blocks) {
         const int count = nodes_per_cell(block.type);

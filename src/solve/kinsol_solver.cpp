@@ -283,7 +283,7 @@ struct KinsolSolver::Impl {
         for (VectorPtr* v : {&z, &u_scale, &f_scale}) *v = vectors.make();
     }
 
-    /// Slices are made anew for each solve: beside them there are whole vectors, of all processes, and the basis of GMRES.
+    /// Slices are made anew for each solve(): beside them there are whole vectors, of all processes, and the basis of GMRES.
     void end() {
         KINFree(&memory); // its vectors are as long as the others
         if (!vectors.in_slices()) return;

@@ -26,7 +26,7 @@ template <class Function> Function of_module(const char* name, const char* what,
 } // namespace
 
 std::unique_ptr<Multigrid> make_multigrid(NodalUnknowns unknowns, int threads) {
-    use_one_blas_thread(); // before PETSc's first sum: those of other kernels have other last digits
+    use_one_blas_thread(); // of the program's BLAS, which is PETSc's: sums by other kernels have other last digits
     using Make = Multigrid* (*)(NodalUnknowns*, int);
     static const auto make =
         of_module<Make>("osculate_make_multigrid", "multigrid", "solver.linear_solver: iterative does not need it");

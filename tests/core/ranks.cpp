@@ -25,6 +25,42 @@ TEST(Share, GivesEveryProcessTheValuesOfOwners) {
     });
 }
 
+TEST(Share, AddsTheValuesOfOwners) {
+    support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+        const Share share(ranks, owner);
+        std::vector<Vec3> own;
+        for (const Index node : share.nodes_of(ranks->rank()))
+            own.push_back(some_field()[static_cast<std::size_t>(node)]);
+        Field field(owner.size(), Vec3(1, 2, 3)), expected = field;
+        share.add(own, field);
+        expected.add(1, some_field());
+        EXPECT_EQ(field, expected);
+    });
+}
+
+TEST(Ranks, GatherTheSameInAnyNumberOfTurns) {
+    const std::vector<int> sizes{2, 0, 5, 1, 0};
+    support::on_ranks(5, [&](const std::shared_ptr<Ranks>& ranks) {
+        const auto numbers_of = [&](int rank) {
+            std::vector<double> numbers;
+            for (int k = 0; k < sizes[static_cast<std::size_t>(rank)]; ++k) numbers.push_back(10 * rank + k);
+            return numbers;
+        };
+        for (const std::size_t most : {1, 2, 3, 7, 100}) {
+            int next = 0;
+            ranks->gather_in_turns(
+                numbers_of(ranks->rank()), sizes,
+                [&](int rank, const double* numbers) {
+                    EXPECT_EQ(rank, next++);
+                    const std::vector<double> expected = numbers_of(rank);
+                    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), numbers)) << rank << " of " << most;
+                },
+                most);
+            EXPECT_EQ(next, 5);
+        }
+    });
+}
+
 TEST(Share, SeesASingleBit) {
     support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
         const Share share(ranks, owner);

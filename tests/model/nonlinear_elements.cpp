@@ -30,7 +30,7 @@ Model model_of(std::vector<Body> bodies) {
     model.bodies = std::move(bodies);
     for (const Body& body : model.bodies)
         model.X.values().insert(model.X.values().end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
-    model.K = assemble_stiffness(model.bodies, model.nodes());
+    model.K = assemble_stiffness(model.bodies, neighbours(model.bodies, model.nodes()));
     model.nonlinear = std::make_unique<NonlinearElements>(model.bodies, model.K);
     return model;
 }

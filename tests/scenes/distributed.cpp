@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 namespace osculate::scenes::OSCULATE_THIS_FILE {
 namespace {
@@ -75,6 +76,21 @@ protected:
                                  "--set 'bodies.lower.mesh.block.divisions=[8, 8, 8]' "
                                  "--set 'bodies.upper.mesh.block.divisions=[6, 6, 6]' --set stages.press.steps=2";
 };
+
+/// Grids of several processes are as good as those of one: there are four here.
+TEST_F(DistributedRun, TakesAsManyGmresIterations) {
+    const std::string finer = "--set solver.linear_solver=multigrid --set solver.tolerance=1e-10 "
+                              "--set 'bodies.lower.mesh.block.divisions=[20, 20, 20]' "
+                              "--set 'bodies.upper.mesh.block.divisions=[16, 16, 16]' --set output.template=minimal ";
+    std::vector<double> iterations;
+    for (const int ranks : {1, 3, 4}) {
+        const std::string run = "run_" + std::to_string(ranks);
+        ASSERT_EQ(with_ranks(ranks, scene, finer + "-o " + run), 0) << content(folder / "said.txt");
+        iterations.push_back(nlohmann::json::parse(content(folder / run / "summary.json"))["gmres_iterations"]);
+    }
+    EXPECT_GT(iterations.front(), 20);
+    for (const double several : iterations) EXPECT_NEAR(several, iterations.front(), 0.1 * iterations.front() + 1);
+}
 
 TEST_F(DistributedRun, GivesTheSameResultsWithAnyNumberOfProcesses) {
     for (const int ranks : {1, 2, 3, 4})

@@ -121,7 +121,7 @@ public:
 
     /// Matrices, and masses where bodies are to move.
     void finish(bool dynamic = false) {
-        model.K = model::assemble_stiffness(model.bodies, model.nodes());
+        model.K = model::assemble_stiffness(model.bodies, model::neighbours(model.bodies, model.nodes()));
         for (const model::Body& body : model.bodies)
             for (const auto& kernel : body.kernels)
                 if (!kernel->linear() && !model.nonlinear)

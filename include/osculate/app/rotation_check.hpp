@@ -45,6 +45,8 @@ private:
         bool led = false;
     };
 
+    [[nodiscard]] static Turned worst_of_all(const Turned& own, Ranks& ranks);
+    /// Where processes share the model, of elements at own nodes.
     void examine(std::size_t body, const model::State& state, const linear::Constraints& constraints,
                  const std::vector<char>& led);
 

@@ -23,8 +23,9 @@ public:
     virtual void gather(std::span<const double> own, std::span<const int> sizes, double* all) = 0;
     /// The same, from a few ranks at a time, so that the numbers of all need no room.
     /// @param each  called with a rank and its numbers, rank by rank
+    /// @param most  numbers at a time, unless one rank has more
     void gather_in_turns(std::span<const double> own, std::span<const int> sizes,
-                         const std::function<void(int rank, const double* numbers)>& each);
+                         const std::function<void(int rank, const double* numbers)>& each, std::size_t most = 200000);
     /// Sends a list to each rank, and gets one from each. An empty list costs no message.
     /// @param out  (count) lists for each
     /// @param in   (count) of the lengths that come

@@ -152,7 +152,9 @@ void move_tied(const Model& model, Field& u);
 /// Stiffness of all undeformed bodies, in the pattern of K.
 [[nodiscard]] linear::BlockMatrix undeformed_stiffness(const Model& model, int threads);
 /// Stiffness of the linear bodies, in the pattern of all bodies.
-[[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Index nodes,
+/// @param neighbours  of these bodies
+[[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies,
+                                                     std::vector<std::vector<Index>> neighbours,
                                                      const std::shared_ptr<const Share>& share = nullptr);
 
 /// Nodes that share an element, see linear::neighbours.

@@ -46,7 +46,7 @@ public:
     [[nodiscard]] const Field& x() const;
     /// Nodal stress of a body (nodes x 6), Pa; computed at the first call.
     [[nodiscard]] const Stress& stress(Index body) const;
-    /// Lets go of it, of all bodies.
+    /// Frees the stress of all bodies.
     void forget_stress() const { stress_.clear(); }
     /// Contact of all pairs, node by node; computed at the first call.
     [[nodiscard]] const NodalContact& nodal_contact() const;

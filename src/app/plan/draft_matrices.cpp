@@ -145,8 +145,9 @@ void add_gravity(Draft& draft) {
 void add_matrices(Draft& draft) {
     const ScopedTimer timer(draft.timings, Part::assembly);
     model::Model& model = draft.plan.model;
-    if (draft.ranks) model.share = share_nodes(draft);
-    model.K = model::assemble_stiffness(model.bodies, model.nodes(), model.share);
+    std::vector<std::vector<Index>> neighbours = model::neighbours(model.bodies, model.nodes());
+    if (draft.ranks) model.share = share_nodes(draft, neighbours);
+    model.K = model::assemble_stiffness(model.bodies, std::move(neighbours), model.share);
     if (draft.any_kernel([](const fe::ElementKernel& kernel) { return !kernel.linear(); }))
         model.nonlinear = std::make_unique<model::NonlinearElements>(model.bodies, model.K, model.share);
     add_mass(draft);

@@ -45,10 +45,13 @@ void Distributed::leave(int code, bool surprise) {
     // the first process comes last: it writes a report, or the last iterate
     constexpr double little = 20, much = 300, no_end = 1e9; // s, for others to come to the same end
     const double patience = code == 0 ? no_end : surprise || first() ? little : much;
-    if (ranks_->agree_on_end(code, patience)) { // the run has ended: a signal changes no exit code any more
-        for (const int late : {SIGINT, SIGTERM}) std::signal(late, SIG_IGN);
-        return;
-    }
+    const auto heed = [](auto how) {
+        for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, how);
+    };
+    if (code == 0)
+        heed(SIG_IGN); // this process is done: a signal must not end the first, which may still write the report
+    if (ranks_->agree_on_end(code, patience)) return heed(SIG_IGN);
+    heed(SIG_DFL);
     std::fflush(nullptr);
     std::error_code none;
     const std::string said = first() ? std::string() : file_content(scratch_ / "said", none);

@@ -116,6 +116,22 @@ void RotationCheck::accepted(const model::State& state, const linear::Constraint
         if (!model_.bodies[b].rigid) examine(b, state, constraints, led);
 }
 
+/// Of all processes; of equals the first element.
+RotationCheck::Turned RotationCheck::worst_of_all(const Turned& own, Ranks& ranks) {
+    const double numbers[] = {own.added,     own.angle,     own.time,     static_cast<double>(own.element),
+                              own.place.x(), own.place.y(), own.place.z()};
+    constexpr std::size_t n = std::size(numbers);
+    std::vector<double> all(n * static_cast<std::size_t>(ranks.count()));
+    ranks.gather(numbers, std::vector<int>(static_cast<std::size_t>(ranks.count()), static_cast<int>(n)), all.data());
+    Turned worst;
+    for (const double* one = all.data(); one != all.data() + all.size(); one += n) {
+        const auto element = static_cast<Index>(one[3]);
+        if (element >= 0 && (one[0] > worst.added || (one[0] == worst.added && element < worst.element)))
+            worst = {one[0], 0, one[1], one[2], element, Vec3(one[4], one[5], one[6])};
+    }
+    return worst;
+}
+
 void RotationCheck::examine(std::size_t b, const model::State& state, const linear::Constraints& constraints,
                             const std::vector<char>& led) {
     const model::Body& body = model_.bodies[b];
@@ -129,6 +145,7 @@ void RotationCheck::examine(std::size_t b, const model::State& state, const line
         if (body.kernels[k]->finite_strain()) continue;
         for (Index e = 0; e < block.size(); ++e) {
             const std::span own(&block.connectivity[static_cast<std::size_t>(e * n)], static_cast<std::size_t>(n));
+            if (model_.share && !model_.share->owns(body.first_node + own.front())) continue;
             const Nodes nodes(own, body.first_node, model_.X, state.u);
             const Mat3 H = gradient(nodes);
             strain = std::max(strain, largest_strain(nodes, H));
@@ -150,6 +167,12 @@ void RotationCheck::examine(std::size_t b, const model::State& state, const line
                     note(forced, std::min(added, shortening(nodes.dX[j] - nodes.dX[i], du)));
                 }
         }
+    }
+    if (model_.share) {
+        Ranks& ranks = model_.share->ranks();
+        strain = ranks.largest(strain);
+        forced = worst_of_all(forced, ranks);
+        grown = worst_of_all(grown, ranks);
     }
     largest_ = std::max(largest_, grown.added);
     forced.led = true;

@@ -102,6 +102,27 @@ TEST_F(Resume, GoesOnWithTheNodesThatContactHasReached) {
     }
 }
 
+/// Multigrid keeps grids from step to step: contact that was, as all of the block's here, leaves no digit in them, nor does the
+/// factorisation that some step of the tool took.
+TEST_F(Resume, GoesOnByMultigridToTheLastBit) {
+    for (const auto& [name, every] : {std::pair{"rocking_block", "39"}, {"shallow_ironing", "16"}}) {
+        const std::string scene = scene_file("configs/extreme/" + std::string(name) + ".yaml");
+        std::vector<std::string> whole{"run", scene, "-o", "whole"},
+            broken{"run", scene, "-o", "run", "--checkpoint-every", every};
+        for (auto* run : {&whole, &broken})
+            run->insert(run->end(),
+                        {"--quiet", "--set", "solver.linear_solver=multigrid", "--set", "output.iterations=true"});
+        ASSERT_EQ(osculate(whole).code, 0);
+        ASSERT_EQ(osculate(broken).code, 0);
+        EXPECT_THAT(differing(folder / "run", folder / "whole"), IsEmpty()) << name;
+        fs::copy_file(folder / "run/checkpoint/state.previous", folder / "kept", fs::copy_options::overwrite_existing);
+        fs::remove(folder / "run/summary.json");
+        const Outcome outcome = resume({"--from", "kept"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(differing(folder / "run", folder / "whole"), IsEmpty()) << name;
+    }
+}
+
 TEST_F(Resume, RefusesWhatItCannotGoOnFrom) {
     const auto refusal = [&](const std::vector<std::string>& more = {}) {
         const Outcome outcome = resume(more);

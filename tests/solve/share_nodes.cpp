@@ -30,6 +30,23 @@ TEST(ShareNodes, GivesEachProcessAboutAsMany) {
     }
 }
 
+/// Shared out by clusters of nodes: as even, with borders less than twice as long as those of squares, which crosses cannot follow.
+TEST(ShareNodes, SharesLargeModelsAlongShortBorders) {
+    constexpr Index n = 300;
+    const std::vector<std::vector<Index>> neighbours = square(n);
+    for (const auto& [ranks, border] : {std::pair{2, 1.0 * n}, {4, 2.0 * n}}) {
+        const std::vector<int> owner = share_nodes(neighbours, ranks);
+        std::vector<int> count(static_cast<std::size_t>(ranks), 0);
+        int cut = 0;
+        for (std::size_t i = 0; i < owner.size(); ++i) {
+            ++count[static_cast<std::size_t>(owner[i])];
+            for (const Index j : neighbours[i]) cut += owner[static_cast<std::size_t>(j)] != owner[i] ? 1 : 0;
+        }
+        for (const int one : count) EXPECT_NEAR(one, 1.0 * n * n / ranks, 0.01 * n * n / ranks) << ranks;
+        EXPECT_LT(cut / 2, 2 * border) << ranks;
+    }
+}
+
 /// Opposite sides follow each other, and the corners by both sides.
 TEST(ShareNodes, KeepsNodesTogetherThatFollowEachOther) {
     constexpr Index n = 30;

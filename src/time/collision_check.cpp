@@ -27,6 +27,7 @@ CollisionCheck::CollisionCheck(const model::Model& model, model::ContactEvaluati
     : model_(model), contact_(contact), limits_(limits), paths_(paths), timings_(timings), threads_(threads) {}
 
 void CollisionCheck::begin_step(const model::State& state) {
+    u_ = &state.u;
     x_ = sum(model_.X, state.u);
     starts_.clear();
     for (std::size_t p = 0; p < contact_.size(); ++p) {
@@ -53,6 +54,7 @@ void CollisionCheck::begin_step(const model::State& state) {
             start.facet = point.facet;
         }
     }
+    x_ = {}; // nobody needs it while the step is solved
 }
 
 double CollisionCheck::length(std::size_t p, Index facet) const {
@@ -88,6 +90,7 @@ bool CollisionCheck::sheet_lost(std::size_t p, Index j, const Field& x) const {
 
 void CollisionCheck::add_trial(const Field& u, StepEvidence& evidence) {
     const Field x = sum(model_.X, u);
+    x_ = sum(model_.X, *u_);
     add_normal_motions(x, evidence);
     for (std::size_t p = 0; p < starts_.size(); ++p)
         for (Index j = 0; j < contact_[p].pair().size(); ++j) {
@@ -100,12 +103,15 @@ void CollisionCheck::add_trial(const Field& u, StepEvidence& evidence) {
             evidence.gaps.push_back({start.gap, point.gap, static_cast<Index>(p), j, length(p, point.facet)});
         }
     if (paths_) add_paths(x, evidence);
+    x_ = {};
 }
 
 void CollisionCheck::add_solution(const Field& u, StepEvidence& evidence) {
     const Field x = sum(model_.X, u);
+    x_ = sum(model_.X, *u_);
     add_normal_motions(x, evidence);
     if (paths_) add_paths(x, evidence);
+    x_ = {};
 }
 
 void CollisionCheck::add_normal_motions(const Field& x, StepEvidence& evidence) const {

@@ -37,6 +37,7 @@ public:
                    Timings& timings, int threads);
 
     /// Locates every slave node at the accepted state from which a step starts.
+    /// @param state  stays as it is until the step has ended
     void begin_step(const model::State& state);
     /// Adds the evidence of a trial with displacements u, at which contact was last evaluated.
     void add_trial(const Field& u, StepEvidence& evidence);
@@ -73,7 +74,8 @@ private:
     bool paths_;
     Timings& timings_;
     int threads_;
-    Field x_; ///< positions at the start
+    const Field* u_ = nullptr; ///< displacements at the start, of the state
+    Field x_;                  ///< positions at the start, while they are needed
     std::vector<std::vector<Start>> starts_;
     long followed_ = 0;
 };

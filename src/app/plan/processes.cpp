@@ -12,7 +12,7 @@
 namespace osculate::app {
 
 ProcessMemory process_memory(const Plan& plan) {
-    constexpr double program = 2.8e7, mpi_and_petsc = 5e7, element = 1600, unknown = 2230, sharing_out = 30;
+    constexpr double program = 2.8e7, mpi_and_petsc = 5e7, element = 1130, unknown = 1920, sharing_out = 30;
     constexpr std::array<std::string_view, 2> in_rows{"nonlinear elements", "inertia"};
     constexpr std::array<std::string_view, 4> in_unknowns{"stiffness", "multigrid", "condensation",
                                                           "Cholesky factorisation"};

@@ -67,7 +67,7 @@ def worst(cells):
     """Of cells "a / b", with the ! of any."""
     pairs = [[float(x) for x in re.sub("!", "", cell).split("/")] for cell in cells if "/" in cell]
     if not pairs:
-        return ", ".join(cell for cell in cells if cell) or "not run"
+        return ", ".join(dict.fromkeys(cell for cell in cells if cell)) or "not run"
     return " / ".join(f"{max(column):.0e}".replace("e-0", "e-").replace("e+00", "") for column in zip(*pairs)) + (
         " !" if any("!" in cell for cell in cells) else "")
 

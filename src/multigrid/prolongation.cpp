@@ -90,30 +90,9 @@ Prolongation::Prolongation(const FreeNodes& nodes, const NodalMatrix& A, const F
             for (std::size_t k = 0; k < reached.size(); ++k) rows[i].emplace_back(reached[k], row[k].cast<float>());
         }
     });
-    add_copied_rows(rows);
+    add_copied_rows(nodes.exchange(), rows);
     store(rows, first_of_rank);
     gather_motions(motions, body);
-}
-
-void Prolongation::add_copied_rows(Rows& rows) const {
-    const Exchange& exchange = nodes_.exchange();
-    if (exchange.alone()) return;
-    std::vector<std::vector<double>> lists(exchange.ranks());
-    for (std::size_t r = 0; r < lists.size(); ++r)
-        for (const Index i : exchange.sent_to(r)) {
-            lists[r].push_back(static_cast<double>(rows[i].size()));
-            for (const auto& [aggregate, block] : rows[i]) {
-                lists[r].push_back(aggregate);
-                lists[r].insert(lists[r].end(), block.data(), block.data() + stored);
-            }
-        }
-    const auto received = send_to_each(lists);
-    for (std::size_t r = 0; r < received.size(); ++r) {
-        const double* from = received[r].data();
-        for (Index i = exchange.first_from(r); i < exchange.end_from(r); ++i)
-            for (auto left = static_cast<Index>(*from++); left > 0; --left, from += 1 + stored)
-                rows[i].emplace_back(static_cast<Index>(from[0]), Eigen::Map<const Block>(from + 1).cast<float>());
-    }
 }
 
 void Prolongation::store(const Rows& rows, const std::vector<Index>& first_of_rank) {

@@ -2,6 +2,7 @@
 /// From six motions of each aggregate to displacements of nodes.
 
 #include "multigrid/aggregates.hpp"
+#include "multigrid/copied_rows.hpp"
 #include "multigrid/fine_grid.hpp"
 
 namespace osculate::solve {
@@ -46,12 +47,10 @@ private:
     using Stored = Eigen::Matrix<float, 3, modes, Eigen::RowMajor>;
     static constexpr std::size_t stored = 18;
 
-    using Rows = std::vector<std::vector<std::pair<Index, Stored>>>; ///< of nodes, by numbers of aggregates
+    using Rows = InterpolationRows<Stored>; ///< of nodes
 
     /// Motions of aggregates of all processes, from one's own.
     void gather_motions(const Matrix& own, const std::vector<Index>& body);
-    /// Rows of copied nodes, from their owners.
-    void add_copied_rows(Rows& rows) const;
     void store(const Rows& rows, const std::vector<Index>& first_of_rank);
 
     const FreeNodes& nodes_;

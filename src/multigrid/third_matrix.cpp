@@ -1,5 +1,6 @@
 #include "multigrid/third_matrix.hpp"
 
+#include "multigrid/copied_rows.hpp"
 #include "multigrid/petsc_check.hpp"
 #include "multigrid/triple_product.hpp"
 
@@ -7,8 +8,6 @@
 
 namespace osculate::solve {
 namespace {
-
-constexpr std::size_t entries = BlockRows::modes * BlockRows::modes;
 
 using Row = std::vector<std::pair<Index, BlockRows::Square>>; ///< by numbers of aggregates, ascending
 
@@ -32,26 +31,11 @@ Row row_of(Mat P, Index number) {
 }
 
 /// Of one's own rows, then of copied ones from their owners.
-std::vector<Row> rows_with_copies(Mat P, const BlockRows& A, const Exchange& exchange) {
-    std::vector<Row> rows;
+InterpolationRows<BlockRows::Square> rows_with_copies(Mat P, const BlockRows& A, const Exchange& exchange) {
+    InterpolationRows<BlockRows::Square> rows;
     for (Index i = 0; i < A.own(); ++i) rows.push_back(row_of(P, A.first_number() + i));
-    std::vector<std::vector<double>> lists(exchange.ranks());
-    for (std::size_t r = 0; r < lists.size(); ++r)
-        for (const Index i : exchange.sent_to(r)) {
-            lists[r].push_back(static_cast<double>(rows[i].size()));
-            for (const auto& [number, block] : rows[i]) {
-                lists[r].push_back(number);
-                lists[r].insert(lists[r].end(), block.data(), block.data() + entries);
-            }
-        }
-    const auto received = send_to_each(lists);
     rows.resize(static_cast<std::size_t>(exchange.end_from(exchange.ranks() - 1)));
-    for (std::size_t r = 0; r < received.size(); ++r) {
-        const double* from = received[r].data();
-        for (Index i = exchange.first_from(r); i < exchange.end_from(r); ++i)
-            for (auto left = static_cast<Index>(*from++); left > 0; --left, from += 1 + entries)
-                rows[i].emplace_back(static_cast<Index>(from[0]), Eigen::Map<const BlockRows::Square>(from + 1));
-    }
+    add_copied_rows(exchange, rows);
     return rows;
 }
 

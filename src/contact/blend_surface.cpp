@@ -41,6 +41,7 @@ public:
 
     std::span<const Index> patch_vertices(Index facet) const override { return reach_[facet]; }
     Index fallbacks() const override { return vertex_patches_.fallbacks; }
+    void add_replicas(Replicas& replicas) const override { replicas.add(*vertex_patches_.numbers); }
 
     void place(std::span<const FacetHit> hits, const std::vector<Vec3>& x, int threads,
                std::unique_ptr<Placement>& placement) const override {

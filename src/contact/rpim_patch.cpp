@@ -147,17 +147,33 @@ std::optional<RpimPatch> RpimPatch::fit(const MatrixX2& u, const Multiquadric& b
     G.bottomLeftCorner(terms, n) = D.transpose();
     const Matrix H = solve_square(G, Matrix::Identity(n + terms, n));
     if (!H.allFinite()) return std::nullopt;
-    const Index size = kernels::padded(n);
-    patch.t_.setZero(2, kernels::padded(n + patch.m_));
-    patch.t_.leftCols(n) = t.transpose();
-    patch.H_.setZero(n + patch.m_, size);
-    patch.H_.topLeftCorner(n, n) = H.topRows(n);
-    patch.H_.bottomLeftCorner(patch.m_, n) = Z * H.bottomRows(terms);
-    patch.D_.setZero(patch.m_, size);
-    patch.D_.leftCols(n) = all.transpose();
-    patch.fit_.setZero(patch.m_, size);
-    patch.fit_.leftCols(n) = Z * fit_columns(D, Matrix::Identity(n, n));
+    patch.size_ = kernels::padded(n);
+    patch.width_ = kernels::padded(n + patch.m_);
+    const auto numbers = std::make_shared<double[]>(patch.numbers()); // zeros
+    patch.numbers_ = numbers;
+    const auto rows = [&](const double* first, Index count, Index width) {
+        return Eigen::Map<Rows>(numbers.get() + (first - patch.t()), count, width);
+    };
+    rows(patch.t(), 2, patch.width_).leftCols(n) = t.transpose();
+    Eigen::Map<Rows> all_H = rows(patch.H(), n + patch.m_, patch.size_);
+    all_H.topLeftCorner(n, n) = H.topRows(n);
+    all_H.bottomLeftCorner(patch.m_, n) = Z * H.bottomRows(terms);
+    rows(patch.D(), patch.m_, patch.size_).leftCols(n) = all.transpose();
+    rows(patch.fit(), patch.m_, patch.size_).leftCols(n) = Z * fit_columns(D, Matrix::Identity(n, n));
     return patch;
+}
+
+std::shared_ptr<const std::vector<double>> RpimPatch::put_together(std::span<RpimPatch* const> patches) {
+    std::size_t count = 0;
+    for (const RpimPatch* patch : patches) count += patch->numbers();
+    const auto all = std::make_shared<std::vector<double>>();
+    all->reserve(count);
+    for (RpimPatch* patch : patches) {
+        const double* const first = all->data() + all->size();
+        all->insert(all->end(), patch->t(), patch->t() + patch->numbers());
+        patch->numbers_ = {all, first};
+    }
+    return all;
 }
 
 } // namespace osculate::contact

@@ -12,21 +12,18 @@ MatrixX3 RpimPatch::coefficients(const MatrixX3& x) const {
 
 void RpimPatch::coefficients(MatrixX3& x, MatrixX3& result) const {
     // H D = [0; 1]: what a polynomial fits passes through H unchanged but for round-off, which for the rest is smaller
-    const auto width = static_cast<Index>(t_.cols());
-    result.resize(width, 3);
-    kernels::coefficients(H_.data(), n_ + m_, D_.data(), fit_.data(), m_, padded_size(), x.data(), width,
-                          result.data());
+    result.resize(width_, 3);
+    kernels::coefficients(H(), n_ + m_, D(), fit(), m_, padded_size(), x.data(), width_, result.data());
 }
 
 void RpimPatch::tabulate(const Vec2& u, int rows, BasisTable& table) const {
     const Vec2 t = (u - c_) / dc_;
-    const auto width = static_cast<Index>(t_.cols());
-    table.width = width;
+    table.width = width_;
     table.rows = rows;
-    if (const auto needed = static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
+    if (const auto needed = static_cast<std::size_t>(width_) * static_cast<std::size_t>(rows);
         table.entries.size() < needed)
         table.entries.resize(needed);
-    kernels::radial_rows(basis_, t_.data(), t_.data() + width, width, t, dc_, rows, table.entries.data());
+    kernels::radial_rows(basis_, this->t(), this->t() + width_, width_, t, dc_, rows, table.entries.data());
     const double a = 1 / dc_, b = a * a; // chain rule of t(u)
     const double x = t.x(), y = t.y();
     const auto put = [&](int r, double one, double by_x, double by_y, double xx, double xy, double yy) {
@@ -83,15 +80,15 @@ void RpimPatch::weights(const Vec2& u, Eigen::Ref<Vector> phi, Eigen::Ref<Matrix
 }
 
 void RpimPatch::weights(const BasisTable& table, int rows, int exact, double* phi) const {
-    kernels::times(table.row(0), table.width, rows, H_.data(), n_ + m_, padded_size(), phi);
+    kernels::times(table.row(0), table.width, rows, H(), n_ + m_, padded_size(), phi);
     // D^T Phi = p to the last digit, as in coefficients(): forces and moments then balance
-    kernels::reproduce(table.row(0) + n_, table.width, exact, D_.data(), fit_.data(), m_, padded_size(), phi);
+    kernels::reproduce(table.row(0) + n_, table.width, exact, D(), fit(), m_, padded_size(), phi);
 }
 
 MatrixX3 RpimPatch::second_derivatives(const Vec2& u) const {
     tabulate(u, BasisTable::second, scratch);
     Rows phi_ab(3, padded_size());
-    kernels::times(scratch.row(3), scratch.width, 3, H_.data(), n_ + m_, padded_size(), phi_ab.data());
+    kernels::times(scratch.row(3), scratch.width, 3, H(), n_ + m_, padded_size(), phi_ab.data());
     return phi_ab.leftCols(n_).transpose();
 }
 

@@ -217,6 +217,7 @@ VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::ve
         VertexPatches found(fewer->topology, fewer->X, options);
         fallbacks = found.fallbacks + surface.vertex_count() - fewer->topology.vertex_count();
         patches = std::move(found.patches);
+        numbers = std::move(found.numbers);
         for (VertexPatch& patch : patches) {
             patch.vertex = fewer->vertex[patch.vertex];
             for (Index& v : patch.vertices) v = fewer->vertex[v];
@@ -247,6 +248,9 @@ VertexPatches::VertexPatches(const mesh::HalfEdgeSurface& surface, const std::ve
         std::sort(list.begin(), list.end());
         list.erase(std::unique(list.begin(), list.end()), list.end());
     }
+    std::vector<RpimPatch*> shapes;
+    for (VertexPatch& patch : patches) shapes.push_back(&patch.shape);
+    numbers = RpimPatch::put_together(shapes);
 }
 
 std::vector<Index> VertexPatches::looked_at(Index patch) const {

@@ -32,6 +32,7 @@ struct VertexPatches {
     std::vector<VertexPatch> patches;
     std::vector<std::vector<Index>> of_facet; ///< patches of the vertices of a facet's 2-ring, ascending
     std::vector<char> bare;                   ///< per facet, whether one of its vertices has no patch on its side
+    std::shared_ptr<const std::vector<double>> numbers; ///< of the shapes as first fitted
     Index fallbacks = 0; ///< vertices merged, without a patch, or with a smaller or simpler one than asked for
 
     VertexPatches(const mesh::HalfEdgeSurface& surface, const std::vector<Vec3>& X, const BlendOptions& options);

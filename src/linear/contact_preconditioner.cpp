@@ -24,7 +24,9 @@ ContactPreconditioner::ContactPreconditioner(const Constraints& constraints, con
                                              std::function<BlockMatrix()> undeformed)
     : constraints_(constraints), K_(&K), first_(&K), undeformed_(std::move(undeformed)), stiffness_(constraints, K),
       solver_(multigrid ? nullptr : solve::make_condensing_cholesky({})), multigrid_(std::move(multigrid)),
-      softness_(multigrid_ ? softness_multigrid : softness_factorised), load_(constraints.equations()) {}
+      softness_(multigrid_ ? softness_multigrid : softness_factorised), load_(constraints.equations()) {
+    if (K.share() != nullptr) forget({load_.data(), static_cast<std::size_t>(load_.size())}); // written in part
+}
 
 solve::FactorStatus ContactPreconditioner::factorise(std::vector<SoftContact> contacts) {
     contacts_ = std::move(contacts);

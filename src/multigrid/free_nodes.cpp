@@ -37,6 +37,20 @@ FreeNodes::FreeNodes(const NodalUnknowns& unknowns, const NodalMatrix& A) {
     exchange_ = Exchange({place_.begin(), place_.begin() + own_}, copied, owner);
 }
 
+NodalUnknowns FreeNodes::own(NodalUnknowns all) const {
+    NodalUnknowns own;
+    own.equation.reserve(3 * static_cast<std::size_t>(own_));
+    own.frame_number.reserve(static_cast<std::size_t>(own_));
+    for (Index i = 0; i < own_; ++i) {
+        const auto place = static_cast<std::size_t>(place_[i]);
+        for (std::size_t k = 0; k < 3; ++k) own.equation.push_back(all.equation[3 * place + k]);
+        own.frame_number.push_back(all.frame_number[place]);
+    }
+    own.frames = std::move(all.frames);
+    own.hubs = std::move(all.hubs);
+    return own;
+}
+
 void FreeNodes::add(const NodalUnknowns& unknowns, Index place) {
     number_[unknowns.node[place]] = static_cast<Index>(node_.size());
     node_.push_back(unknowns.node[place]);
@@ -49,8 +63,8 @@ void FreeNodes::add(const NodalUnknowns& unknowns, Index place) {
             projection += axis * axis.transpose();
         } else
             whole = false;
-    whole_.push_back(whole ? 1 : 0);
-    projection_.push_back(whole ? Mat3(Mat3::Identity()) : projection);
+    if (!whole && (projections_.size() == 1 || projections_.back() != projection)) projections_.push_back(projection);
+    projection_number_.push_back(whole ? 0 : static_cast<Index>(projections_.size()) - 1);
 }
 
 } // namespace osculate::solve

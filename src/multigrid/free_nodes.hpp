@@ -22,17 +22,19 @@ public:
     [[nodiscard]] Index number(Index node) const {
         return static_cast<std::size_t>(node) < number_.size() ? number_[node] : -1;
     }
-    [[nodiscard]] bool whole(Index i) const { return whole_[i]; } ///< no component is held
+    [[nodiscard]] bool whole(Index i) const { return projection_number_[i] == 0; } ///< no component is held
     /// Projection on the free directions, in global components.
-    [[nodiscard]] const Mat3& projection(Index i) const { return projection_[i]; }
+    [[nodiscard]] const Mat3& projection(Index i) const { return projections_[projection_number_[i]]; }
     [[nodiscard]] Mat3 projected(Index i, Index j, const Mat3& block) const {
-        return whole_[i] && whole_[j] ? block : Mat3(projection_[i] * block * projection_[j]);
+        return whole(i) && whole(j) ? block : Mat3(projection(i) * block * projection(j));
     }
     /// Calls each(j, block) for the projected blocks of row i, one's own.
     void for_row(const NodalMatrix& A, Index i, auto&& each) const {
         for (Index k = A.row_start[node_[i]]; k < A.row_start[node_[i] + 1]; ++k)
             if (const Index j = number(A.column[k]); j >= 0) each(j, projected(i, j, A.block[k]));
     }
+    /// What is read of one's own nodes once the grids are chosen, equations and frames, numbered as here; and the hubs.
+    [[nodiscard]] NodalUnknowns own(NodalUnknowns all) const;
     [[nodiscard]] const Exchange& exchange() const { return exchange_; }
 
 private:
@@ -40,8 +42,8 @@ private:
 
     Index own_ = 0;
     std::vector<Index> node_, place_, number_;
-    std::vector<char> whole_;
-    std::vector<Mat3> projection_;
+    std::vector<Index> projection_number_; ///< in projections_
+    std::vector<Mat3> projections_{Mat3::Identity()};
     Exchange exchange_;
 };
 

@@ -52,11 +52,12 @@ public:
     Gamg& operator=(const Gamg&) = delete;
 
     void coarsen(const NodalMatrix& undeformed) override {
+        require(alone_ || !nodes_, "grids are chosen once where processes share them");
         clear();
-        require(unknowns_.arm.size() == unknowns_.node.size(), "grids are chosen once where processes share them");
+        nothing_free_ = unknowns_.node.empty();
         const FreeNodes& nodes = nodes_.emplace(unknowns_, undeformed);
         hubs_.emplace(nodes, unknowns_).take(undeformed);
-        if (nothing_free()) return;
+        if (nothing_free_) return;
         fine_.emplace(nodes, undeformed, threads_);
         P_.emplace(nodes, undeformed, *fine_, unknowns_, threads_);
         coarse_.emplace(nodes, *P_, undeformed, threads_);
@@ -68,12 +69,12 @@ public:
         make_cycle();
         for (Vector* v : {&b_, &x_, &other_}) v->setZero(3 * nodes.with_copies());
         c_.setZero(Prolongation::modes * P_->with_copies());
-        if (!alone_) std::vector<Vec3>().swap(unknowns_.arm); // of all processes' nodes; the grids are chosen once
+        if (!alone_) unknowns_ = nodes.own(std::move(unknowns_));
     }
 
     void take(const NodalMatrix& bodies) override {
         hubs_->take(bodies);
-        if (nothing_free()) return;
+        if (nothing_free_) return;
         fine_->take(bodies);
         coarse_->take(bodies);
     }
@@ -84,7 +85,7 @@ public:
     }
 
     FactorStatus couple(std::span<const NodalBlock> blocks) override {
-        if (nothing_free()) return hubs_->eliminate(blocks, {}, {});
+        if (nothing_free_) return hubs_->eliminate(blocks, {}, {});
         Coupling coupling(*nodes_, blocks);
         const bool replaced = coarse_->couple(coupling); // the pattern
         fine_->couple(std::move(coupling));
@@ -128,17 +129,17 @@ public:
     }
 
     void cycle(const double* b, double* x) override {
-        if (nothing_free()) return hubs_->correct(b, x, b_, other_);
-        for_own_nodes([&](Index i, Index place) {
+        if (nothing_free_) return hubs_->correct(b, x, b_, other_);
+        for_own_nodes([&](Index i) {
             Vec3 local = Vec3::Zero();
-            for_equations(place, [&](Index k, SparseIndex e) { local(k) = b[e]; });
-            b_.segment<3>(3 * i) = unknowns_.frame(place) * local;
+            for_equations(i, [&](Index k, SparseIndex e) { local(k) = b[e]; });
+            b_.segment<3>(3 * i) = unknowns_.frame(i) * local;
         });
         cycle_on_nodes(b_, other_);
         hubs_->correct(b, x, b_, other_);
-        for_own_nodes([&](Index i, Index place) {
-            const Vec3 local = unknowns_.frame(place).transpose() * other_.segment<3>(3 * i);
-            for_equations(place, [&](Index k, SparseIndex e) { x[e] = local(k); });
+        for_own_nodes([&](Index i) {
+            const Vec3 local = unknowns_.frame(i).transpose() * other_.segment<3>(3 * i);
+            for_equations(i, [&](Index k, SparseIndex e) { x[e] = local(k); });
         });
     }
     [[nodiscard]] Index cycles_to_couple() const override { return hubs_ ? hubs_->cycles() : 0; }
@@ -157,18 +158,15 @@ private:
         fine_->sweep(b.data(), x_.data(), x.data(), momentum, second, x.data());
     }
 
-    /// Of all processes.
-    [[nodiscard]] bool nothing_free() const { return unknowns_.node.empty(); }
     void for_own_nodes(auto&& each) const {
         parallel_for(threads_, nodes_->size(), [&](Index begin, Index end) {
-            for (Index i = begin; i < end; ++i) each(i, nodes_->place(i));
+            for (Index i = begin; i < end; ++i) each(i);
         });
     }
     /// Calls each(local component, equation) of a node.
-    void for_equations(Index place, auto&& each) const {
+    void for_equations(Index i, auto&& each) const {
         for (Index k = 0; k < 3; ++k)
-            if (const SparseIndex e =
-                    unknowns_.equation[3 * static_cast<std::size_t>(place) + static_cast<std::size_t>(k)];
+            if (const SparseIndex e = unknowns_.equation[3 * static_cast<std::size_t>(i) + static_cast<std::size_t>(k)];
                 e >= 0)
                 each(k, e);
     }
@@ -360,7 +358,8 @@ private:
         nodes_.reset();
     }
 
-    NodalUnknowns unknowns_;
+    NodalUnknowns unknowns_;    ///< of one's own nodes alone once the grids are chosen: there both are numbered alike
+    bool nothing_free_ = false; ///< of all processes
     int threads_;
     bool alone_;
     MPI_Comm comm_;

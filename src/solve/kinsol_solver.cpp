@@ -223,6 +223,7 @@ struct KinsolSolver::Impl {
             problem->preconditioner()->precondition(values(r), values(y));
         };
         const double allowed = allowed_error(b);
+        if (vectors.in_slices()) vectors.forget_whole();
         Wear& wear = problem->preconditioner()->wear();
         SparseIndex suspect = -1;
         for (bool fresh = false; !fresh && preconditioner_failures < worth_trying;) {

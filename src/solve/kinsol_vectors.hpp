@@ -1,6 +1,7 @@
 #pragma once
 /// KINSOL's vectors: whole ones, or a process' own slices.
 
+#include "osculate/core/shared_pages.hpp"
 #include "osculate/core/slices.hpp"
 #include "osculate/core/types.hpp"
 
@@ -26,6 +27,10 @@ public:
     void release() {
         shaped_ = false;
         for (Vector* whole : {&whole_in, &whole_out}) whole->resize(0);
+    }
+    /// Before products, which write parts of the scratch, and read no others.
+    void forget_whole() {
+        for (Vector* whole : {&whole_in, &whole_out}) forget({whole->data(), static_cast<std::size_t>(whole->size())});
     }
     [[nodiscard]] bool in_slices() const { return slices_ != nullptr; }
     [[nodiscard]] Slices* slices() const { return slices_; }

@@ -62,6 +62,9 @@ public:
 
 private:
     [[nodiscard]] StepAttempt prepare();
+    /// What all processes of a machine hold, in the stage and in the attempt.
+    void keep_stage_once() const;
+    void keep_attempt_once(const StepAttempt& attempt) const;
     [[nodiscard]] bool wants_trial(const StepAttempt& attempt) const;
     /// With the statuses known at the start; its solution is where the equilibrium with contact starts from.
     void trial(StepAttempt& attempt);

@@ -223,12 +223,12 @@ StabilisationOptions stabilisation_options(RunContext& context, const model::Sta
     how.finest = part * context.characteristic_length;
     for (const model::ContactHistory& history : state.contact)
         how.finest = std::min(how.finest, history.pair->finest());
-    // options are copied, and need not copy this
-    how.gap = [&context, &state, u = std::make_shared<const Field>(u), how] {
+    how.start = std::make_shared<const Field>(u); // options are copied, and need not copy this
+    how.gap = [&context, &state, how] {
         if (state.contact.empty()) return 2 * how.finest; // of no account
         double least = how.farthest;
         for (std::size_t p = 0; p < state.contact.size(); ++p)
-            least = std::min(least, evaluated(context, p, state, *u).least_gap());
+            least = std::min(least, evaluated(context, p, state, *how.start).least_gap());
         return least;
     };
     return how;

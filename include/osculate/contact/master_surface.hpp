@@ -6,6 +6,7 @@
 #include "osculate/contact/search.hpp"
 #include "osculate/core/choices.hpp"
 #include "osculate/core/error.hpp"
+#include "osculate/core/shared_pages.hpp"
 #include "osculate/mesh/half_edge_surface.hpp"
 
 #include <memory>
@@ -90,6 +91,8 @@ public:
     [[nodiscard]] virtual Index refits_done() const { return 0; }
     /// Number of facets that use a smaller or simpler patch as fallback.
     [[nodiscard]] virtual Index fallbacks() const { return 0; }
+    /// Adds the large arrays of the surface as it was first made.
+    virtual void add_replicas(Replicas& replicas) const { (void)replicas; }
 };
 
 /// The finite element surface itself, with each facet extended past its edges.

@@ -5,7 +5,9 @@
 #include "osculate/contact/radial_basis.hpp"
 #include "osculate/contact/surface_patch.hpp"
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace osculate::contact {
@@ -79,22 +81,28 @@ public:
     [[nodiscard]] PatchThird third(const Vec2& u, const MatrixX3& coefficients) const;
     [[nodiscard]] PatchThird third(const BasisTable& table, const MatrixX3& coefficients) const;
     /// Length of a row of weights: n, filled up with zeros.
-    [[nodiscard]] Index padded_size() const { return static_cast<Index>(H_.cols()); }
+    [[nodiscard]] Index padded_size() const { return size_; }
+    /// Puts the numbers of patches into one array, which these share; it lives as long as one of them.
+    [[nodiscard]] static std::shared_ptr<const std::vector<double>> put_together(std::span<RpimPatch* const> patches);
 
 private:
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     RpimPatch() = default;
 
-    Index n_ = 0;
-    Rows t_; ///< (2 x width) t_i, zeros behind
+    [[nodiscard]] const double* t() const { return numbers_.get(); } ///< (2 x width) t_i, zeros behind
+    // rows filled up with zeros to padded_size()
+    [[nodiscard]] const double* H() const { return t() + 2 * width_; }        ///< (n + m rows) first n columns of G^-1
+    [[nodiscard]] const double* D() const { return H() + (n_ + m_) * size_; } ///< (m rows) p(t_i)
+    [[nodiscard]] const double* fit() const { return D() + m_ * size_; }      ///< (m rows) its least-squares inverse
+    [[nodiscard]] std::size_t numbers() const { return static_cast<std::size_t>(2 * width_ + (n_ + 3 * m_) * size_); }
+
+    Index n_ = 0, size_ = 0, width_ = 0;
+    std::shared_ptr<const double[]> numbers_;
     Vec2 c_ = Vec2::Zero();
     double dc_ = 1;
     Multiquadric basis_;
     int m_ = 6;     ///< polynomials that are evaluated
     int terms_ = 6; ///< combinations of them in the basis
-    // rows filled up with zeros to padded_size()
-    Rows H_;       ///< (n + m rows) first n columns of G^-1
-    Rows D_, fit_; ///< (m rows) p(t_i), and its least-squares inverse
 };
 
 } // namespace osculate::contact

@@ -1,7 +1,7 @@
 #pragma once
 /// Free displacement components, and the values of the held ones.
 
-#include "osculate/core/field.hpp"
+#include "osculate/core/shared_pages.hpp"
 
 #include <string>
 #include <vector>
@@ -60,6 +60,12 @@ public:
     [[nodiscard]] Vec3 to_global(Index node, const Vec3& v) const;
     /// Sum of the force components along held directions: the force of the supports, in global components.
     [[nodiscard]] Vec3 reaction(Index node, const Vec3& unbalanced) const;
+
+    /// Adds its arrays, the same on all processes.
+    void add_replicas(Replicas& replicas) const {
+        replicas.add(entry_);
+        replicas.add(equation_);
+    }
 
 private:
     struct Entry {

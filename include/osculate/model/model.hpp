@@ -1,6 +1,7 @@
 #pragma once
 /// Everything that is fixed for a run: bodies, their stiffness, contact pairs, sets. Built once by compile.
 
+#include "osculate/core/shared_pages.hpp"
 #include "osculate/fe/element_block.hpp"
 #include "osculate/linear/block_matrix.hpp"
 #include "osculate/linear/constraints.hpp"
@@ -127,6 +128,8 @@ struct Model {
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
+/// Adds the arrays that all processes hold of a model.
+void add_replicas(const Model& model, Replicas& replicas);
 /// Displacements, or velocities, of led and tied nodes, ends of sectors and skins from those of the nodes that they follow.
 void move_tied(const Model& model, Field& u);
 /// Nodes that follow others, and each of those that they follow, ascending; rotations of rigid bodies follow their

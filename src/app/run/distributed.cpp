@@ -2,6 +2,7 @@
 
 #include "osculate/core/error.hpp"
 #include "osculate/core/file_content.hpp"
+#include "osculate/core/shared_pages.hpp"
 #include "osculate/solve/join_ranks.hpp"
 
 #include <csignal>
@@ -15,6 +16,7 @@ namespace osculate::app {
 namespace fs = std::filesystem;
 
 Distributed::Distributed() : ranks_(solve::join_ranks()) {
+    Replicas::arrays_begin_at_pages = true;
     if (first()) return;
     try {
         hide_what_is_said();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <string>
@@ -52,7 +53,7 @@ std::string machine() {
     return name + std::to_string(geteuid());
 }
 
-/// The lowest of the ranks on this machine, one's own if it is alone there: -1 in that case.
+/// The lowest of the ranks on this machine; -1: this one is alone there.
 int first_here(Ranks& ranks) {
     const std::string name = machine();
     std::vector<double> own;
@@ -80,6 +81,17 @@ Descriptor file_of(std::span<const std::byte> bytes) {
     return file;
 }
 
+/// Puts other pages in the place of those of an array: of a file from a place on, or empty ones.
+void replace(std::span<const std::byte> bytes, int file, std::size_t from) {
+    void* const first = const_cast<std::byte*>(bytes.data());
+    const int kind = MAP_PRIVATE | MAP_FIXED | (file < 0 ? MAP_ANONYMOUS : 0);
+    const int access = PROT_READ | PROT_WRITE;
+    if (mmap(first, bytes.size(), access, kind, file, static_cast<off_t>(from)) != MAP_FAILED) return;
+    std::vector<unsigned char> there(bytes.size() / Replicas::page);
+    if (mincore(first, bytes.size(), there.data()) != 0) std::abort(); // the old ones are gone
+    if (file < 0) std::memset(first, 0, bytes.size());
+}
+
 /// Puts the pages of a file in the place of those of an array where both have the same bytes.
 void take_pages(int file, std::span<const std::byte> bytes) {
     struct stat status {};
@@ -94,47 +106,40 @@ void take_pages(int file, std::span<const std::byte> bytes) {
         for (end = begin + page; end < bytes.size() && same(end) == equal;) end += page;
         if (!equal || end - begin < Replicas::few / 2) continue;
         // in place: who looks at the array finds the same bytes at the same address all the time
-        void* const here = const_cast<std::byte*>(bytes.data() + begin);
-        (void)!mmap(here, end - begin, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, file,
-                    static_cast<off_t>(begin));
+        replace(bytes.subspan(begin, end - begin), file, begin);
     }
     munmap(mapped, bytes.size());
 }
 
 } // namespace
 
-void forget(std::span<double> array) {
+void forget(std::span<const double> array) {
     const std::span<const std::byte> pages = whole_pages(std::as_bytes(array));
-    if (pages.empty()) return;
-    void* const first = const_cast<std::byte*>(pages.data());
-    // new pages: what a file had there before would come back
-    if (mmap(first, pages.size(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == MAP_FAILED)
-        std::memset(first, 0, pages.size());
+    if (!pages.empty()) replace(pages, -1, 0);
 }
 
 void Replicas::keep_once(Ranks& ranks) const {
     const int first = first_here(ranks);
     const auto count = static_cast<std::size_t>(ranks.count());
-    constexpr int described = 4; // process, file, bytes, and the place in a page
+    constexpr int described = 3; // process, file and bytes
     std::vector<double> all(count * described);
     Descriptor last; // until all have opened it
     for (const std::span<const std::byte> array : arrays_) {
-        const std::span<const std::byte> bytes = whole_pages(array);
+        const std::span<const std::byte> pages = whole_pages(array);
+        const std::span<const std::byte> bytes = pages.data() == array.data() ? pages : pages.first(0);
         const double own_bytes = static_cast<double>(bytes.size());
-        const double before = bytes.empty() ? 0 : static_cast<double>(bytes.data() - array.data());
         Descriptor file;
         if (ranks.rank() == first && !bytes.empty()) file = file_of(bytes);
-        const double own[described] = {static_cast<double>(getpid()), static_cast<double>(file.number()), own_bytes,
-                                       before};
+        const double own[described] = {static_cast<double>(getpid()), static_cast<double>(file.number()), own_bytes};
         ranks.gather(own, std::vector<int>(count, described), all.data());
         last = Descriptor();
         if (first < 0) continue;
         const double* const theirs = all.data() + static_cast<std::ptrdiff_t>(first) * described;
-        if (theirs[1] < 0 || theirs[2] != own_bytes || theirs[3] != before) continue;
+        if (theirs[1] < 0 || theirs[2] != own_bytes) continue;
         if (ranks.rank() != first) {
             const std::string path = "/proc/" + std::to_string(static_cast<long>(theirs[0])) + "/fd/" +
                                      std::to_string(static_cast<int>(theirs[1]));
-            file = Descriptor(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+            file = Descriptor(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
         }
         if (file.number() >= 0) take_pages(file.number(), bytes);
         last = std::move(file);

@@ -125,8 +125,7 @@ bool ContactTerm::begin(const model::State& state, const Iterate& at, const Step
 
 bool ContactTerm::evaluate(const Iterate& at) {
     for (std::size_t p = 0; p < evaluations_.size(); ++p) {
-        const Eigen::Map<const Vector> z(at.z->data(), static_cast<Index>(at.z->size()));
-        for (Index j = 0; j < evaluations_[p].pair().size(); ++j) lambda_[p][j] = force(z, first_[p] + j);
+        for (Index j = 0; j < evaluations_[p].pair().size(); ++j) lambda_[p][j] = force(*at.z, first_[p] + j);
         evaluations_[p].evaluate(at.x, timings_, threads_, at.tail);
     }
     status_changes_ = 0;

@@ -96,7 +96,7 @@ void Equilibrium::place() {
 }
 
 void Equilibrium::unpack() {
-    constraints_.scatter(last_iterate(), prescribed_, at_.u);
+    constraints_.scatter(last_z_, prescribed_, at_.u);
     if (rigid_) rigid_->place(at_.u);
     at_.z = &last_z_;
     place();
@@ -109,7 +109,7 @@ Vector Equilibrium::unknowns(const Field& u, const std::vector<model::ContactHis
     return z;
 }
 
-Field Equilibrium::displacements(const ConstVectorRef& z) const {
+Field Equilibrium::displacements(const Vector& z) const {
     Field u(at_.u.size());
     constraints_.scatter(z, prescribed_, u);
     if (rigid_) rigid_->place(u);
@@ -126,26 +126,16 @@ model::State Equilibrium::state(const Vector& z) const {
 solve::NonlinearProblem::Verdict Equilibrium::residual(const ConstVectorRef& z, VectorRef F) {
     rests_ = false;
     before_z_.swap(last_z_);
-    last_z_.assign(z.begin(), z.end());
+    last_z_ = z;
     unpack();
     for (Term* term : terms_)
         if (!term->evaluate(at_)) return Verdict::shorten;
     fill(F);
     record(F);
-    keep_iterate_once();
     constexpr int at_rest = 2; // iterates that have not halved it: Newton would have
     const bool round = cycles_.goes_round();
     rests_ = (round || cycles_.slow() >= at_rest) && at_round_off(F);
     return round || rests_ ? Verdict::stop : Verdict::proceed;
-}
-
-void Equilibrium::keep_iterate_once() const {
-    const Share* share = model_.K.share();
-    if (share == nullptr) return;
-    Replicas replicas;
-    for (const Field* field : {&at_.u, &at_.x, &at_.tail, &unbalanced_, &internal_force()}) replicas.add(*field);
-    for (const std::vector<double>* z : {&last_z_, &before_z_}) replicas.add(*z);
-    replicas.keep_once(share->ranks());
 }
 
 void Equilibrium::fill(VectorRef F) {

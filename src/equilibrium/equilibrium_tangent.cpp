@@ -252,8 +252,8 @@ void EquilibriumTangent::multiply(const ConstVectorRef& x, VectorRef y) {
     if (slices_ == nullptr || u.empty()) {
         u.reset(at_.u.size());
         f.reset(at_.u.size());
-        for (Field* field : {&u, &f})
-            if (slices_ != nullptr) forget({field->values().front().data(), 3 * field->size()}); // written in part
+        for (const Field* field : {&u, &f})
+            if (slices_ != nullptr) forget(*field); // written in part
     }
     if (slices_ == nullptr) {
         for (Index node = 0; node < constraints_.nodes(); ++node) unpack(node);

@@ -15,6 +15,11 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                          {"master_facets", pair.master_facets},
                          {"surface", pair.surface}});
 
+    Json processes = Json::array();
+    for (const Summary::Process& process : summary.processes)
+        processes.push_back(
+            {{"nodes", process.nodes}, {"elements", process.elements}, {"slave_nodes", process.slave_nodes}});
+
     Json json;
     json["version"] = summary.version;
     json["scene"] = summary.scene;
@@ -23,6 +28,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["dofs"] = summary.dofs;
     json["bodies"] = bodies;
     json["pairs"] = pairs;
+    if (!processes.empty()) json["processes"] = processes;
     json["steps"] = {{"accepted", summary.steps.accepted},
                      {"rejected", summary.steps.rejected},
                      {"stabilised", summary.steps.stabilised},

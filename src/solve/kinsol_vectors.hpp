@@ -28,7 +28,7 @@ public:
         shaped_ = false;
         for (Vector* whole : {&whole_in, &whole_out}) whole->resize(0);
     }
-    /// Before products, which write parts of the scratch, and read no others.
+    /// Before products, which write parts of the scratch; what they read of others is of no account.
     void forget_whole() {
         for (Vector* whole : {&whole_in, &whole_out}) forget({whole->data(), static_cast<std::size_t>(whole->size())});
     }

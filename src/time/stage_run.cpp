@@ -79,7 +79,6 @@ void StageRun::keep_attempt_once(const StepAttempt& attempt) const {
     if (!context_.model.share) return;
     Replicas replicas;
     for (const Field* field : {&progress_.state.u, &progress_.state.v, &progress_.state.a}) replicas.add(*field);
-    replicas.add(attempt.z);
     if (attempt.ladder.stabilisation.start) replicas.add(*attempt.ladder.stabilisation.start);
     equilibrium().add_replicas(replicas);
     replicas.keep_once(context_.model.share->ranks());

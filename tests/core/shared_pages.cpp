@@ -130,7 +130,7 @@ TEST(Replicas, AreOnlyWhatHasTheSameBits) {
     });
 }
 
-/// Arrays at other places in a page, of other lengths, or of one process alone are left alone.
+/// Arrays that do not begin at a page, of other lengths, or of one process alone are left alone.
 TEST(Replicas, AreLeftAloneWhereTheyDoNotMatch) {
     support::on_ranks(count, [](const std::shared_ptr<Ranks>& ranks) {
         const auto rank = static_cast<std::size_t>(ranks->rank());

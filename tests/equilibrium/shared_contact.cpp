@@ -48,8 +48,7 @@ std::vector<double> numbers_of_contact(const std::vector<scene::Override>& setti
                              : j % 3 == 1 ? contact::Status::slip
                                           : contact::Status::open;
         term.set_statuses(statuses, StatusRule::frozen, false);
-        std::vector<double> z(static_cast<std::size_t>(unknowns.size()));
-        Vector y(unknowns.size());
+        Vector z(unknowns.size()), y(unknowns.size());
         for (int iterate = 0; iterate < 3; ++iterate) {
             for (Vec3& u : at.u) u += random.vector(0.01);
             place();
@@ -74,7 +73,7 @@ std::vector<double> numbers_of_contact(const std::vector<scene::Override>& setti
             y.setZero();
             Field along(model.X.size());
             for (Vec3& value : along) value = random.vector();
-            term.add_product({along, Eigen::Map<const Vector>(z.data(), unknowns.size())}, f, y);
+            term.add_product({along, z}, f, y);
             add_field(f);
             add(y);
         }
@@ -86,7 +85,7 @@ std::vector<double> numbers_of_contact(const std::vector<scene::Override>& setti
         }
         state.u = at.u;
         state.contact.clear();
-        term.complete(Eigen::Map<const Vector>(z.data(), unknowns.size()), state);
+        term.complete(z, state);
     }
     return numbers;
 }

@@ -77,16 +77,28 @@ protected:
                                  "--set 'bodies.upper.mesh.block.divisions=[6, 6, 6]' --set stages.press.steps=2";
 };
 
-/// Grids of several processes are as good as those of one: there are four here.
-TEST_F(DistributedRun, TakesAsManyGmresIterations) {
+/// Grids of several processes are as good as those of one: there are four here. Each has as much to do.
+TEST_F(DistributedRun, TakesAsManyGmresIterationsAndSharesTheWorkEvenly) {
     const std::string finer = "--set solver.linear_solver=multigrid --set solver.tolerance=1e-10 "
                               "--set 'bodies.lower.mesh.block.divisions=[20, 20, 20]' "
                               "--set 'bodies.upper.mesh.block.divisions=[16, 16, 16]' --set output.template=minimal ";
+    const auto cube = [](long n) { return n * n * n; };
     std::vector<double> iterations;
     for (const int ranks : {1, 3, 4}) {
         const std::string run = "run_" + std::to_string(ranks);
         ASSERT_EQ(with_ranks(ranks, scene, finer + "-o " + run), 0) << content(folder / "said.txt");
-        iterations.push_back(nlohmann::json::parse(content(folder / run / "summary.json"))["gmres_iterations"]);
+        const auto summary = nlohmann::json::parse(content(folder / run / "summary.json"));
+        iterations.push_back(summary["gmres_iterations"]);
+        for (const auto& [what, all] :
+             {std::pair("nodes", cube(21) + cube(17)), {"elements", cube(20) + cube(16)}, {"slave_nodes", 17 * 17}}) {
+            long sum = 0, most = 0;
+            for (const auto& process : summary["processes"]) {
+                sum += process[what].get<long>();
+                most = std::max(most, process[what].get<long>());
+            }
+            EXPECT_EQ(sum, all) << what;
+            EXPECT_LE(ranks * most, 1.1 * static_cast<double>(all)) << what << " of " << ranks;
+        }
     }
     EXPECT_GT(iterations.front(), 20);
     for (const double several : iterations) EXPECT_NEAR(several, iterations.front(), 0.1 * iterations.front() + 1);

@@ -20,6 +20,10 @@ public:
     [[nodiscard]] Ranks& ranks() const { return *ranks_; }
     [[nodiscard]] bool owns(Index j) const { return begin() <= j && j < end(); }
     [[nodiscard]] int owner(Index j) const;
+    /// Number of slave nodes of a rank.
+    [[nodiscard]] Index size(int rank) const {
+        return first_[static_cast<std::size_t>(rank) + 1] - first_[static_cast<std::size_t>(rank)];
+    }
     /// Own slave nodes: from begin() to before end().
     [[nodiscard]] Index begin() const { return first_[static_cast<std::size_t>(ranks_->rank())]; }
     [[nodiscard]] Index end() const { return first_[static_cast<std::size_t>(ranks_->rank()) + 1]; }

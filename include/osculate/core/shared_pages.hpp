@@ -9,24 +9,22 @@
 
 namespace osculate {
 
-/// Arrays that all processes hold, in one order. What is theirs is read and written as before: a page that a process writes is its
-/// own again from then on, and until all have done so the others share what it was.
+/// Arrays that all processes hold, in one order. They are read and written as before: a page that a process writes is its own again
+/// from then on. What was shared stays in memory once more until the array is kept once again, or freed.
 class Replicas {
 public:
     static constexpr std::size_t page = 4096;                 ///< bytes, or a part of the system's
-    static constexpr std::size_t few = std::size_t{1} << 18U; ///< bytes that are not worth a mapping
-    /// Whether arrays that are allocated from now on begin at a page if they are large: on all processes at the same place in one.
+    static constexpr std::size_t few = std::size_t{1} << 21U; ///< bytes that are not worth a mapping: new pages take time
+    /// Whether the program's vectors (not Eigen's) that are allocated from now on begin at a page if they are large. Memory of others
+    /// may go to somebody else with what was shared still in place.
     static inline bool arrays_begin_at_pages = false;
 
-    /// Adds an array; it must live until the next keep_once(). Small ones, and those of one process alone, are passed over.
+    /// Adds an array; it must live until the next keep_once(). Those that are small, or do not begin at a page, are passed over.
     void add(std::span<const std::byte> array) { arrays_.push_back(array); }
     template <class T> void add(const std::vector<T>& array) { arrays_.push_back(std::as_bytes(std::span(array))); }
     void add(const Field& field) { add(field.values()); }
-    void add(const Vector& vector) {
-        arrays_.push_back(std::as_bytes(std::span(vector.data(), static_cast<std::size_t>(vector.size()))));
-    }
-    /// Lets the processes of each machine share the whole pages of these arrays that have the same bytes at the same places in
-    /// pages; collective, while no other thread writes. Where the system does not allow it nothing changes.
+    /// Lets the processes of each machine share the whole pages of these arrays that have the same bytes; collective, while no other
+    /// thread writes. Where the system does not allow it nothing changes.
     void keep_once(Ranks& ranks) const;
 
 private:
@@ -34,6 +32,9 @@ private:
 };
 
 /// Gives back the memory of the whole pages of an array: zeros stand there, which take memory where somebody writes.
-void forget(std::span<double> array);
+void forget(std::span<const double> array);
+inline void forget(const Field& field) {
+    if (!field.empty()) forget({field.values().front().data(), 3 * field.size()});
+}
 
 } // namespace osculate

@@ -96,17 +96,17 @@ public:
     /// at its end, all at fixed unknowns.
     void add_transposed_of_start(const Weights& of, const StateWeights& end, StateWeights& start) const {
         contact_.add_transposed_of_start(of, start);
-        if (bodies().dynamic()) bodies().add_transposed_of_start(displacements(last_iterate()), of.nodes, end, start);
+        if (bodies().dynamic()) bodies().add_transposed_of_start(displacements(last_z_), of.nodes, end, start);
     }
 
     /// z from displacements and contact forces, and the state (without time) from z.
     [[nodiscard]] Vector unknowns(const Field& u, const std::vector<model::ContactHistory>& contact) const;
     [[nodiscard]] model::State state(const Vector& z) const;
     /// Displacements of z, (nodes) m.
-    [[nodiscard]] Field displacements(const ConstVectorRef& z) const;
+    [[nodiscard]] Field displacements(const Vector& z) const;
 
     /// Midpoint of the last two points at which the residual was evaluated, to leave a cycle of two.
-    [[nodiscard]] Vector midpoint() const { return 0.5 * (last_iterate() + as_vector(before_z_)); }
+    [[nodiscard]] Vector midpoint() const { return 0.5 * (last_z_ + before_z_); }
     /// Statuses at the last residual, and statuses according to the complementarity functions there.
     [[nodiscard]] const Statuses& statuses() const { return contact_.statuses(); }
     [[nodiscard]] Statuses natural_statuses() const { return contact_.natural_statuses(); }
@@ -114,7 +114,7 @@ public:
     /// at_round_off().
     [[nodiscard]] bool rests() const { return rests_; }
     /// The z of the last residual.
-    [[nodiscard]] Eigen::Map<const Vector> last_iterate() const { return as_vector(last_z_); }
+    [[nodiscard]] const Vector& last_iterate() const { return last_z_; }
     /// Whether z is an equilibrium with these statuses, to the tolerance (relative to the reference force) or to the
     /// round-off of its rows. Sets and freezes these statuses.
     [[nodiscard]] bool holds(const Vector& z, Statuses statuses, double tolerance);
@@ -152,12 +152,7 @@ public:
     }
 
 private:
-    [[nodiscard]] static Eigen::Map<const Vector> as_vector(const std::vector<double>& z) {
-        return {z.data(), static_cast<Index>(z.size())};
-    }
     [[nodiscard]] std::vector<Term*> list_of_terms();
-    /// The arrays of the last residual, where several processes hold them.
-    void keep_iterate_once() const;
     void unpack();
     void fill(VectorRef F);
     void record(const ConstVectorRef& F);
@@ -185,8 +180,8 @@ private:
     Field unbalanced_;
     CycleWatch cycles_;
     std::vector<IterationRecord> records_;
-    bool rests_ = false;                    ///< see rests()
-    std::vector<double> last_z_, before_z_; ///< of the last two residuals
+    bool rests_ = false;       ///< see rests()
+    Vector last_z_, before_z_; ///< of the last two residuals
     Index worst_node_ = -1;
 };
 

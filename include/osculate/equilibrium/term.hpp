@@ -27,7 +27,7 @@ struct Iterate {
     Field u; ///< (nodes) displacements, m
     Field x,
         tail; ///< (nodes) positions and their rounding errors: x + tail = X + u to the last digit of u, m
-    const std::vector<double>* z = nullptr; ///< all unknowns; null at the start of an attempt
+    const Vector* z = nullptr; ///< all unknowns; null at the start of an attempt
 };
 
 /// A direction of motion, and the corresponding change of all unknowns.

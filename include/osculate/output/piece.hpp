@@ -8,7 +8,7 @@
 
 namespace osculate::output {
 
-/// The elements whose first node belongs to a process, and their nodes.
+/// The elements most of whose nodes belong to a process, and their nodes.
 struct Piece {
     std::vector<Index> nodes;               ///< of the body, ascending: point by point
     std::vector<mesh::ElementBlock> blocks; ///< as those of the body; connectivity in points
@@ -19,5 +19,7 @@ struct Piece {
 
 /// Piece of the calling process. O(elements)
 [[nodiscard]] Piece piece_of(const model::Body& body, const Share& share);
+/// (ranks) number of elements in the pieces of each, of all bodies.
+[[nodiscard]] std::vector<long> elements_of_processes(const model::Model& model, const Share& share);
 
 } // namespace osculate::output

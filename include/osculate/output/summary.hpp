@@ -24,6 +24,11 @@ struct Summary {
         long slave_nodes = 0, master_facets = 0;
         std::string surface; ///< kind of the master surface, "facets" or "rpim"
     };
+    /// What one of several processes has.
+    struct Process {
+        long nodes = 0, elements = 0;
+        long slave_nodes = 0; ///< that it evaluated in the last accepted step
+    };
     struct Steps {
         long accepted = 0, rejected = 0;
         long stabilised = 0; ///< accepted steps solved with supporting springs, see time::StabilisationOptions
@@ -62,6 +67,7 @@ struct Summary {
     long dofs = 0;
     std::vector<Body> bodies;
     std::vector<Pair> pairs;
+    std::vector<Process> processes; ///< that share the run; left out of the file if there is one
     Steps steps;
     long iterations = 0, factorisations = 0;
     long gmres_iterations = 0;                 ///< on the whole tangent

@@ -54,6 +54,10 @@ std::vector<Index> nodes_of(const std::vector<Facet>& facets) {
 
 std::vector<Facet> exterior_facets(const Mesh& mesh) {
     std::vector<Facet> faces;
+    std::size_t count = 0;
+    for (const ElementBlock& block : mesh.blocks)
+        count += static_cast<std::size_t>(block.size()) * cell_info(block.type).facets.size();
+    faces.reserve(count);
     for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
         const ElementBlock& block = mesh.blocks[b];
         const int stride = nodes_per_cell(block.type);

@@ -10,12 +10,15 @@ namespace osculate::app {
 struct ProcessMemory {
     double everywhere = 0; ///< program, MPI, mesh, surfaces and contact
     double shared = 0;     ///< matrices, grids of multigrid, vectors of KINSOL and GMRES
-    double first = 0;      ///< what the first process needs besides, to share out the nodes and to write
+    double once =
+        0; ///< of what is everywhere, what processes of one machine keep once: see Replicas; and program and libraries
+    double first = 0; ///< what the first process needs besides, to share out the nodes and to write
 
     /// Of one of n processes, and of the first of them.
     [[nodiscard]] double of_one(int n) const { return everywhere + shared / n; }
     [[nodiscard]] double of_first(int n) const { return of_one(n) + (n > 1 ? first : 0); }
-    [[nodiscard]] double of_all(int n) const { return n * everywhere + shared + (n > 1 ? first : 0); }
+    /// Of n processes on one machine.
+    [[nodiscard]] double of_all(int n) const { return n * (everywhere - once) + once + shared + (n > 1 ? first : 0); }
 };
 
 /// Fitted to docs/data/distributed.md, as correct as Estimate.

@@ -11,11 +11,11 @@ namespace osculate::time {
 /// until equilibrium holds without them.
 struct StabilisationOptions {
     std::function<const std::vector<double>&()>
-        share;                          ///< model::volume_shares, called when needed; empty: no such rung
+        share;                            ///< model::volume_shares, called when needed; empty: no such rung
     std::shared_ptr<const Field> start{}; ///< (nodes) displacements at which gap looks, m
-    double finest = 0;                  ///< m, motions below it cannot pass through another body
-    std::function<double()> gap;        ///< m, smallest gap at the start, called when needed
-    double farthest = 0;                ///< m, travel beyond which a body counts as unsupported
+    double finest = 0;                    ///< m, motions below it cannot pass through another body
+    std::function<double()> gap;          ///< m, smallest gap at the start, called when needed
+    double farthest = 0;                  ///< m, travel beyond which a body counts as unsupported
 };
 
 struct LadderOptions {

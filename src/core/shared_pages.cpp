@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <string>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
@@ -72,6 +73,8 @@ int first_here(Ranks& ranks) {
 
 /// A file without a name that holds these bytes; none where the system has no room for it.
 Descriptor file_of(std::span<const std::byte> bytes) {
+    rlimit largest{}; // a larger file would end the process
+    if (getrlimit(RLIMIT_FSIZE, &largest) != 0 || largest.rlim_cur < bytes.size()) return Descriptor();
     Descriptor file(memfd_create("osculate", MFD_CLOEXEC));
     for (std::size_t done = 0; file.number() >= 0 && done < bytes.size();) {
         const ssize_t now = write(file.number(), bytes.data() + done, bytes.size() - done);

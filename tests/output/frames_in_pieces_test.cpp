@@ -33,7 +33,10 @@ protected:
             const Vec3& X = blocks->model.X[static_cast<Index>(i)];
             state.u[i] += 1e-3 * Vec3(X.x() * X.y(), X.z() * X.x(), X.x() * X.x());
         }
-        for (const Vec3& X : blocks->model.X) owner.push_back(X.z() < 1 ? (X.x() < 1 ? 0 : 2) : (X.x() < 1.5 ? 1 : 2));
+        for (Index node = 0; node < blocks->model.nodes(); ++node) {
+            const double x = blocks->model.X[node].x();
+            owner.push_back(model::body_index(blocks->model, node) == 0 ? (x < 1 ? 0 : 2) : (x < 1.5 ? 1 : 2));
+        }
     }
     void write(const FrameFields& fields, std::vector<std::string>* problems = nullptr) {
         support::on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {

@@ -27,7 +27,7 @@ struct Summary {
     /// What one of several processes has.
     struct Process {
         long nodes = 0, elements = 0;
-        long slave_nodes = 0; ///< that it evaluated in the last accepted step
+        long slave_nodes = 0; ///< whose derivatives it had in the last accepted step
     };
     struct Steps {
         long accepted = 0, rejected = 0;
@@ -67,7 +67,7 @@ struct Summary {
     long dofs = 0;
     std::vector<Body> bodies;
     std::vector<Pair> pairs;
-    std::vector<Process> processes; ///< that share the run; left out of the file if there is one
+    std::vector<Process> processes; ///< of a distributed run; left out of the file of others
     Steps steps;
     long iterations = 0, factorisations = 0;
     long gmres_iterations = 0;                 ///< on the whole tangent

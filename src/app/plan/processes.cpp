@@ -25,7 +25,7 @@ ProcessMemory process_memory(const Plan& plan) {
     for (const model::Body& body : plan.model.bodies) memory.everywhere += element * body.mesh.element_count();
     const double unknowns = 3.0 * plan.model.nodes();
     memory.shared += unknown * unknowns;
-    memory.once = libraries_once + unknown_once * unknowns;
+    memory.once = std::min(libraries_once + unknown_once * unknowns, memory.everywhere);
     memory.first = sharing_out * unknowns;
     return memory;
 }

@@ -10,7 +10,15 @@
 #include <new>
 #include <sys/mman.h>
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // they have their own
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define OSCULATE_SANITIZED
+#endif
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define OSCULATE_SANITIZED
+#endif
+
+#ifndef OSCULATE_SANITIZED // sanitizers have their own operators
 
 namespace {
 

@@ -17,8 +17,11 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
 
     Json processes = Json::array();
     for (const Summary::Process& process : summary.processes)
-        processes.push_back(
-            {{"nodes", process.nodes}, {"elements", process.elements}, {"slave_nodes", process.slave_nodes}});
+        processes.push_back({{"nodes", process.nodes},
+                             {"elements", process.elements},
+                             {"slave_nodes", process.slave_nodes},
+                             {"peak_memory_bytes", process.peak_memory_bytes},
+                             {"shared_memory_bytes", process.shared_memory_bytes}});
 
     Json json;
     json["version"] = summary.version;

@@ -25,6 +25,10 @@ std::string duration(double seconds) {
                         : fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
+std::string megabytes(double bytes) {
+    return figure(bytes / 1e6) + " MB";
+}
+
 /// Values of keys that name files.
 void add_files(const scene::OutlineItem& item, std::vector<std::string>& files) {
     if (item.key == "path" || item.key == "file") files.push_back(item.text);
@@ -138,13 +142,24 @@ std::string cost_section(const RunFiles& files) {
                         "<span class=\"number\">{}</span><span class=\"number\">{:.1f} %</span></li>\n",
                         escaped(name), largest > 0 ? 100 * value / largest : 0, duration(value), 100 * value / total);
     std::string text = element("ul class=\"bars\"", bars);
+    const json processes = list(files.summary, "processes");
     std::vector<std::vector<std::string>> rows{
         {"Wall time, CPU time", duration(total) + ", " + duration(member(seconds, "cpu"))},
         {"Threads", count(files.number("threads"))},
-        {"Peak memory", figure(files.number("peak_memory_bytes") / 1e6) + " MB"},
+        {processes.empty() ? "Peak memory" : "Peak memory of the first process",
+         megabytes(files.number("peak_memory_bytes"))},
         {"Factorisations", count(files.number("factorisations"))},
         {"GMRES iterations", count(files.number("gmres_iterations"))}};
     text += table({"Cost", ""}, rows, {1});
+    rows.clear();
+    for (const json& process : processes)
+        rows.push_back({count(static_cast<double>(rows.size())), count(member(process, "nodes")),
+                        count(member(process, "elements")), count(member(process, "slave_nodes")),
+                        megabytes(member(process, "peak_memory_bytes")),
+                        megabytes(member(process, "shared_memory_bytes"))});
+    if (!rows.empty())
+        text += table({"Process", "Nodes", "Elements", "Slave nodes", "Peak memory", "Kept once a machine"}, rows,
+                      {0, 1, 2, 3, 4, 5});
     return section("cost", "Time and memory", text);
 }
 
@@ -152,14 +167,19 @@ std::string reproduce_section(const RunFiles& files) {
     if (files.scene_text.empty()) return "";
     const std::string name = files.name();
     const double threads = files.number("threads");
-    const std::string command = fmt::format("osculate run {0}.yaml -o out/{0} --threads {1}", name,
-                                            std::isfinite(threads) ? std::lround(threads) : 1);
+    const std::size_t processes = list(files.summary, "processes").size();
+    const std::string command = fmt::format(
+        "{2}osculate run {0}.yaml -o out/{0} --threads {1}{3}", name, std::isfinite(threads) ? std::lround(threads) : 1,
+        processes > 0 ? fmt::format("mpirun -n {} ", processes) : "", processes > 0 ? " --distributed" : "");
     std::string text = element("p", "Save the scene below as " + element("code", escaped(name + ".yaml")) +
                                         ". It is the scene as it was run: every default and every change given by " +
                                         element("code", "--set") + " is in it. Then");
     text += "<pre class=\"command\"><code id=\"command\">" + escaped(command) + "</code></pre>\n";
     const std::string version = files.text("version", "");
-    std::string after = "gives the same numbers with any number of threads";
+    std::string after = processes > 0
+                            ? "gives the same numbers on processors of the same kind; another number of processes "
+                              "changes them within the solver's tolerance"
+                            : "gives the same numbers with any number of threads";
     if (!version.empty()) after += ", with osculate " + escaped(version);
     if (files.scene) {
         std::vector<std::string> names;

@@ -95,6 +95,15 @@ TEST_F(SummaryFile, NamesAFailureWhenThereIsOne) {
     EXPECT_TRUE(read["seconds"]["total"].is_null());
 }
 
+TEST_F(SummaryFile, NamesWhatEachProcessHas) {
+    Summary summary = example();
+    summary.processes = {{70, 40, 12, 90'000'000, 20'000'000}, {65, 42, 13, 85'000'000, 0}};
+    write_summary(folder / "summary.json", summary);
+    EXPECT_EQ(json::parse(content(folder / "summary.json"))["processes"], json::parse(R"([
+        {"nodes": 70, "elements": 40, "slave_nodes": 12, "peak_memory_bytes": 90000000, "shared_memory_bytes": 20000000},
+        {"nodes": 65, "elements": 42, "slave_nodes": 13, "peak_memory_bytes": 85000000, "shared_memory_bytes": 0}])"));
+}
+
 TEST_F(SummaryFile, ListsStayListsWhenEmpty) {
     write_summary(folder / "summary.json", {});
     const json read = json::parse(content(folder / "summary.json"));

@@ -59,6 +59,25 @@ TEST_F(Page, TellsWhatTheRunWas) {
                 IsEmpty());
 }
 
+/// The command is the one that was given; results depend on the number of processes, not of threads.
+TEST_F(Page, TellsWhatProcessesHad) {
+    auto of_two = nlohmann::json::parse(summary);
+    of_two["processes"] = nlohmann::json::parse(R"([
+        {"nodes": 7, "elements": 1, "slave_nodes": 0, "peak_memory_bytes": 93000000, "shared_memory_bytes": 21000000},
+        {"nodes": 5, "elements": 1, "slave_nodes": 0, "peak_memory_bytes": 88000000, "shared_memory_bytes": 21000000}])");
+    file("summary.json", of_two.dump());
+    file("scene.yaml", "bodies: {}\n");
+    const std::string html = own_part(make_page(folder, options).html);
+    EXPECT_THAT(missing(html, {"Peak memory of the first process", "88 MB", "21 MB",
+                               "mpirun -n 2 osculate run two.yaml -o out/two --threads 2 --distributed",
+                               "another number of processes"}),
+                IsEmpty());
+    EXPECT_THAT(html, Not(HasSubstr("any number of threads")));
+    file("summary.json", summary);
+    EXPECT_THAT(own_part(make_page(folder, options).html),
+                AllOf(HasSubstr("any number of threads"), Not(HasSubstr("mpirun"))));
+}
+
 TEST_F(Page, NamesCannotBecomeMarkup) {
     const std::string evil = "</script><script>alert(1)</script><!--";
     nlohmann::json json = nlohmann::json::parse(summary);

@@ -32,6 +32,30 @@ TEST_F(DistributedRun, TakesAsManyGmresIterationsAndSharesTheWorkEvenly) {
     for (const double several : iterations) EXPECT_NEAR(several, iterations.front(), 0.1 * iterations.front() + 1);
 }
 
+/// Mesh, displacements and others, of 2 MB each: by what the system counts.
+TEST_F(DistributedRun, KeepsLargeArraysOnceAMachine) {
+    std::ofstream(folder / "large.yaml")
+        << "bodies:\n"
+           "  block:\n"
+           "    mesh: {block: {size: [1 m, 1 m, 1 m], divisions: [44, 44, 44]}}\n"
+           "    material: {linear_elastic: {E: 1 GPa, nu: 0}}\n"
+           "sets: {bottom: {body: block, surface: z_min}, top: {body: block, surface: z_max}}\n"
+           "supports: {bottom: {fix: [x, y, z]}}\n"
+           "stages: {press: {pressure: {top: 1 MPa}}}\n"
+           "solver: {linear_solver: multigrid, tolerance: 1e-4}\n"
+           "output: {template: minimal}\n";
+    const double field = 45. * 45 * 45 * 3 * sizeof(double);
+    for (const int ranks : {1, 2}) {
+        const std::string run = "run_" + std::to_string(ranks);
+        ASSERT_EQ(with_ranks(ranks, "large.yaml", "-o " + run), 0) << content(folder / "said.txt");
+        for (const auto& process : nlohmann::json::parse(content(folder / run / "summary.json"))["processes"]) {
+            const double shared = process["shared_memory_bytes"];
+            EXPECT_TRUE(ranks == 1 ? shared < 3 * field : shared > 5 * field) << shared / field << " of " << ranks;
+            EXPECT_LT(shared, process["peak_memory_bytes"]);
+        }
+    }
+}
+
 TEST_F(DistributedRun, GivesTheSameResultsWithAnyNumberOfProcesses) {
     for (const int ranks : {1, 2, 3, 4})
         ASSERT_EQ(with_ranks(ranks, scene, settings + " -o run_" + std::to_string(ranks)), 0)

@@ -10,8 +10,8 @@ namespace osculate::app {
 struct ProcessMemory {
     double everywhere = 0; ///< program, MPI, mesh, surfaces and contact
     double shared = 0;     ///< matrices, grids of multigrid, vectors of KINSOL and GMRES
-    double once =
-        0; ///< of what is everywhere, what processes of one machine keep once: see Replicas; and program and libraries
+    /// Of what is everywhere, what processes of one machine keep once: see Replicas; and program and libraries.
+    double once = 0;
     double first = 0; ///< what the first process needs besides, to share out the nodes and to write
 
     /// Of one of n processes, and of the first of them.

@@ -14,8 +14,8 @@ namespace osculate {
 class Replicas {
 public:
     static constexpr std::size_t page = 4096; ///< bytes, or a part of the system's
-    static constexpr std::size_t few = std::size_t{1}
-                                       << 21U; ///< bytes that are not worth a mapping: new pages take time
+    /// Bytes that are not worth a mapping: new pages take time.
+    static constexpr std::size_t few = std::size_t{1} << 21U;
     /// Whether the program's vectors (not Eigen's) that are allocated from now on begin at a page if they are large. Memory of others
     /// may go to somebody else with what was shared still in place.
     static inline bool arrays_begin_at_pages = false;

@@ -27,7 +27,9 @@ struct Summary {
     /// What one of several processes has.
     struct Process {
         long nodes = 0, elements = 0;
-        long slave_nodes = 0; ///< whose derivatives it had in the last accepted step
+        long slave_nodes = 0;         ///< whose derivatives it had in the last accepted step
+        long peak_memory_bytes = 0;   ///< up to the last accepted step
+        long shared_memory_bytes = 0; ///< at its end, pages that may be those of others of its machine
     };
     struct Steps {
         long accepted = 0, rejected = 0;

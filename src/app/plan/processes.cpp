@@ -49,9 +49,8 @@ std::string processes_in_words(const Plan& plan, int processes) {
         "{} processes, estimates of memory: {} of each, {} of the first, {} of all on one machine\n"
         "  shared by nodes, {} of each: rows of stiffness and mass, nonlinear elements, grids of multigrid, "
         "vectors of KINSOL and GMRES\n"
-        "  in every process, {}, of which those on one machine keep {} once: program, MPI, mesh, surfaces, contact, "
-        "audit, "
-        "values at nodes\n"
+        "  in every process, {}, of which those on one machine keep {} once: program, MPI, mesh, surfaces, "
+        "contact, audit, values at nodes\n"
         "  in the first, {}: sharing out the nodes, files\n",
         processes, mega(memory.of_one(processes)), mega(memory.of_first(processes)), mega(memory.of_all(processes)),
         mega(memory.shared / processes), mega(memory.everywhere), mega(memory.once), mega(memory.first));

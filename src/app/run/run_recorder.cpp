@@ -3,6 +3,7 @@
 #include "app/plan/gaps.hpp"
 #include "app/plan/held_loads.hpp"
 #include "app/report/plots.hpp"
+#include "app/run/process_summary.hpp"
 #include "osculate/app/advice.hpp"
 #include "osculate/app/report.hpp"
 #include "osculate/app/run_report.hpp"
@@ -10,7 +11,6 @@
 #include "osculate/core/error.hpp"
 #include "osculate/core/file_content.hpp"
 #include "osculate/output/paraview_script.hpp"
-#include "osculate/output/piece.hpp"
 #include "osculate/output/post_mortem_file.hpp"
 #include "osculate/scene/writer.hpp"
 
@@ -181,10 +181,7 @@ void RunRecorder::describe_plan() {
         summary_.pairs.push_back(
             {pair->name(), pair->size(), pair->surface().facet_count(), surfaces[spec.master.surface.index()]});
     }
-    if (const Share* share = plan_.model.share.get())
-        for (const long elements : output::elements_of_processes(plan_.model, *share))
-            summary_.processes.push_back(
-                {static_cast<long>(share->nodes_of(static_cast<int>(summary_.processes.size())).size()), elements, 0});
+    summary_.processes = processes_of(plan_.model);
     for (const PlanItem& item : plan_.items)
         if (item.present) summary_.plan.push_back(item.part);
 }
@@ -244,11 +241,7 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
         for (const std::size_t p : due) probes_[p].write(snapshot);
         if (settings_.derivatives != nullptr) settings_.derivatives->accepted(step, due);
     });
-    for (std::size_t rank = 0; rank < summary_.processes.size(); ++rank) {
-        long& evaluated = summary_.processes[rank].slave_nodes = 0;
-        for (const model::ContactEvaluation& pair : step.equilibrium.contact())
-            if (pair.share() != nullptr) evaluated += pair.share()->size(static_cast<int>(rank));
-    }
+    update_processes(summary_.processes, step.equilibrium, plan_.model);
     write_summary();
     if (settings_.quiet) return;
     long contacts = 0;

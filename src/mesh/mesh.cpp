@@ -1,10 +1,11 @@
 #include "osculate/mesh/mesh.hpp"
 
+#include "mesh/faces.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <span>
 #include <tuple>
 #include <utility>
 
@@ -53,52 +54,35 @@ std::vector<Index> nodes_of(const std::vector<Facet>& facets) {
 }
 
 std::vector<Facet> exterior_facets(const Mesh& mesh) {
-    std::vector<Facet> faces;
-    std::size_t count = 0;
-    for (const ElementBlock& block : mesh.blocks)
-        count += static_cast<std::size_t>(block.size()) * cell_info(block.type).facets.size();
-    faces.reserve(count);
-    for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-        const ElementBlock& block = mesh.blocks[b];
-        const int stride = nodes_per_cell(block.type);
-        const auto local_faces = cell_info(block.type).facets;
-        for (Index e = 0; e < block.size(); ++e) {
-            const Index* nodes = block.connectivity.data() + static_cast<std::ptrdiff_t>(e) * stride;
-            for (const LocalFace& local : local_faces) {
-                Facet facet{{-1, -1, -1, -1}, local.count, static_cast<Index>(b), e};
-                for (int i = 0; i < local.count; ++i) facet.nodes[i] = nodes[local.nodes[i]];
-                faces.push_back(facet);
-            }
-        }
-    }
-
+    const Faces faces(mesh);
     // Faces of the same nodes have the same smallest one: only those are compared.
-    using Key = std::array<Index, 4>;
-    std::vector<Key> keys(faces.size());
+    const auto smallest = [](const Facet& facet) {
+        return static_cast<std::size_t>(*std::min_element(facet.begin(), facet.end()));
+    };
     std::vector<std::size_t> begin(mesh.nodes.size() + 2, 0); // by smallest node
-    const auto smallest = [](const Key& key) { return static_cast<std::size_t>(key[0] < 0 ? key[1] : key[0]); };
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        keys[f] = faces[f].nodes;
-        std::ranges::sort(keys[f]);
-        ++begin[smallest(keys[f]) + 2];
-    }
+    faces.for_each([&](std::size_t, const Facet& facet) { ++begin[smallest(facet) + 2]; });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<std::size_t> of_node(faces.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) of_node[begin[smallest(keys[f]) + 1]++] = f;
+    faces.for_each([&](std::size_t number, const Facet& facet) { of_node[begin[smallest(facet) + 1]++] = number; });
+
     std::vector<char> single(faces.size(), 0);
+    std::vector<std::pair<std::array<Index, 4>, std::size_t>> alike; // nodes, ascending, and number
     for (std::size_t node = 0; node + 2 < begin.size(); ++node) {
-        const std::span list(of_node.begin() + static_cast<std::ptrdiff_t>(begin[node]),
-                             of_node.begin() + static_cast<std::ptrdiff_t>(begin[node + 1]));
-        std::ranges::sort(list, {}, [&](std::size_t f) -> const Key& { return keys[f]; });
-        for (std::size_t first = 0, last = 0; first < list.size(); first = last) {
-            while (last < list.size() && keys[list[last]] == keys[list[first]]) ++last;
-            if (last - first == 1) single[list[first]] = 1;
+        alike.clear();
+        for (std::size_t k = begin[node]; k < begin[node + 1]; ++k) {
+            alike.emplace_back(faces[of_node[k]].nodes, of_node[k]);
+            std::ranges::sort(alike.back().first);
+        }
+        std::ranges::sort(alike);
+        for (std::size_t first = 0, last = 0; first < alike.size(); first = last) {
+            while (last < alike.size() && alike[last].first == alike[first].first) ++last;
+            if (last - first == 1) single[alike[first].second] = 1;
         }
     }
 
     std::vector<Facet> exterior;
-    for (std::size_t f = 0; f < faces.size(); ++f)
-        if (single[f] != 0) exterior.push_back(faces[f]);
+    for (std::size_t number = 0; number < single.size(); ++number)
+        if (single[number] != 0) exterior.push_back(faces[number]);
     return exterior;
 }
 

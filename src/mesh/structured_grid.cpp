@@ -1,8 +1,10 @@
 #include "mesh/structured_grid.hpp"
 
+#include "mesh/faces.hpp"
 #include "osculate/mesh/generators.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -123,23 +125,25 @@ int steps_of(CellType element) {
     return cell_info(element).edges.empty() ? 1 : 2;
 }
 
-/// Names the exterior facets after the side of the grid that all their nodes lie on.
+/// The sides of the grid that each node lies on: side s is bit s.
+std::vector<unsigned> sides_of_nodes(const std::array<int, 3>& n) {
+    std::vector<unsigned> sides;
+    sides.reserve(static_cast<std::size_t>(n[0] + 1) * (n[1] + 1) * (n[2] + 1));
+    const auto of = [&](int d, int at) { return (at == 0 ? 1U : 0U) << (2 * d) | (at == n[d] ? 2U : 0U) << (2 * d); };
+    for (int k = 0; k <= n[2]; ++k)
+        for (int j = 0; j <= n[1]; ++j)
+            for (int i = 0; i <= n[0]; ++i) sides.push_back(of(0, i) | of(1, j) | of(2, k));
+    return sides;
+}
+
+/// Names the facets all of whose nodes lie on a side of the grid after it: they are the exterior ones.
 void name_sides(const StructuredGrid& grid, Mesh& mesh) {
-    const auto& n = grid.divisions;
-    for (const Facet& facet : exterior_facets(mesh)) {
-        std::array<bool, 6> on;
-        on.fill(true);
-        for (const Index node : facet) {
-            const std::array<int, 3> at{node % (n[0] + 1), node / (n[0] + 1) % (n[1] + 1),
-                                        node / (n[0] + 1) / (n[1] + 1)};
-            for (int d = 0; d < 3; ++d) {
-                on[2 * d] = on[2 * d] && at[d] == 0;
-                on[2 * d + 1] = on[2 * d + 1] && at[d] == n[d];
-            }
-        }
-        const auto side = std::find(on.begin(), on.end(), true) - on.begin();
-        mesh.surfaces[grid.sides.at(static_cast<std::size_t>(side))].push_back(facet);
-    }
+    const std::vector<unsigned> sides = sides_of_nodes(grid.divisions);
+    Faces(mesh).for_each([&](std::size_t, const Facet& facet) {
+        unsigned on = ~0U;
+        for (const Index node : facet) on &= sides[static_cast<std::size_t>(node)];
+        if (on != 0) mesh.surfaces[grid.sides.at(static_cast<std::size_t>(std::countr_zero(on)))].push_back(facet);
+    });
 }
 
 /// Removes nodes of the grid that no element has, as those midway in the faces of serendipity elements.

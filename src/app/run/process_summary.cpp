@@ -23,13 +23,13 @@ double shared_bytes() {
     return 0;
 }
 
-double peak_bytes() {
+} // namespace
+
+long peak_memory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    return 1024. * static_cast<double>(usage.ru_maxrss); // Linux counts in kB
+    return 1024 * usage.ru_maxrss; // Linux counts in kB
 }
-
-} // namespace
 
 std::vector<output::Summary::Process> processes_of(const model::Model& model) {
     std::vector<output::Summary::Process> processes;
@@ -45,7 +45,7 @@ void update_processes(std::vector<output::Summary::Process>& processes, const eq
                       const model::Model& model) {
     if (processes.empty()) return;
     constexpr int measured = 2;
-    const double own[measured] = {peak_bytes(), shared_bytes()};
+    const double own[measured] = {static_cast<double>(peak_memory_bytes()), shared_bytes()};
     std::vector<double> all(measured * processes.size());
     model.share->ranks().gather(own, std::vector<int>(processes.size(), measured), all.data());
     for (std::size_t rank = 0; rank < processes.size(); ++rank) {

@@ -8,6 +8,9 @@
 
 namespace osculate::app {
 
+/// The most memory that this process has had so far.
+[[nodiscard]] long peak_memory_bytes();
+
 /// In the order of their ranks, with what they have throughout; none where one process runs alone.
 [[nodiscard]] std::vector<output::Summary::Process> processes_of(const model::Model& model);
 

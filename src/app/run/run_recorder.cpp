@@ -329,7 +329,7 @@ RunRecorder::Spent RunRecorder::spent_so_far() const {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return {seconds_before_ + elapsed.count(), cpu_seconds_before_ + seconds(usage.ru_utime) + seconds(usage.ru_stime),
-            usage.ru_maxrss * 1024}; // Linux counts in kB
+            peak_memory_bytes()};
 }
 
 void RunRecorder::gave_up(const time::PostMortem& examined, const time::FailedIterate* iterate) {

@@ -366,9 +366,9 @@ double AuditResult::between(Index body, Index other) const {
 SurfaceAudit::SurfaceAudit(const std::vector<std::vector<mesh::Facet>>& bodies, const std::vector<Vec3>& X)
     : shell_node_(X.size(), -1) {
     for (const std::vector<mesh::Facet>& facets : bodies) shells_.emplace_back(facets, X, shell_node_);
-    const AuditResult drawn = examine(X);
+    drawn_ = examine(X);
     for (std::size_t b = 0; b < shells_.size(); ++b)
-        shells_[b].sound = std::ranges::none_of(drawn.intrusions, [&](const Intrusion& one) {
+        shells_[b].sound = std::ranges::none_of(drawn_.intrusions, [&](const Intrusion& one) {
             return one.body == one.other && one.body == static_cast<Index>(b);
         });
 }

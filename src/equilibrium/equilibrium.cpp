@@ -116,6 +116,20 @@ Field Equilibrium::displacements(const Vector& z) const {
     return u;
 }
 
+Vector Equilibrium::kept(const Vector& z) const {
+    const Slices* slices = tangent_.slices();
+    if (slices == nullptr) return z;
+    return z(slices->own());
+}
+
+Vector Equilibrium::restored(const Vector& kept) const {
+    const Slices* slices = tangent_.slices();
+    if (slices == nullptr) return kept;
+    Vector z(size());
+    slices->gather({kept.data(), static_cast<std::size_t>(kept.size())}, z.data());
+    return z;
+}
+
 model::State Equilibrium::state(const Vector& z) const {
     model::State state;
     state.u = displacements(z);
@@ -125,7 +139,10 @@ model::State Equilibrium::state(const Vector& z) const {
 
 solve::NonlinearProblem::Verdict Equilibrium::residual(const ConstVectorRef& z, VectorRef F) {
     rests_ = false;
-    before_z_.swap(last_z_);
+    if (tangent_.slices() == nullptr)
+        before_.swap(last_z_);
+    else if (last_z_.size() > 0)
+        before_ = kept(last_z_);
     last_z_ = z;
     unpack();
     for (Term* term : terms_)

@@ -59,10 +59,12 @@ solve::FactorStatus ContactPreconditioner::couple(const std::vector<Spring>& spr
     if (changed_) multigrid_->take(K_->view());
     changed_ = false;
     std::vector<solve::NodalBlock> blocks;
+    blocks.reserve(most_blocks_);
     for (const Spring& s : springs)
         for_each_block(s, [&](Index row, Index column, const Mat3& block) {
             if (multigrid_->reads_row(row)) blocks.push_back({row, column, block});
         });
+    most_blocks_ = std::max(most_blocks_, blocks.size());
     return multigrid_->couple(blocks);
 }
 

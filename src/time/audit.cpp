@@ -37,8 +37,8 @@ Audit::Audit(const model::Model& model) : Audit(model, outer_facets(model)) {}
 
 Audit::Audit(const model::Model& model, const std::vector<std::vector<mesh::Facet>>& outer)
     : model_(model), surfaces_(facets_to_audit(model, outer), model.X), exact_(model, outer) {
-    const contact::AuditResult first = surfaces_.examine(model.X);
-    for (const contact::Intrusion& one : first.intrusions) drawn_[ordered(one.body, one.other)] = one.excess;
+    for (const contact::Intrusion& one : surfaces_.drawn().intrusions)
+        drawn_[ordered(one.body, one.other)] = one.excess;
     // contact lifts what overlaps, but not where curved surfaces are tied
     const auto tied = [&](const std::pair<Index, Index>& bodies) {
         return std::ranges::any_of(

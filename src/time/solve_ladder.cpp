@@ -302,7 +302,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         }
         return singular || found_singular();
     };
-    const Vector first = predicted ? z : Vector(); // else it is the other
+    const Vector first = predicted ? equilibrium.kept(z) : Vector(); // else it is the other
     equilibrium.set_impatient(options.settles);
     const bool singular = rungs();
     equilibrium.set_impatient(false);
@@ -321,7 +321,7 @@ LadderResult climb(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& s
         return sprung && !result.converged() ? first_sprung() : result;
     const Vector last = z;
     const equilibrium::Statuses last_statuses = equilibrium.statuses();
-    z = predicted ? first : unpredicted();
+    z = predicted ? equilibrium.restored(first) : unpredicted();
     LadderResult held = stabilise(equilibrium, solver, z, start, force_first, now);
     held.reference_force = now.reference_force;
     held.iterations += result.iterations;

@@ -71,12 +71,15 @@ public:
 
     /// Audits positions x of all nodes.
     [[nodiscard]] AuditResult examine(const std::vector<Vec3>& x) const;
+    /// What was found at X.
+    [[nodiscard]] const AuditResult& drawn() const { return drawn_; }
 
 private:
     struct Shell;
     class Examination;
     std::vector<Shell> shells_;
     std::vector<Index> shell_node_; ///< (nodes) number of the node within its body's shell; -1: inside the body
+    AuditResult drawn_;
 };
 
 } // namespace osculate::contact

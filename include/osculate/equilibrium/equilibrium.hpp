@@ -105,8 +105,12 @@ public:
     /// Displacements of z, (nodes) m.
     [[nodiscard]] Field displacements(const Vector& z) const;
 
-    /// Midpoint of the last two points at which the residual was evaluated, to leave a cycle of two.
-    [[nodiscard]] Vector midpoint() const { return 0.5 * (last_z_ + before_z_); }
+    /// What restored() makes unknowns of again: where processes solve in slices, each keeps its own.
+    [[nodiscard]] Vector kept(const Vector& z) const;
+    /// Collective where processes solve in slices.
+    [[nodiscard]] Vector restored(const Vector& kept) const;
+    /// Midpoint of the last two points at which the residual was evaluated, to leave a cycle of two. Collective likewise.
+    [[nodiscard]] Vector midpoint() const { return 0.5 * (last_z_ + restored(before_)); }
     /// Statuses at the last residual, and statuses according to the complementarity functions there.
     [[nodiscard]] const Statuses& statuses() const { return contact_.statuses(); }
     [[nodiscard]] Statuses natural_statuses() const { return contact_.natural_statuses(); }
@@ -180,8 +184,8 @@ private:
     Field unbalanced_;
     CycleWatch cycles_;
     std::vector<IterationRecord> records_;
-    bool rests_ = false;       ///< see rests()
-    Vector last_z_, before_z_; ///< of the last two residuals
+    bool rests_ = false;     ///< see rests()
+    Vector last_z_, before_; ///< of the last residual, and, kept(), of the one before
     Index worst_node_ = -1;
 };
 

@@ -52,6 +52,7 @@ public:
     [[nodiscard]] bool by_products() const { return products_; }
     /// Of products and preconditioner; null: there is one process, or none of these.
     [[nodiscard]] Slices* slices() { return slices_.get(); }
+    [[nodiscard]] const Slices* slices() const { return slices_.get(); }
     [[nodiscard]] const solve::SparseMatrix& jacobian();
 
     [[nodiscard]] solve::FactorStatus factorise() override;

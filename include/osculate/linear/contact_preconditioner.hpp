@@ -65,6 +65,7 @@ private:
     const BlockMatrix *K_, *first_; ///< now, and at first
     std::function<BlockMatrix()> undeformed_;
     bool coarsened_ = false, changed_ = false; ///< of multigrid: whether it has grids, and not the values of K
+    std::size_t most_blocks_ = 0;              ///< that couple() has had
     PenaltyStiffness stiffness_;
     std::unique_ptr<solve::CondensingSolver> solver_; ///< one of these two
     std::unique_ptr<solve::Multigrid> multigrid_;

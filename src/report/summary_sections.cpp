@@ -176,10 +176,10 @@ std::string reproduce_section(const RunFiles& files) {
                                         element("code", "--set") + " is in it. Then");
     text += "<pre class=\"command\"><code id=\"command\">" + escaped(command) + "</code></pre>\n";
     const std::string version = files.text("version", "");
-    std::string after = processes > 0
-                            ? "gives the same numbers on processors of the same kind; another number of processes "
-                              "changes them within the solver's tolerance"
-                            : "gives the same numbers with any number of threads";
+    std::string after =
+        processes > 0 ? "gives the same numbers on processors of the same kind; another number of processes "
+                        "changes them within the solver's tolerance, and by more where there are several ways to go"
+                      : "gives the same numbers with any number of threads";
     if (!version.empty()) after += ", with osculate " + escaped(version);
     if (files.scene) {
         std::vector<std::string> names;

@@ -8,7 +8,7 @@
 
 namespace osculate::app {
 
-/// The most memory that this process has had so far.
+/// The most resident memory that this process has had so far, bytes.
 [[nodiscard]] long peak_memory_bytes();
 
 /// In the order of their ranks, with what they have throughout; none where one process runs alone.

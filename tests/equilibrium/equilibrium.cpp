@@ -3,7 +3,9 @@
 #include "osculate/equilibrium/equilibrium.hpp"
 
 #include "equilibrium/press.hpp"
+#include "support/random.hpp"
 #include "support/source_tree.hpp"
+#include "support/thread_ranks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -86,6 +88,34 @@ TEST(Equilibrium, WeighsContactWithTheInertiaOfTheStep) {
     }
     EXPECT_GT(by_step[0], 0);
     EXPECT_NEAR(by_step[1], 4 * by_step[0], 1e-9 * by_step[1]);
+}
+
+/// A rung that begins again where an earlier one did, or between two iterates, begins there whoever solves.
+TEST(Equilibrium, ComesBackToIteratesWhetherOneProcessKeepsThemOrSeveral) {
+    for (const int count : {1, 2, 5})
+        support::on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
+            Press press(LinearSolver::iterative, ranks->count() > 1 ? ranks : nullptr);
+            Equilibrium& equilibrium = *press.equilibrium;
+            const Vector start = press.begin(0.01);
+            equilibrium.set_statuses(press.all(Status::stick, open), StatusRule::frozen, false);
+            support::Random random(7); // the same numbers in all processes
+            const auto iterate = [&] {
+                Vector z = start;
+                for (double& value : z) value += 1e-6 * random.uniform();
+                return z;
+            };
+            const Vector one = iterate(), other = iterate(), next = iterate();
+            ASSERT_NE(one, other);
+            Vector F(one.size());
+            for (const Vector* z : {&one, &other}) (void)equilibrium.residual(*z, F);
+            EXPECT_EQ(equilibrium.midpoint(), 0.5 * (one + other)) << ranks->rank() << " of " << ranks->count();
+            (void)equilibrium.residual(next, F);
+            EXPECT_EQ(equilibrium.midpoint(), 0.5 * (other + next)) << ranks->rank() << " of " << ranks->count();
+
+            const Vector kept = equilibrium.kept(one);
+            EXPECT_EQ(kept.size() < one.size(), ranks->count() > 1) << "a process has others' unknowns as well";
+            EXPECT_EQ(equilibrium.restored(kept), one) << ranks->rank() << " of " << ranks->count();
+        });
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Rollback,

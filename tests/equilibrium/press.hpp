@@ -15,9 +15,10 @@ namespace osculate::equilibrium::fixtures {
 /// A block pressed on another, and what is done with it over two steps.
 class Press {
 public:
-    explicit Press(LinearSolver solver) {
+    /// @param ranks  processes that share the bodies, each with a Press; null: one
+    explicit Press(LinearSolver solver, const std::shared_ptr<Ranks>& ranks = nullptr) {
         const scene::Scene scene = scene::read_scene(support::source_tree() + "/tests/scenes/press.yaml", {});
-        plan = app::compile(scene, app::build_meshes(scene), 1, timings);
+        plan = app::compile(scene, app::build_meshes(scene), 1, timings, ranks);
         const time::Stage& pull = plan.stages[1];
         constraints = std::make_unique<linear::Constraints>(plan.model.nodes(), pull.constraints);
         equilibrium = std::make_unique<Equilibrium>(plan.model, plan.model.pairs, *constraints, nullptr,
@@ -34,14 +35,18 @@ public:
         std::fill_n(statuses[0].begin(), opened, contact::Status::open);
         return statuses;
     }
-    /// An attempt in which the rear face has moved by `rear`, m: solved with one set of statuses after another.
-    Vector attempt(double rear, const std::vector<Statuses>& one_after_another) {
+    /// Opens an attempt in which the rear face has moved by `rear`, m; returns the unknowns at its start.
+    Vector begin(double rear) {
         StepLoad load{force, std::vector<Vec3>(state.u.size(), Vec3::Zero()), {}};
         for (Index i = plan.model.bodies[1].first_node; i < plan.model.nodes(); ++i)
             for (int k = 0; k < 3; ++k)
                 if (constraints->constraint(i, k) != nullptr) load.prescribed[i](k) = rear;
         equilibrium->begin_attempt(state, load, 1);
-        Vector z = equilibrium->unknowns(state.u, state.contact);
+        return equilibrium->unknowns(state.u, state.contact);
+    }
+    /// Such an attempt, solved with one set of statuses after another.
+    Vector attempt(double rear, const std::vector<Statuses>& one_after_another) {
+        Vector z = begin(rear);
         for (const Statuses& statuses : one_after_another) {
             const time::LadderOptions options{.tolerance = 1e-9, .reference_force = 1e5};
             converged = time::solve_trial(*equilibrium, *kinsol, z, statuses, options).converged();

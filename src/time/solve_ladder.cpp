@@ -51,6 +51,12 @@ bool take_back_half(const equilibrium::Statuses& before, equilibrium::Statuses& 
     return true;
 }
 
+bool touches(const equilibrium::Statuses& statuses) {
+    return std::ranges::any_of(statuses, [](const auto& pair) {
+        return std::ranges::any_of(pair, [](Status s) { return s != Status::open; });
+    });
+}
+
 LadderResult settle(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                     equilibrium::Statuses statuses, LadderOptions& options) {
     LadderResult result;
@@ -96,9 +102,10 @@ LadderResult settle(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& 
 /// Rung 4, a proximal point iteration: u_k+1 solves f(u) + k S (u - u_k) = f_ext + f_contact.
 LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                        equilibrium::Statuses statuses, bool force_first, LadderOptions& options) {
-    constexpr int most_solves = 200, most_slow = 40, most_failures = 12, easy = 6;
-    constexpr double softer = 1.0 / 16, little_softer = 0.5, stiffer = 16;
-    constexpr double near = 0.1; // of a stride: worth trying without springs
+    constexpr int most_solves = 200, most_slow = 40, most_failures = 24, most_in_a_row = 12, easy = 6;
+    constexpr double softer = 1.0 / 16, little_softer = 0.5, stiffer = 16, between = 4;
+    constexpr double forgets = 0.7; // per success: what was too soft there may hold here
+    constexpr double near = 0.1;    // of a stride: worth trying without springs
 
     const StabilisationOptions& how = options.stabilisation;
     // a smaller step is cheaper than a long search, and where nothing can come into contact there is nothing to search for
@@ -116,7 +123,9 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
     Vector anchor_z = z;
     // the reference force is a norm over the nodes; this is no less than their sum
     double stiffness = options.reference_force * std::sqrt(static_cast<double>(start.size())) / stride();
-    int failures = 0, slow = 0; // slow: not on the way across a gap
+    double least = 0;                         // N/m, not tried below after a solve that failed
+    double last_move = 0;                     // m
+    int failures = 0, in_a_row = 0, slow = 0; // slow: not on the way across a gap
     const auto newton = [&](bool springs) {
         if (springs)
             equilibrium.stabilise({&how.share(), stiffness, anchor});
@@ -132,12 +141,13 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
     };
     bool undetermined = false; // the tangent without springs was singular with these statuses
     while (result.stabilised_solves < most_solves && slow < most_slow && failures < most_failures &&
-           result.iterations < most_iterations) {
+           in_a_row < most_in_a_row && result.iterations < most_iterations) {
         z = anchor_z;
         equilibrium.set_sparing(true);
         auto solved = newton(true);
         equilibrium.set_sparing(false);
-        if (solved.outcome == KinsolOutcome::unsolved || solved.outcome == KinsolOutcome::stopped) {
+        if ((solved.outcome == KinsolOutcome::unsolved || solved.outcome == KinsolOutcome::stopped) &&
+            (touches(statuses) || touches(equilibrium.statuses()))) {
             z = anchor_z;
             const LadderResult rubbed = settle_friction(equilibrium, solver, z, statuses, options);
             result.iterations += rubbed.iterations;
@@ -149,10 +159,13 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
         }
         ++result.stabilised_solves;
         if (solved.outcome != KinsolOutcome::converged) {
-            ++failures;
+            ++in_a_row;
+            if (++failures > 1) least = between * stiffness; // one may be chance
             stiffness *= stiffer;
             continue;
         }
+        in_a_row = 0;
+        least *= forgets;
         Field u = equilibrium.displacements(z);
         const double moved = largest_distance(u, anchor).value;
         if (moved > too_far()) {
@@ -166,7 +179,8 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
             break;
         }
         const double before = stride();
-        slow += moved < 0.5 * before ? 1 : 0;
+        slow += moved < 0.5 * before && !(moved > last_move) ? 1 : 0; // what moves ever further leaves where it was
+        last_move = moved;
         equilibrium::Statuses next = equilibrium.statuses();
         undetermined = undetermined && next == statuses;
         statuses = std::move(next);
@@ -194,9 +208,10 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
             undetermined = solve::is_singular(free.outcome);
         }
         // a body that has met nothing yet moves by a stride at a time, not through what it should meet
-        stiffness *= std::max(solved.iterations <= easy ? softer : little_softer, moved / stride());
+        stiffness =
+            std::max(least, stiffness * std::max(solved.iterations <= easy ? softer : little_softer, moved / stride()));
     }
-    if (result.adrift < 0 && result.stabilised_solves == most_solves && failures < most_failures) {
+    if (result.adrift < 0 && result.stabilised_solves == most_solves && in_a_row < most_in_a_row) {
         const AtNode travelled = largest_distance(anchor, start);
         result.travelled = travelled.value;
         // below it moved, but did not run away

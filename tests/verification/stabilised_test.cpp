@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <utility>
 
 namespace osculate::OSCULATE_THIS_FILE {
 namespace {
@@ -252,6 +253,29 @@ TEST(Stabilised, RejectedAttemptsAndThreadsLeaveNoTrace) {
             EXPECT_EQ(straight.states[k].contact[0].status, other.states[k].contact[0].status) << "step " << k;
         }
     }
+}
+
+/// Newton's method that may take its time leaps from one side to the other. Springs let go of an arch whose tangent is negative only while
+/// they are stiffer than that, by an amount that changes on the way; both come to rest in one place where there is no friction.
+TEST(Stabilised, AnArchThatSnapsThroughComesToRestWhereNewtonsMethodFindsIt) {
+    const std::vector<scene::Override> both = {{"contact.catch.friction", "0"},
+                                               {"stages.load.pressure.upper", "6 kPa"}, // it snaps at 4.6 kPa
+                                               {"stages.load.steps", "2"}};
+    support::SceneRun leaps, sprung;
+    support::run_scene(leaps, support::shipped("extreme/snap_through.yaml"), both);
+    std::vector<scene::Override> impatient = both;
+    impatient.insert(impatient.end(), {{"solver.max_iterations", "6"}, {"solver.smallest_step", "0.1"}});
+    support::run_scene(sprung, support::shipped("extreme/snap_through.yaml"), impatient);
+    const auto& [one, other] = std::pair(leaps.steps.back(), sprung.steps.back());
+    double apart = 0, moved = 0; // m
+    for (std::size_t i = 0; i < one.state.u.size(); ++i) {
+        apart = std::max(apart, (one.state.u[i] - other.state.u[i]).norm());
+        moved = std::max(moved, one.state.u[i].norm());
+    }
+    EXPECT_GT(moved, 0.1); // through the line between the ends
+    EXPECT_LT(apart, 1e-8) << "m";
+    ASSERT_GT(one.pairs[0].normal, 100); // N
+    EXPECT_NEAR(one.pairs[0].normal, other.pairs[0].normal, same_force * one.pairs[0].normal);
 }
 
 } // namespace

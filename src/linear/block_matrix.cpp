@@ -4,17 +4,33 @@
 #include "osculate/core/parallel.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace osculate::linear {
 
-std::vector<std::vector<Index>> neighbours(Index nodes, const std::vector<std::vector<Index>>& elements) {
-    std::vector<std::vector<Index>> rows(static_cast<std::size_t>(nodes));
-    for (const auto& element : elements)
-        for (const Index i : element) rows[i].insert(rows[i].end(), element.begin(), element.end());
-    for (auto& row : rows) {
-        std::sort(row.begin(), row.end());
-        row.erase(std::unique(row.begin(), row.end()), row.end());
-        row.shrink_to_fit();
+Lists neighbours(Index nodes, const Lists& elements) {
+    std::vector<Index> element_of(elements.number.size());
+    for (std::size_t e = 0; e < elements.size(); ++e)
+        std::fill(element_of.begin() + elements.start[e], element_of.begin() + elements.start[e + 1],
+                  static_cast<Index>(e));
+    const Lists places = places_of(elements.number, static_cast<std::size_t>(nodes));
+    std::vector<Index> met(static_cast<std::size_t>(nodes), -1); // the last node, or its complement, that met each
+    const auto each = [&](std::size_t node, Index mark, const auto& f) {
+        for (const Index place : places[node])
+            for (const Index other : elements[static_cast<std::size_t>(element_of[place])])
+                if (std::exchange(met[other], mark) != mark) f(other);
+    };
+    Lists rows;
+    rows.start.reserve(places.size() + 1);
+    Index length = 0;
+    for (std::size_t node = 0; node < places.size(); ++node) {
+        each(node, static_cast<Index>(node), [&](Index) { ++length; });
+        rows.start.push_back(length);
+    }
+    rows.number.reserve(static_cast<std::size_t>(length));
+    for (std::size_t node = 0; node < places.size(); ++node) {
+        each(node, -2 - static_cast<Index>(node), [&](Index other) { rows.number.push_back(other); });
+        std::sort(rows.number.begin() + rows.start[node], rows.number.end());
     }
     return rows;
 }
@@ -22,12 +38,17 @@ std::vector<std::vector<Index>> neighbours(Index nodes, const std::vector<std::v
 BlockMatrix::BlockMatrix(Index nodes, const std::vector<std::vector<Index>>& elements)
     : BlockMatrix(neighbours(nodes, elements)) {}
 
-BlockMatrix::BlockMatrix(const std::vector<std::vector<Index>>& columns, std::shared_ptr<const Share> share)
-    : share_(std::move(share)) {
-    row_start_.reserve(columns.size() + 1);
-    for (std::size_t row = 0; row < columns.size(); ++row) {
-        if (has_row(static_cast<Index>(row))) column_.insert(column_.end(), columns[row].begin(), columns[row].end());
-        row_start_.push_back(static_cast<Index>(column_.size()));
+BlockMatrix::BlockMatrix(Lists columns, std::shared_ptr<const Share> share) : share_(std::move(share)) {
+    if (share_ == nullptr) {
+        row_start_ = std::move(columns.start);
+        column_ = std::move(columns.number);
+    } else {
+        row_start_.reserve(columns.size() + 1);
+        for (std::size_t row = 0; row < columns.size(); ++row) {
+            if (has_row(static_cast<Index>(row)))
+                column_.insert(column_.end(), columns[row].begin(), columns[row].end());
+            row_start_.push_back(static_cast<Index>(column_.size()));
+        }
     }
     set_zero();
 }

@@ -3,7 +3,9 @@
 #include "osculate/model/moment_factors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <utility>
 
 namespace osculate::model {
 
@@ -36,17 +38,28 @@ template <class F> void for_each_element(const Body& body, F&& f) {
 
 } // namespace
 
-std::vector<std::vector<Index>> neighbours(const std::vector<Body>& bodies, Index nodes) {
-    std::vector<std::vector<Index>> elements;
+Lists neighbours(const std::vector<Body>& bodies, Index nodes) {
+    Lists elements;
     Index last = 0;
+    std::vector<Index> element;
     for (const Body& body : bodies) {
         last = body.first_node + body.nodes();
-        if (body.rigid) // its nodes have no equations
-            for (Index node = body.first_node; node < last; ++node) elements.push_back({node});
-        else
-            for_each_element(body, [&](const Element& one) { elements.push_back(one.nodes); });
+        if (body.rigid) { // its nodes have no equations
+            for (Index node = body.first_node; node < last; ++node) elements.add({&node, 1});
+            continue;
+        }
+        for (std::size_t b = 0; b < body.mesh.blocks.size(); ++b) {
+            const mesh::ElementBlock& block = body.mesh.blocks[b];
+            const auto n = static_cast<std::size_t>(body.kernels[b]->nodes());
+            for (std::size_t e = 0; e < static_cast<std::size_t>(block.size()); ++e) {
+                const auto first = block.connectivity.begin() + static_cast<std::ptrdiff_t>(n * e);
+                element.assign(first, first + static_cast<std::ptrdiff_t>(n));
+                for (Index& node : element) node += body.first_node;
+                elements.add(element);
+            }
+        }
     }
-    for (Index r = last; r + 1 < nodes; r += 2) elements.push_back({r, r + 1}); // of rigid bodies and couplings
+    for (Index r = last; r + 1 < nodes; r += 2) elements.add(std::array{r, r + 1}); // of rigid bodies and couplings
     return linear::neighbours(nodes, elements);
 }
 
@@ -159,10 +172,9 @@ AssembledMass assemble_mass(const std::vector<Body>& bodies, Index nodes, bool l
     return assembled;
 }
 
-linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, std::vector<std::vector<Index>> neighbours,
+linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Lists neighbours,
                                        const std::shared_ptr<const Share>& share) {
-    linear::BlockMatrix K(neighbours, share);
-    std::vector<std::vector<Index>>().swap(neighbours);
+    linear::BlockMatrix K(std::move(neighbours), share);
     for (const Body& body : bodies) {
         if (body.rigid) continue;
         Matrix Ke;

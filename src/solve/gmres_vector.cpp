@@ -35,10 +35,21 @@ const double* values(N_Vector v) {
     return content(v).slice.data;
 }
 
+Index parts_of(N_Vector v) {
+    return (length_of(v) + at_once - 1) / at_once;
+}
+/// Chunks of a vector that threads work on side by side.
+Index chunks_of(N_Vector v) {
+    return std::clamp<Index>(parts_of(v) / 2, 1, content(v).threads); // shorter loops end before a thread wakes
+}
+
 /// Calls body(begin, end) on parts of a vector, which begin at multiples of at_once.
 void share(N_Vector v, auto&& body) {
-    const Index parts = (length_of(v) + at_once - 1) / at_once,
-                chunks = std::clamp<Index>(parts / 2, 1, content(v).threads); // shorter loops end before a thread wakes
+    const Index parts = parts_of(v), chunks = chunks_of(v);
+    if (chunks == 1) {
+        body(Index{0}, length_of(v));
+        return;
+    }
     run_side_by_side(chunks, [&](Index chunk) {
         body(at_once * static_cast<Index>(std::int64_t{parts} * chunk / chunks),
              std::min(at_once * static_cast<Index>(std::int64_t{parts} * (chunk + 1) / chunks), length_of(v)));
@@ -57,12 +68,18 @@ double product(const double* a, const double* b, Index length) {
 }
 
 double own_dot(N_Vector a, N_Vector b) {
-    std::vector<double> part(static_cast<std::size_t>((length_of(a) + at_once - 1) / at_once));
-    share(a, [&](Index begin, Index end) {
-        for (Index i = begin; i < end; i += at_once)
-            part[i / at_once] = product(values(a) + i, values(b) + i, std::min(at_once, end - i));
-    });
+    const auto of_part = [&](Index i, Index end) {
+        return product(values(a) + i, values(b) + i, std::min(at_once, end - i));
+    };
     double sum = 0;
+    if (chunks_of(a) == 1) {
+        for (Index i = 0; i < length_of(a); i += at_once) sum += of_part(i, length_of(a));
+        return sum;
+    }
+    std::vector<double> part(static_cast<std::size_t>(parts_of(a)));
+    share(a, [&](Index begin, Index end) {
+        for (Index i = begin; i < end; i += at_once) part[i / at_once] = of_part(i, end);
+    });
     for (const double p : part) sum += p;
     return sum;
 }
@@ -76,7 +93,7 @@ double dot(N_Vector a, N_Vector b) {
 /// The same sums as by dot(); each part of `a` is read once.
 int dots(int count, N_Vector a, N_Vector* with, double* products) {
     const auto of = static_cast<std::size_t>(count);
-    const Index parts = (length_of(a) + at_once - 1) / at_once;
+    const Index parts = parts_of(a);
     std::vector<double> part(static_cast<std::size_t>(parts) * of);
     share(a, [&](Index begin, Index end) {
         for (Index i = begin; i < end; i += at_once)

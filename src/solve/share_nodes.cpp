@@ -64,14 +64,13 @@ std::vector<idx_t> clusters(const Graph& graph) {
 /// Of clusters; an edge counts as those that it stands for.
 Graph clustered(const Graph& graph, const std::vector<idx_t>& cluster) {
     const auto count = static_cast<std::size_t>(std::ranges::max(cluster)) + 1;
-    std::vector<std::vector<std::size_t>> members(count);
-    for (std::size_t i = 0; i < cluster.size(); ++i) members[static_cast<std::size_t>(cluster[i])].push_back(i);
+    const Lists members = places_of(cluster, count);
     Graph coarse{{0}, {}, {}, {}};
     std::vector<idx_t> edges(count, 0), beside;
     for (std::size_t c = 0; c < count; ++c) {
         idx_t weight = 0;
         beside.clear();
-        for (const std::size_t i : members[c]) {
+        for (const Index i : members[c]) {
             weight += graph.weight[i];
             for (idx_t k = graph.start[i]; k < graph.start[i + 1]; ++k) {
                 const idx_t d = cluster[static_cast<std::size_t>(graph.other[static_cast<std::size_t>(k)])];
@@ -110,21 +109,20 @@ constexpr std::size_t large_share = 20000;
 
 } // namespace
 
-std::vector<int> share_nodes(const std::vector<std::vector<Index>>& neighbours, int ranks,
-                             std::span<const std::pair<Index, Index>> together) {
+std::vector<int> share_nodes(const Lists& neighbours, int ranks, std::span<const std::pair<Index, Index>> together) {
     std::vector<int> owner(neighbours.size(), 0);
-    if (ranks == 1 || neighbours.empty()) return owner;
+    if (ranks == 1 || owner.empty()) return owner;
     const std::vector<Index> group = groups(neighbours.size(), together);
-    std::vector<std::vector<Index>> members(static_cast<std::size_t>(std::ranges::max(group)) + 1);
-    for (std::size_t i = 0; i < group.size(); ++i) members[group[i]].push_back(static_cast<Index>(i));
+    const Lists members = places_of(group, static_cast<std::size_t>(std::ranges::max(group)) + 1);
     std::vector<idx_t> start{0}, other, weight;
     std::vector<Index> beside;
     for (std::size_t g = 0; g < members.size(); ++g) {
         beside.clear();
         idx_t blocks = 0;
         for (const Index i : members[g]) {
-            blocks += static_cast<idx_t>(neighbours[i].size());
-            for (const Index j : neighbours[i])
+            const std::span<const Index> near = neighbours[static_cast<std::size_t>(i)];
+            blocks += static_cast<idx_t>(near.size());
+            for (const Index j : near)
                 if (group[j] != static_cast<Index>(g)) beside.push_back(group[j]);
         }
         std::ranges::sort(beside);

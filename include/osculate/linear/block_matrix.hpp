@@ -1,6 +1,7 @@
 #pragma once
 /// Sparse matrix of 3 x 3 blocks over the nodes of all bodies.
 
+#include "osculate/core/lists.hpp"
 #include "osculate/core/ranks.hpp"
 #include "osculate/solve/nodal_matrix.hpp"
 
@@ -20,7 +21,7 @@ public:
     /// @param columns  of each row, ascending
     /// @param share    rows of others' nodes stay empty; null: there is one process. Products are of all rows on all processes,
     ///                 but for those of given rows
-    explicit BlockMatrix(const std::vector<std::vector<Index>>& columns, std::shared_ptr<const Share> share = nullptr);
+    explicit BlockMatrix(Lists columns, std::shared_ptr<const Share> share = nullptr);
 
     [[nodiscard]] Index rows() const { return static_cast<Index>(row_start_.size()) - 1; }
     [[nodiscard]] Index row_begin(Index row) const { return row_start_[row]; }
@@ -66,6 +67,6 @@ private:
 };
 
 /// Nodes that share an element with each node, itself included, ascending; none for nodes without elements.
-[[nodiscard]] std::vector<std::vector<Index>> neighbours(Index nodes, const std::vector<std::vector<Index>>& elements);
+[[nodiscard]] Lists neighbours(Index nodes, const Lists& elements);
 
 } // namespace osculate::linear

@@ -156,12 +156,11 @@ void move_tied(const Model& model, Field& u);
 [[nodiscard]] linear::BlockMatrix undeformed_stiffness(const Model& model, int threads);
 /// Stiffness of the linear bodies, in the pattern of all bodies.
 /// @param neighbours  of these bodies
-[[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies,
-                                                     std::vector<std::vector<Index>> neighbours,
+[[nodiscard]] linear::BlockMatrix assemble_stiffness(const std::vector<Body>& bodies, Lists neighbours,
                                                      const std::shared_ptr<const Share>& share = nullptr);
 
 /// Nodes that share an element, see linear::neighbours.
-[[nodiscard]] std::vector<std::vector<Index>> neighbours(const std::vector<Body>& bodies, Index nodes);
+[[nodiscard]] Lists neighbours(const std::vector<Body>& bodies, Index nodes);
 struct AssembledMass {
     linear::BlockMatrix M;
     std::vector<Index> kept; ///< bodies that keep the mass of marked nodes: nothing else has their moments

@@ -1,6 +1,7 @@
 #pragma once
 /// The processes of an MPI run.
 
+#include "osculate/core/lists.hpp"
 #include "osculate/core/ranks.hpp"
 
 namespace osculate::solve {
@@ -15,7 +16,7 @@ namespace osculate::solve {
 /// @param neighbours  of each node, itself included
 /// @param together    pairs of nodes that go to the same rank
 /// @returns           (nodes) a rank
-[[nodiscard]] std::vector<int> share_nodes(const std::vector<std::vector<Index>>& neighbours, int ranks,
+[[nodiscard]] std::vector<int> share_nodes(const Lists& neighbours, int ranks,
                                            std::span<const std::pair<Index, Index>> together = {});
 
 } // namespace osculate::solve

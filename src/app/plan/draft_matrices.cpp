@@ -145,7 +145,7 @@ void add_gravity(Draft& draft) {
 void add_matrices(Draft& draft) {
     const ScopedTimer timer(draft.timings, Part::assembly);
     model::Model& model = draft.plan.model;
-    std::vector<std::vector<Index>> neighbours = model::neighbours(model.bodies, model.nodes());
+    Lists neighbours = model::neighbours(model.bodies, model.nodes());
     if (draft.ranks) model.share = share_nodes(draft, neighbours);
     model.K = model::assemble_stiffness(model.bodies, std::move(neighbours), model.share);
     if (draft.any_kernel([](const fe::ElementKernel& kernel) { return !kernel.linear(); }))

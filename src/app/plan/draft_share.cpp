@@ -12,7 +12,7 @@ void check_distributed(Draft& draft) {
     std::ranges::move(cannot_be_shared(draft.plan.model), std::back_inserter(draft.faults));
 }
 
-std::shared_ptr<const Share> share_nodes(const Draft& draft, const std::vector<std::vector<Index>>& neighbours) {
+std::shared_ptr<const Share> share_nodes(const Draft& draft, const Lists& neighbours) {
     const model::Model& m = draft.plan.model;
     Ranks& ranks = *draft.ranks;
     std::vector<double> first, all(static_cast<std::size_t>(m.nodes()));

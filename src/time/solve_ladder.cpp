@@ -103,7 +103,8 @@ LadderResult settle(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& 
 LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                        equilibrium::Statuses statuses, bool force_first, LadderOptions& options) {
     constexpr int most_solves = 200, most_slow = 40, most_failures = 24, most_in_a_row = 12, easy = 6;
-    constexpr double softer = 1.0 / 16, little_softer = 0.5, stiffer = 16, between = 4;
+    constexpr double softer = 1.0 / 16, little_softer = 0.5, stiffer = 16;
+    constexpr double above = 4;     // times what was too soft: halfway to what is tried next
     constexpr double forgets = 0.7; // per success: what was too soft there may hold here
     constexpr double near = 0.1;    // of a stride: worth trying without springs
 
@@ -160,7 +161,7 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
         ++result.stabilised_solves;
         if (solved.outcome != KinsolOutcome::converged) {
             ++in_a_row;
-            if (++failures > 1) least = between * stiffness; // one may be chance
+            if (++failures > 1) least = above * stiffness; // one may be chance
             stiffness *= stiffer;
             continue;
         }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
-#include <utility>
 
 namespace osculate::OSCULATE_THIS_FILE {
 namespace {
@@ -266,14 +265,16 @@ TEST(Stabilised, AnArchThatSnapsThroughComesToRestWhereNewtonsMethodFindsIt) {
     std::vector<scene::Override> impatient = both;
     impatient.insert(impatient.end(), {{"solver.max_iterations", "6"}, {"solver.smallest_step", "0.1"}});
     support::run_scene(sprung, support::shipped("extreme/snap_through.yaml"), impatient);
-    const auto& [one, other] = std::pair(leaps.steps.back(), sprung.steps.back());
+    const support::RunStep &one = leaps.steps.back(), &other = sprung.steps.back();
+    // the rungs before that of springs may take some 60, see settle()
+    EXPECT_TRUE(std::ranges::any_of(sprung.steps, [](const support::RunStep& step) { return step.iterations > 100; }));
     double apart = 0, moved = 0; // m
     for (std::size_t i = 0; i < one.state.u.size(); ++i) {
         apart = std::max(apart, (one.state.u[i] - other.state.u[i]).norm());
         moved = std::max(moved, one.state.u[i].norm());
     }
     EXPECT_GT(moved, 0.1); // through the line between the ends
-    EXPECT_LT(apart, 1e-8) << "m";
+    EXPECT_LT(apart, same_place) << "m";
     ASSERT_GT(one.pairs[0].normal, 100); // N
     EXPECT_NEAR(one.pairs[0].normal, other.pairs[0].normal, same_force * one.pairs[0].normal);
 }

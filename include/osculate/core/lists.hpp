@@ -12,7 +12,7 @@ namespace osculate {
 /// Compressed rows without values: the neighbours of each node, for example.
 struct Lists {
     Lists() = default;
-    Lists(const std::vector<std::vector<Index>>& lists) { // NOLINT: a view of the same
+    Lists(const std::vector<std::vector<Index>>& lists) { // NOLINT: the same lists, copied
         for (const std::vector<Index>& list : lists) add(list);
     }
     void add(std::span<const Index> list) {
@@ -26,11 +26,12 @@ struct Lists {
     }
 
     std::vector<Index> start{0}; ///< (size + 1) into number
-    std::vector<Index> number;
+    std::vector<Index> number;   ///< of all lists, one after another
 };
 
 /// Lists of the places of each value, ascending.
-/// @param values  from 0 to count - 1
+/// @param values  each from 0 to count - 1
+/// @returns       (count) places in values
 template <class Values> [[nodiscard]] Lists places_of(const Values& values, std::size_t count) {
     Lists lists;
     lists.start.assign(count + 2, 0); // the last is left over

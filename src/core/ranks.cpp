@@ -53,7 +53,6 @@ bool Share::agree(const Field& field) const {
 
 void Ranks::gather_in_turns(std::span<const double> own, std::span<const int> sizes,
                             const std::function<void(int rank, const double* numbers)>& each, std::size_t most) {
-    std::vector<double> some;
     for (std::size_t begin = 0, end = 0; begin < sizes.size(); begin = end) {
         std::vector<int> now(sizes.size(), 0);
         std::size_t numbers = 0;
@@ -61,10 +60,10 @@ void Ranks::gather_in_turns(std::span<const double> own, std::span<const int> si
             now[end] = sizes[end];
             numbers += static_cast<std::size_t>(sizes[end++]);
         }
-        some.resize(numbers);
+        some_.resize(numbers);
         const auto self = static_cast<std::size_t>(rank());
-        gather(self >= begin && self < end ? own : std::span<const double>(), now, some.data());
-        const double* first = some.data();
+        gather(self >= begin && self < end ? own : std::span<const double>(), now, some_.data());
+        const double* first = some_.data();
         for (std::size_t r = begin; r < end; first += sizes[r++]) each(static_cast<int>(r), first);
     }
 }

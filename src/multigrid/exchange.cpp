@@ -8,6 +8,7 @@ std::vector<double> sum_over_ranks(const std::vector<double>& own) {
     int ranks = 1;
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     std::vector<double> all(own.size() * static_cast<std::size_t>(ranks)), sum(own.size(), 0.0);
+    meet();
     MPI_Allgather(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all.data(), static_cast<int>(own.size()),
                   MPI_DOUBLE, MPI_COMM_WORLD);
     for (std::size_t k = 0; k < all.size(); ++k) sum[k % own.size()] += all[k];
@@ -16,6 +17,7 @@ std::vector<double> sum_over_ranks(const std::vector<double>& own) {
 
 double largest_over_ranks(double own) {
     double all = own;
+    meet();
     MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     return all;
 }
@@ -44,7 +46,7 @@ void send_and_receive(const std::vector<std::vector<double>>& out, std::vector<s
         if (!out[r].empty())
             MPI_Isend(out[r].data(), static_cast<int>(out[r].size()), MPI_DOUBLE, static_cast<int>(r), tag,
                       MPI_COMM_WORLD, &open.emplace_back());
-    MPI_Waitall(static_cast<int>(open.size()), open.data(), MPI_STATUSES_IGNORE);
+    wait(open);
 }
 
 void Exchange::fill(double* x, int width) const {

@@ -1,6 +1,7 @@
 #pragma once
 /// Values that other processes own.
 
+#include "multigrid/wait.hpp"
 #include "osculate/core/types.hpp"
 
 #include <algorithm>
@@ -22,6 +23,7 @@ template <class Number>
     const std::size_t ranks = lists.size();
     std::vector<int> bytes_out(ranks), bytes_in(ranks), place_out(ranks + 1, 0), place_in(ranks + 1, 0);
     for (std::size_t r = 0; r < ranks; ++r) bytes_out[r] = static_cast<int>(lists[r].size() * sizeof(Number));
+    meet();
     MPI_Alltoall(bytes_out.data(), 1, MPI_INT, bytes_in.data(), 1, MPI_INT, MPI_COMM_WORLD);
     for (std::size_t r = 0; r < ranks; ++r) {
         place_out[r + 1] = place_out[r] + bytes_out[r];

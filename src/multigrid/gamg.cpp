@@ -5,35 +5,16 @@
 #include "multigrid/petsc_check.hpp"
 #include "multigrid/third_matrix.hpp"
 #include "osculate/core/parallel.hpp"
-#include "osculate/core/ranks.hpp"
 #include "osculate/solve/multigrid.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
-#include <numeric>
 #include <optional>
 #include <petscksp.h>
 #include <span>
-#include <thread>
 
 namespace osculate::solve {
 namespace {
-
-void begin_petsc() {
-    static const bool begun = [] {
-        setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);                 // one process: no daemon beside it
-        for (const char* option : {"-no_signal_handler", "-skip_petscrc"}) // no file of the user's changes a result
-            check(PetscOptionsSetValue(nullptr, option, nullptr));
-        check(PetscOptionsSetValue(nullptr, "-options_left",
-                                   "no")); // later versions say at the end that they ignored one
-        check(PetscInitializeNoArguments());
-        check(PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr)); // codes are checked, and tell enough
-        return true;
-    }();
-    (void)begun;
-}
 
 constexpr PetscInt sweeps = 2; // of a smoother, before and after
 constexpr double lower = 0.3,
@@ -378,64 +359,8 @@ private:
     Vector c_;             ///< of aggregates, with copies
 };
 
-class MpiRanks final : public Ranks {
-public:
-    MpiRanks() {
-        begin_petsc();
-        MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-        MPI_Comm_size(MPI_COMM_WORLD, &count_);
-        MPI_Comm_dup(MPI_COMM_WORLD, &at_the_end_);
-        // GAMG's own products, in bits that do not depend on which message comes first
-        check(PetscOptionsSetValue(nullptr, "-matptap_via", "backend"));
-    }
-    ~MpiRanks() override {
-        MPI_Comm_free(&at_the_end_);
-        PetscFinalize();
-    }
-    MpiRanks(const MpiRanks&) = delete;
-    MpiRanks& operator=(const MpiRanks&) = delete;
-
-    [[nodiscard]] int rank() const override { return rank_; }
-    [[nodiscard]] int count() const override { return count_; }
-    void gather(std::span<const double> own, std::span<const int> sizes, double* all) override {
-        std::vector<int> begin(sizes.size(), 0);
-        std::partial_sum(sizes.begin(), sizes.end() - 1, begin.begin() + 1);
-        MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all, sizes.data(), begin.data(),
-                       MPI_DOUBLE, MPI_COMM_WORLD);
-    }
-
-    void exchange(const std::vector<std::vector<double>>& out, std::vector<std::vector<double>>& in) override {
-        send_and_receive(out, in);
-    }
-
-    [[nodiscard]] bool agree_on_end(int code, double patience) override {
-        std::vector<int> all(static_cast<std::size_t>(count_));
-        MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Iallgather(&code, 1, MPI_INT, all.data(), 1, MPI_INT, at_the_end_, &request);
-        constexpr std::chrono::milliseconds pause(10);
-        const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
-        for (int done = 0; done == 0; std::this_thread::sleep_for(pause)) {
-            MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-            if (done == 0 && std::chrono::steady_clock::now() > until) return false;
-        }
-        return std::ranges::all_of(all, [&](int other) { return other == code; });
-    }
-    [[noreturn]] void abort(int code) override {
-        MPI_Abort(MPI_COMM_WORLD, code);
-        std::abort();
-    }
-
-private:
-    int rank_ = 0, count_ = 1;
-    MPI_Comm at_the_end_ = MPI_COMM_NULL;
-};
-
 } // namespace
 } // namespace osculate::solve
-
-extern "C" osculate::Ranks* osculate_join_ranks() {
-    return new osculate::solve::MpiRanks;
-}
 
 extern "C" osculate::solve::Multigrid* osculate_make_multigrid(osculate::solve::NodalUnknowns* unknowns, int threads) {
     return new osculate::solve::Gamg(std::move(*unknowns), threads);

@@ -1,5 +1,5 @@
 #pragma once
-/// Codes of PETSc as failures of a run.
+/// PETSc's beginning, and its codes as failures of a run.
 
 #include "osculate/core/error.hpp"
 
@@ -7,6 +7,9 @@
 #include <string>
 
 namespace osculate::solve {
+
+/// Begins PETSc and MPI, once.
+void begin_petsc();
 
 inline void check(PetscErrorCode code) {
     if (code == 0) return;

@@ -199,7 +199,14 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
                 return result;
             }
         }
-        if (moved < near * before && !undetermined) {
+        const bool rests = moved < near * before;
+        // where motions along a contact are free, the tangent without springs is singular for good
+        if (rests && touches(statuses) && equilibrium.holds(anchor_z, statuses, options.tolerance) &&
+            equilibrium.natural_statuses() == statuses) {
+            result.outcome = KinsolOutcome::converged;
+            return result;
+        }
+        if (rests && !undetermined) {
             const auto free = newton(false);
             if (free.outcome == KinsolOutcome::converged &&
                 largest_distance(equilibrium.displacements(z), anchor).value < stride()) {

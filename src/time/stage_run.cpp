@@ -149,6 +149,7 @@ StepAttempt StageRun::prepare() {
         alone.begin_attempt(state, std::move(load), attempt.dt);
         ladder.reference_force = imbalance(alone, attempt.z, attempt.statuses, attempt.forced);
     }
+    attempt.reference_force = ladder.reference_force;
     return attempt;
 }
 
@@ -285,7 +286,10 @@ void StageRun::commit(StepAttempt& attempt) {
     progress_.state = attempt.next; // in place: its arrays stay where they are for whoever looks at them
     progress_.counts.stabilised_steps += attempt.result.stabilised_solves > 0 ? 1 : 0;
     progress_.counts.held_geometry_steps += attempt.result.held_geometry ? 1 : 0;
-    progress_.counts.steps_at_round_off += equilibrium().rests() ? 1 : 0;
+    const double left = attempt.result.residual * attempt.result.reference_force;
+    const bool raised = attempt.result.reference_force > attempt.reference_force;
+    if (equilibrium().rests() || (raised && left > context_.options.tolerance * attempt.reference_force))
+        ++progress_.counts.steps_at_round_off;
     if (dynamics_) progress_.ledger = attempt.ledger;
     observer_.attempted(attempts_.back(), equilibrium().records());
     observer_.accepted({progress_.state, equilibrium(), attempt.dt, attempt.iterations, stage_,

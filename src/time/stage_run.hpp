@@ -26,6 +26,7 @@ struct StepAttempt {
     equilibrium::Statuses statuses; ///< to start from
     bool forced = false;            ///< contact made by hand, see starting_statuses()
     LadderOptions ladder;
+    double reference_force = 1; ///< N, before a solve that stagnates raises it
 
     StepEvidence evidence;
     Decision decision;

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <limits>
+#include <utility>
 
 namespace osculate::OSCULATE_THIS_FILE {
 namespace {
@@ -201,6 +203,47 @@ TEST(RoundOff, TheTutorialsBlockMayBePressedAsLightlyAsOneLikes) {
         ASSERT_EQ(heavy.failure, "") << pressure;
         EXPECT_NEAR(heavy.contact_force().z(), 4905 + std::stod(pressure), 1e-4) << pressure;
     }
+}
+
+/// A steel column of 1 m, without friction, that its load moves across a gap onto a slab.
+const char* const across_a_gap = R"(
+bodies:
+  slab:
+    mesh: {{block: {{origin: [-0.1 m, -0.1 m, -0.2 m], size: [0.7 m, 0.7 m, 0.2 m], divisions: [3, 3, 1]}}}}
+    material: {{linear_elastic: {{E: 200 GPa, nu: 0}}}}
+  column:
+    mesh: {{block: {{origin: [0 m, 0 m, {0} m], size: [0.5 m, 0.5 m, 1 m], divisions: [2, 2, 4]}}}}
+    material: {{linear_elastic: {{E: 200 GPa, nu: 0}}}}
+sets:
+  sole: {{body: column, surface: z_min}}
+  ground: {{body: slab, surface: z_max}}
+  bed: {{body: slab, surface: z_min}}
+supports:
+  bed: {{fix: [x, y, z]}}
+contact:
+  joint: {{slave: {1}, master: {{set: {2}}}}}
+stages:
+  rest: {{body_force: {{column: [0 N/m^3, 0 N/m^3, -{3} N/m^3]}}}}
+)";
+
+TEST(RoundOff, AStiffColumnUnderALightLoadCrossesAGapAndRests) {
+    constexpr double area = 0.25, stiffness = 200e9 * area / 0.25, digit = std::numeric_limits<double>::epsilon();
+    for (const auto& [slave, master] : {std::pair("sole", "ground"), std::pair("ground", "sole")})
+        for (const double gap : {0.003, 0.01, 0.03})
+            for (const double load : {1.0, 100.0, 1e4}) {
+                const std::string which = fmt::format("{} on {}, {} m, {} N/m^3", slave, master, gap, load);
+                const Outcome rests(fmt::format(fmt::runtime(across_a_gap), gap, slave, master, load),
+                                    moved_by(1, {"slab", "column"}));
+                ASSERT_EQ(rests.failure, "") << which;
+                // what the last digit of a displacement is worth at the edges of a node
+                const double allowed = 10 * digit * gap * stiffness + 1e-8 * load * area;
+                EXPECT_NEAR(std::abs(rests.contact_force().z()), load * area, allowed) << which;
+                EXPECT_EQ(rests.steps, 1) << which;
+            }
+    // forces below what the last digits of displacements are worth are not found, and not passed over in silence
+    const Outcome lost(fmt::format(fmt::runtime(across_a_gap), 0.03, "ground", "sole", 1e-4),
+                       moved_by(1, {"slab", "column"}));
+    EXPECT_TRUE(!lost.failure.empty() || lost.at_round_off == 1);
 }
 
 TEST(RoundOff, OfAForceWithoutBoundHidesNoGap) {

@@ -42,6 +42,9 @@ public:
     void sum(std::span<double> values);
     /// The text of one rank, on all. @param own  read on that rank
     [[nodiscard]] std::string said_by(int rank, const std::string& own);
+
+private:
+    std::vector<double> some_; ///< kept, as new pages cost more than what is gathered into them
 };
 
 /// Which process owns which node. Every process holds the values of all nodes and takes all decisions from them, so that all

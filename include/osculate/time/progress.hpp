@@ -13,8 +13,9 @@ namespace osculate::time {
 struct RunCounts {
     int attempts = 0;
     int stabilised_steps = 0; ///< steps accepted on the rung `stabilised`, see climb()
-    int steps_at_round_off =
-        0; ///< steps accepted above the tolerance, but at the round-off of their rows: Equilibrium::rests()
+    /// Steps accepted above the tolerance, but at the round-off of their rows, Equilibrium::rests(), or of internal forces,
+    /// LadderOptions::round_off.
+    int steps_at_round_off = 0;
     int held_geometry_steps = 0; ///< steps accepted with the geometry of contact held, LadderResult::held_geometry
     long factorisations = 0, gmres_iterations = 0;
     long refreshed_patches = 0; ///< master patches refitted between steps, see contact::MasterSurface::refitted()

@@ -99,6 +99,14 @@ LadderResult settle(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& 
     return result;
 }
 
+/// N, the largest force of the springs k S (u - anchor) at a node.
+double most_borne(const std::vector<double>& share, double stiffness, const Field& u, const Field& anchor) {
+    double most = 0;
+    for (std::size_t i = 0; i < share.size(); ++i)
+        most = std::max(most, stiffness * share[i] * (u[i] - anchor[i]).norm());
+    return most;
+}
+
 /// Rung 4, a proximal point iteration: u_k+1 solves f(u) + k S (u - u_k) = f_ext + f_contact.
 LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolver& solver, Vector& z,
                        equilibrium::Statuses statuses, bool force_first, LadderOptions& options) {
@@ -185,6 +193,7 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
         equilibrium::Statuses next = equilibrium.statuses();
         undetermined = undetermined && next == statuses;
         statuses = std::move(next);
+        const double borne = most_borne(how.share(), stiffness, u, anchor);
         anchor = std::move(u);
         anchor_z = z;
         if (const double now = equilibrium.least_gap(); std::isfinite(now)) gap = now;
@@ -199,14 +208,13 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
                 return result;
             }
         }
-        const bool rests = moved < near * before;
-        // where motions along a contact are free, the tangent without springs is singular for good
-        if (rests && touches(statuses) && equilibrium.holds(anchor_z, statuses, options.tolerance) &&
-            equilibrium.natural_statuses() == statuses) {
+        // where motions along a contact are free, the tangent without springs is singular for good; these bear nothing
+        if (borne <= options.tolerance * options.reference_force && touches(statuses) &&
+            equilibrium.holds(anchor_z, statuses, options.tolerance) && equilibrium.natural_statuses() == statuses) {
             result.outcome = KinsolOutcome::converged;
             return result;
         }
-        if (rests && !undetermined) {
+        if (moved < near * before && !undetermined) {
             const auto free = newton(false);
             if (free.outcome == KinsolOutcome::converged &&
                 largest_distance(equilibrium.displacements(z), anchor).value < stride()) {

@@ -208,7 +208,7 @@ LadderResult stabilise(equilibrium::Equilibrium& equilibrium, solve::KinsolSolve
                 return result;
             }
         }
-        // where motions along a contact are free, the tangent without springs is singular for good; these bear nothing
+        // a body that may slide along a contact keeps the tangent without springs singular, though they bear nothing any more
         if (borne <= options.tolerance * options.reference_force && touches(statuses) &&
             equilibrium.holds(anchor_z, statuses, options.tolerance) && equilibrium.natural_statuses() == statuses) {
             result.outcome = KinsolOutcome::converged;

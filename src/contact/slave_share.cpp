@@ -1,6 +1,7 @@
 #include "osculate/contact/slave_share.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace osculate::contact {
@@ -27,18 +28,20 @@ int SlaveShare::owner(Index j) const {
     return static_cast<int>(std::upper_bound(first_.begin(), first_.end(), j) - first_.begin()) - 1;
 }
 
-SlaveShare::Gathered SlaveShare::gathered(std::span<const double> own) const {
+void SlaveShare::gather_some(Index nodes, std::span<const double> own,
+                             const std::function<void(int rank, Index nodes, const double* numbers)>& each) const {
     const std::size_t ranks = first_.size() - 1;
-    std::vector<double> counts(ranks);
-    const auto count = static_cast<double>(own.size());
-    ranks_->gather({&count, 1}, std::vector<int>(ranks, 1), counts.data());
-    const std::vector<int> sizes(counts.begin(), counts.end());
-    Gathered all;
-    all.first.assign(1, 0);
-    for (const int size : sizes) all.first.push_back(all.first.back() + static_cast<std::size_t>(size));
-    all.numbers.resize(all.first.back());
-    ranks_->gather(own, sizes, all.numbers.data());
-    return all;
+    const std::array counts{static_cast<double>(nodes), static_cast<double>(own.size())};
+    std::vector<double> of_each(2 * ranks);
+    ranks_->gather(counts, std::vector<int>(ranks, 2), of_each.data());
+    std::vector<int> sizes;
+    for (std::size_t r = 0; r < ranks; ++r) sizes.push_back(static_cast<int>(of_each[2 * r + 1]));
+    ranks_->gather_in_turns(
+        own, sizes,
+        [&](int rank, const double* numbers) {
+            each(rank, static_cast<Index>(of_each[2 * static_cast<std::size_t>(rank)]), numbers);
+        },
+        2 * most);
 }
 
 } // namespace osculate::contact

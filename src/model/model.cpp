@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 namespace osculate::model {
@@ -37,6 +38,15 @@ template <class F> void for_each_element(const Body& body, F&& f) {
 }
 
 } // namespace
+
+std::vector<mesh::Facet> exterior_facets(const Body& body) {
+    if (body.exterior.empty() && body.mesh.element_count() > 0)
+        throw std::logic_error("the exterior facets of body " + body.name + " are unknown");
+    std::vector<mesh::Facet> facets = body.exterior;
+    for (mesh::Facet& facet : facets)
+        for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += body.first_node;
+    return facets;
+}
 
 Lists neighbours(const std::vector<Body>& bodies, Index nodes) {
     Lists elements;

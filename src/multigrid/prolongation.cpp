@@ -111,6 +111,11 @@ void Prolongation::store(const Rows& rows, const std::vector<Index>& first_of_ra
         exchange_ = Exchange(number_, copied, owner);
     }
     number_.insert(number_.end(), copied.begin(), copied.end());
+    std::size_t entries = 0;
+    for (const auto& row : rows) entries += row.size();
+    start_.reserve(rows.size() + 1);
+    aggregate_.reserve(entries);
+    value_.reserve(stored * entries);
     for (const auto& row : rows) {
         for (const auto& [number, block] : row) {
             aggregate_.push_back(

@@ -28,11 +28,11 @@ public:
         double pressing = 0, area = 0, largest = 0;
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const auto node = static_cast<std::size_t>(nodes_[i]);
-            const Vec3 &f = contact.force[node], &x = snapshot.x()[node];
+            const Vec3 &f = contact[node].force, &x = snapshot.x()[node];
             force += f;
             moment += (x - point_).cross(f);
             if (f.isZero(0)) continue;
-            const double pressure = contact.pressure[node], load = pressure * areas_[i];
+            const double pressure = contact[node].pressure, load = pressure * areas_[i];
             area += areas_[i];
             largest = std::max(largest, pressure);
             pressing += load;

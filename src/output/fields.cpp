@@ -23,6 +23,7 @@ void append(Values& values, const Vec3& v) {
 Values of_body(const Snapshot& snapshot, Index body, const std::vector<Vec3>& nodal) {
     const model::Body& part = snapshot.model().bodies[body];
     Values values;
+    values.reserve(3 * static_cast<std::size_t>(part.nodes()));
     for (Index i = 0; i < part.nodes(); ++i) append(values, nodal[part.first_node + i]);
     return values;
 }
@@ -70,30 +71,38 @@ Values penetration(const Snapshot& snapshot, Index body) {
     return values;
 }
 
-/// Numbers at the nodes of one body.
-Values of_body(const Snapshot& snapshot, Index body, const std::vector<double>& nodal) {
+void append(Values& values, double number) {
+    values.push_back(number);
+}
+
+/// What contact does to the nodes of one body. @param what  of a node
+template <class What> Values contact_of_body(const Snapshot& snapshot, Index body, What&& what) {
     const model::Body& part = snapshot.model().bodies[body];
-    return {nodal.begin() + part.first_node, nodal.begin() + part.first_node + part.nodes()};
+    Values values;
+    values.reserve(sizeof(what({})) / sizeof(double) * static_cast<std::size_t>(part.nodes()));
+    for (Index i = 0; i < part.nodes(); ++i)
+        append(values, what(snapshot.nodal_contact()[static_cast<std::size_t>(part.first_node + i)]));
+    return values;
 }
 
 Values all_contact_force(const Snapshot& snapshot, Index body) {
-    return of_body(snapshot, body, snapshot.nodal_contact().force);
+    return contact_of_body(snapshot, body, [](const NodalContact::Node& node) { return node.force; });
 }
 
 Values contact_pressure(const Snapshot& snapshot, Index body) {
-    return of_body(snapshot, body, snapshot.nodal_contact().pressure);
+    return contact_of_body(snapshot, body, [](const NodalContact::Node& node) { return node.pressure; });
 }
 
 Values contact_gap(const Snapshot& snapshot, Index body) {
-    return of_body(snapshot, body, snapshot.nodal_contact().gap);
+    return contact_of_body(snapshot, body, [](const NodalContact::Node& node) { return node.gap; });
 }
 
 Values contact_status(const Snapshot& snapshot, Index body) {
-    return of_body(snapshot, body, snapshot.nodal_contact().status);
+    return contact_of_body(snapshot, body, [](const NodalContact::Node& node) { return node.status; });
 }
 
 Values contact_slip(const Snapshot& snapshot, Index body) {
-    return of_body(snapshot, body, snapshot.nodal_contact().slip);
+    return contact_of_body(snapshot, body, [](const NodalContact::Node& node) { return node.slip; });
 }
 
 Values stress(const Snapshot& snapshot, Index body) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace osculate::output {
 
@@ -12,66 +11,86 @@ namespace {
 constexpr double faces_it = 0.5; ///< of the cosine of the face that is pressed on most
 }
 
+std::size_t NodalContact::reach(std::size_t node) {
+    Index& place = place_[node];
+    if (place < 0) {
+        place = static_cast<Index>(nodes_.size());
+        nodes_.emplace_back();
+    }
+    return static_cast<std::size_t>(place);
+}
+
 NodalContact nodal_contact(const model::Model& model, const model::State& state,
                            const model::ContactEvaluations& contact) {
-    const std::size_t n = model.X.size();
-    NodalContact all{Field(n), std::vector<double>(n, 0.0),
-                     std::vector<double>(n, std::numeric_limits<double>::quiet_NaN()), std::vector<double>(n, 0.0),
-                     Field(n)};
-    Field pressing(n); // forces without friction
+    NodalContact all(model.X.size());
+    std::vector<Vec3> pressing{Vec3::Zero()}; // forces without friction, at nodes in reach
+    const auto reach = [&](Index node) {
+        const std::size_t place = all.reach(static_cast<std::size_t>(model::material_node(model, node)));
+        pressing.resize(all.size(), Vec3::Zero());
+        return place;
+    };
     for (std::size_t p = 0; p < contact.size(); ++p) {
         const model::ContactEvaluation& evaluation = contact[p];
         const model::ContactHistory& history = state.contact[p];
         for (Index j = 0; j < evaluation.pair().size(); ++j) {
             const auto k = static_cast<std::size_t>(j);
-            const auto node = static_cast<std::size_t>(model::material_node(model, evaluation.pair().slaves().node[k]));
             const contact::ContactPoint& point = evaluation.point(j);
-            evaluation.for_each_force(j, history.lambda[k], [&](Index at, const Vec3& force) {
-                all.force[static_cast<std::size_t>(model::material_node(model, at))] += force;
-            });
+            evaluation.for_each_force(j, history.lambda[k],
+                                      [&](Index at, const Vec3& force) { all.at(reach(at)).force += force; });
             const Vec3 normal_part =
                 point.found ? Vec3(point.normal * point.normal.dot(history.lambda[k])) : Vec3::Zero();
-            evaluation.for_each_force(j, normal_part, [&](Index at, const Vec3& force) {
-                pressing[static_cast<std::size_t>(model::material_node(model, at))] += force;
-            });
-            if (point.found) all.gap[node] = std::fmin(all.gap[node], point.gap);
-            if (!contact::is_closed(history.status[k])) continue;
+            evaluation.for_each_force(j, normal_part,
+                                      [&](Index at, const Vec3& force) { pressing[reach(at)] += force; });
+            const bool closed = contact::is_closed(history.status[k]);
+            if (!point.found && !closed) continue;
+            NodalContact::Node& slave = all.at(reach(evaluation.pair().slaves().node[k]));
+            if (point.found) slave.gap = std::fmin(slave.gap, point.gap);
+            if (!closed) continue;
             const bool sticks = history.status[k] == contact::Status::stick;
-            all.status[node] = sticks || all.status[node] == 1 ? 1 : 2;
+            slave.status = sticks || slave.status == 1 ? 1 : 2;
             const Vec3 d = evaluation.drift(j) / evaluation.whole(j);
-            all.slip[node] = d - point.normal * point.normal.dot(d);
+            slave.slip = d - point.normal * point.normal.dot(d);
         }
     }
-    const Field x = sum(model.X, state.u);
-    std::vector<double> area(n, 0.0);
-    Field normal(n);
+    std::vector<double> area(all.size(), 0.0), most(all.size(), 0.0); // most: by the face that a node faces most, N
+    std::vector<Vec3> normal(all.size(), Vec3::Zero());
+    std::vector<Vec3> x(4); // of a facet
     for (const model::Body& body : model.bodies) {
-        std::vector<mesh::Facet> facets = mesh::exterior_facets(body.mesh);
-        for (mesh::Facet& facet : facets)
-            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += body.first_node;
+        const std::vector<mesh::Facet> facets = model::exterior_facets(body);
         // a node on an edge: only the faces that contact presses on count; all of them where it presses on the edge itself
         const auto for_each_pressed = [&](auto&& use) {
             for (const mesh::Facet& facet : facets) {
-                const Vec3 across = mesh::facet_area_vector(facet, x);
+                const auto node = [&](int c) {
+                    return static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(c)]);
+                };
+                mesh::Facet corners = facet;
+                bool reached = false;
                 for (int c = 0; c < facet.count; ++c) {
-                    const auto node = static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(c)]);
-                    const double towards = -pressing[node].dot(across);
-                    if (towards > 0) use(facet, c, node, across, towards / across.norm());
+                    x[static_cast<std::size_t>(c)] = model.X[node(c)] + state.u[node(c)];
+                    corners.nodes[static_cast<std::size_t>(c)] = c;
+                    reached |= all.place(node(c)) >= 0;
+                }
+                if (!reached) continue;
+                const Vec3 across = mesh::facet_area_vector(corners, x);
+                for (int c = 0; c < facet.count; ++c) {
+                    if (all.place(node(c)) < 0) continue;
+                    const auto place = static_cast<std::size_t>(all.place(node(c)));
+                    const double towards = -pressing[place].dot(across);
+                    if (towards > 0) use(facet, c, place, across, towards / across.norm());
                 }
             }
         };
-        std::vector<double> most(n, 0.0); // by the face that it faces most, N
-        for_each_pressed([&](const mesh::Facet&, int, std::size_t node, const Vec3&, double by) {
-            most[node] = std::max(most[node], by);
+        for_each_pressed([&](const mesh::Facet&, int, std::size_t place, const Vec3&, double by) {
+            most[place] = std::max(most[place], by);
         });
-        for_each_pressed([&](const mesh::Facet& facet, int c, std::size_t node, const Vec3& across, double by) {
-            if (by < faces_it * most[node]) return;
-            area[node] += fe::tributary_areas(facet, model.X)[static_cast<std::size_t>(c)];
-            normal[node] += across;
+        for_each_pressed([&](const mesh::Facet& facet, int c, std::size_t place, const Vec3& across, double by) {
+            if (by < faces_it * most[place]) return;
+            area[place] += fe::tributary_areas(facet, model.X)[static_cast<std::size_t>(c)];
+            normal[place] += across;
         });
     }
-    for (std::size_t i = 0; i < n; ++i)
-        if (area[i] > 0) all.pressure[i] = -all.force[i].dot(normal[i].normalized()) / area[i];
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (area[i] > 0) all.at(i).pressure = -all.at(i).force.dot(normal[i].normalized()) / area[i];
     return all;
 }
 

@@ -11,11 +11,7 @@ namespace {
 
 std::vector<std::vector<mesh::Facet>> outer_facets(const model::Model& model) {
     std::vector<std::vector<mesh::Facet>> bodies;
-    for (const model::Body& body : model.bodies) {
-        std::vector<mesh::Facet>& facets = bodies.emplace_back(mesh::exterior_facets(body.mesh));
-        for (mesh::Facet& facet : facets)
-            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += body.first_node;
-    }
+    for (const model::Body& body : model.bodies) bodies.push_back(model::exterior_facets(body));
     return bodies;
 }
 

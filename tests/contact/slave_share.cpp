@@ -2,6 +2,7 @@
 
 #include "support/thread_ranks.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <numeric>
 
@@ -62,6 +63,27 @@ TEST(SlaveShare, TellsTheOthersNumbersOfAnyLength) {
                 return at + j % 5;
             });
         for (Index j = 0; j < slaves; ++j) EXPECT_EQ(known[static_cast<std::size_t>(j)], numbers_of(j));
+    });
+}
+
+TEST(SlaveShare, TellsNumbersThatAreTooManyForOneMessage) {
+    constexpr Index slaves = 40;
+    constexpr std::size_t most = 60000;
+    osculate::support::on_ranks(3, [](const std::shared_ptr<Ranks>& ranks) {
+        SlaveShare share(*ranks, slaves);
+        std::vector<int> work(slaves, 1);
+        work.front() = 30; // so that rank 0 has told all before the others have
+        share.share_out(work);
+        std::vector<int> told(slaves, 0);
+        share.exchange([&](Index j, std::vector<double>& numbers) { numbers.resize(numbers.size() + most - j, j); },
+                       [&](Index j, const double* at) {
+                           ++told[static_cast<std::size_t>(j)];
+                           const double* const end = at + most - j;
+                           EXPECT_TRUE(std::all_of(at, end, [&](double number) { return number == j; }))
+                               << "of node " << j;
+                           return end;
+                       });
+        for (Index j = 0; j < slaves; ++j) EXPECT_EQ(told[static_cast<std::size_t>(j)], share.owns(j) ? 0 : 1);
     });
 }
 

@@ -30,7 +30,8 @@ TEST(ContactPressure, OfANodeOnAnEdgeIsOnTheFaceThatContactPressesOn) {
         const model::ContactPair& pair = *blocks.model.pairs[0];
         for (Index j = 0; j < pair.size(); ++j) {
             const double x = blocks.slave_X(j).x(), area = x < 1 ? 0.125 : 0.25; // of the underside
-            EXPECT_NEAR(contact.pressure[pair.slaves().node[j]], x > 2 ? 0 : 100 / area, 1e-9) << friction;
+            EXPECT_NEAR(contact[static_cast<std::size_t>(pair.slaves().node[j])].pressure, x > 2 ? 0 : 100 / area, 1e-9)
+                << friction;
         }
     }
 }

@@ -58,6 +58,7 @@ private:
     void add_body(const std::string& name, mesh::Mesh mesh) {
         model::Body body{name, std::move(mesh), model.nodes(), {}, {}, {}};
         body.kernels.push_back(fe::make_kernel(mesh::CellType::hex8, HexFormulation::full, {E, 0}));
+        body.exterior = mesh::exterior_facets(body.mesh);
         model.X.values().insert(model.X.values().end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
         model.bodies.push_back(std::move(body));
     }

@@ -27,6 +27,7 @@ public:
         model::Body body{name, std::move(mesh), model.nodes(), {}, {}, {}};
         body.density.assign(body.mesh.blocks.size(), density);
         body.expansion.assign(body.mesh.blocks.size(), 0);
+        body.exterior = mesh::exterior_facets(body.mesh);
         for (const mesh::ElementBlock& block : body.mesh.blocks) body.kernels.push_back(make_kernel(block.type));
         std::vector<Vec3>& X = model.X.values();
         X.insert(X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());

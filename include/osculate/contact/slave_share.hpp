@@ -3,6 +3,8 @@
 
 #include "osculate/core/ranks.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,31 +30,41 @@ public:
     [[nodiscard]] Index begin() const { return first_[static_cast<std::size_t>(ranks_->rank())]; }
     [[nodiscard]] Index end() const { return first_[static_cast<std::size_t>(ranks_->rank()) + 1]; }
 
-    /// Gives all processes numbers of every slave node. Collective.
+    /// Gives all processes numbers of every slave node, those of some nodes of each process at a time: the numbers of all
+    /// are as large as what they are for. Collective.
     /// @param pack    pack(j, numbers) appends those of an own slave node
     /// @param unpack  unpack(j, at) takes those of another process' node from `at` on, and returns where they end
     template <class Pack, class Unpack> void exchange(Pack&& pack, Unpack&& unpack) const;
 
 private:
-    /// (all) numbers of rank 0, then those of rank 1, ..., and where those of each begin, (ranks + 1).
-    struct Gathered {
-        std::vector<double> numbers;
-        std::vector<std::size_t> first;
-    };
-    [[nodiscard]] Gathered gathered(std::span<const double> own) const;
+    /// Gathers numbers of some slave nodes of each process.
+    /// @param nodes  of how many these are
+    /// @param each   called with a rank, of how many slave nodes it has told, and their numbers, rank by rank
+    void gather_some(Index nodes, std::span<const double> own,
+                     const std::function<void(int rank, Index nodes, const double* numbers)>& each) const;
+
+    /// Numbers of all processes at a time, unless those of one node of each are more.
+    static constexpr std::size_t most = 1 << 19;
 
     Ranks* ranks_;
     std::vector<Index> first_; ///< (ranks + 1) slave nodes of each rank
 };
 
 template <class Pack, class Unpack> void SlaveShare::exchange(Pack&& pack, Unpack&& unpack) const {
+    const int self = ranks_->rank();
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
     std::vector<double> own;
-    for (Index j = begin(); j < end(); ++j) pack(j, own);
-    const Gathered all = gathered(own);
-    for (std::size_t r = 0; r + 1 < first_.size(); ++r) {
-        if (static_cast<int>(r) == ranks_->rank()) continue;
-        const double* at = all.numbers.data() + all.first[r];
-        for (Index j = first_[r]; j < first_[r + 1]; ++j) at = unpack(j, at);
+    while (!std::equal(next.begin(), next.end(), first_.begin() + 1)) {
+        own.clear();
+        Index packed = next[static_cast<std::size_t>(self)];
+        const Index first = packed;
+        while (packed < end() && own.size() < most / next.size()) pack(packed++, own);
+        gather_some(packed - first, own, [&](int rank, Index nodes, const double* at) {
+            Index& j = next[static_cast<std::size_t>(rank)];
+            const Index last = j + nodes;
+            if (rank == self) j = last;
+            while (j < last) at = unpack(j++, at);
+        });
     }
 }
 

@@ -28,7 +28,8 @@ struct Body {
     std::vector<std::unique_ptr<fe::ElementKernel>> kernels; ///< one per element block
     std::vector<double> density;                             ///< kg/m^3; one per element block
     std::vector<double> expansion;                           ///< thermal, 1/K; one per element block
-    bool rigid = false; ///< moves as one, see RigidBody; its kernels know volumes alone
+    bool rigid = false;                  ///< moves as one, see RigidBody; its kernels know volumes alone
+    std::vector<mesh::Facet> exterior{}; ///< mesh::exterior_facets(mesh), whose node numbers are the mesh's
 
     [[nodiscard]] Index nodes() const { return mesh.node_count(); }
     [[nodiscard]] bool has_mass() const { ///< in some part
@@ -128,6 +129,8 @@ struct Model {
     [[nodiscard]] const linear::BlockMatrix& mass(bool lumped) const { return lumped ? lumped_mass : consistent_mass; }
 };
 
+/// Exterior facets of a body, with global node numbers. Throws std::logic_error where Body::exterior was not filled.
+[[nodiscard]] std::vector<mesh::Facet> exterior_facets(const Body& body);
 /// Adds the arrays that all processes hold of a model.
 void add_replicas(const Model& model, Replicas& replicas);
 /// Displacements, or velocities, of led and tied nodes, ends of sectors and skins from those of the nodes that they follow.

@@ -57,12 +57,11 @@ public:
     }
 
     [[nodiscard]] Locking locking() const {
-        const std::vector<mesh::Facet> exterior = mesh::exterior_facets(body_.mesh);
         std::map<std::pair<Index, Index>, std::vector<const mesh::Facet*>> of_element;
         Index hexahedra = 0;
         for (const mesh::ElementBlock& block : body_.mesh.blocks)
             if (block.type == mesh::CellType::hex8) hexahedra += block.size();
-        for (const mesh::Facet& facet : exterior)
+        for (const mesh::Facet& facet : body_.exterior)
             if (body_.mesh.blocks[static_cast<std::size_t>(facet.block)].type == mesh::CellType::hex8)
                 of_element[{facet.block, facet.element}].push_back(&facet);
         Locking result{0, hexahedra, 0};

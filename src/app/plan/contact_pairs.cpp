@@ -396,12 +396,9 @@ model::GeneralContactOptions general_options(const scene::Scene& scene, const mo
 
 } // namespace
 
-model::Set outer_surface(const scene::Scene& scene, const model::Model& model, Index body,
-                         const std::vector<mesh::Facet>& exterior) {
+model::Set outer_surface(const scene::Scene& scene, const model::Model& model, Index body) {
     const model::Body& own = model.bodies[static_cast<std::size_t>(body)];
-    model::Set all{own.name, body, {}, exterior};
-    for (mesh::Facet& facet : all.facets)
-        for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += own.first_node;
+    model::Set all{own.name, body, {}, model::exterior_facets(own)};
     const std::vector<char> held = cut_off(scene, model, body);
     std::erase_if(all.facets, [&](const mesh::Facet& facet) {
         char common = ~0;
@@ -413,7 +410,6 @@ model::Set outer_surface(const scene::Scene& scene, const model::Model& model, I
 }
 
 std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::Scene& scene, const model::Model& model,
-                                                                  const std::vector<std::vector<mesh::Facet>>& exterior,
                                                                   const std::map<Index, model::Set>& skins,
                                                                   bool dynamic) {
     const scene::GeneralContact& spec = *scene.general;
@@ -424,7 +420,7 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
         one.body = static_cast<Index>(b);
         one.name = model.bodies[b].name;
         const auto skin = skins.find(one.body);
-        model::Set all = skin != skins.end() ? skin->second : outer_surface(scene, model, one.body, exterior[b]);
+        model::Set all = skin != skins.end() ? skin->second : outer_surface(scene, model, one.body);
         if (skin != skins.end())
             for (const Index node : all.nodes) one.skin.emplace(model::material_node(model, node), node);
         scene::MasterSpec master{{}, {}, scene::BlendSurface{}};
@@ -434,7 +430,8 @@ std::unique_ptr<const model::GeneralContact> make_general_contact(const scene::S
             master.surface = scene::FacetsSurface{};
         one.smooth = std::holds_alternative<scene::BlendSurface>(master.surface);
         model::ContactOptions options;
-        one.side = make_side(scene, master, spec.discretisation.value(), model, all, &exterior[b], options);
+        one.side =
+            make_side(scene, master, spec.discretisation.value(), model, all, &model.bodies[b].exterior, options);
         const std::vector<Mat3> planes = in_symmetry_planes(scene, model, all, all.nodes);
         for (std::size_t i = 0; i < planes.size(); ++i)
             if (planes[i] != Mat3::Identity()) one.in_plane.emplace(all.nodes[i], planes[i]);

@@ -25,16 +25,13 @@ make_contact_pair(const scene::Scene& scene, const std::string& name, const scen
                   const std::map<Index, Vec3>& loose, const std::vector<mesh::Facet>* exterior);
 
 /// The outer surface of a body but for what lies in symmetry planes, by the scene's name of the body.
-[[nodiscard]] model::Set outer_surface(const scene::Scene& scene, const model::Model& model, Index body,
-                                       const std::vector<mesh::Facet>& exterior);
+[[nodiscard]] model::Set outer_surface(const scene::Scene& scene, const model::Model& model, Index body);
 
 /// The general contact of a scene, which has one: the outer surfaces of all bodies, except in symmetry planes.
-/// @param exterior  (bodies) own node numbers
-/// @param skins     by body: outer surfaces with nodes of a skin, where faces have midside nodes
-/// @param dynamic   whether a stage is dynamic
+/// @param skins    by body: outer surfaces with nodes of a skin, where faces have midside nodes
+/// @param dynamic  whether a stage is dynamic
 [[nodiscard]] std::unique_ptr<const model::GeneralContact>
-make_general_contact(const scene::Scene& scene, const model::Model& model,
-                     const std::vector<std::vector<mesh::Facet>>& exterior, const std::map<Index, model::Set>& skins,
+make_general_contact(const scene::Scene& scene, const model::Model& model, const std::map<Index, model::Set>& skins,
                      bool dynamic);
 
 } // namespace osculate::app

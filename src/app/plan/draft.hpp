@@ -18,8 +18,7 @@ struct Draft {
     int threads;
     Timings& timings;
     Plan plan{};
-    std::shared_ptr<Ranks> ranks{};                   ///< processes that share the run; null: one
-    std::vector<std::vector<mesh::Facet>> exterior{}; ///< by body
+    std::shared_ptr<Ranks> ranks{}; ///< processes that share the run; null: one
     std::vector<Fault> faults{};
     std::map<std::string, model::Set> skins{};  ///< sets of pairs whose faces have midside nodes, with the skin's nodes
     std::vector<model::CyclicSymmetry> rings{}; ///< with all nodes of their ends, whatever leads them

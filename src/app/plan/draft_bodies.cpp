@@ -240,7 +240,7 @@ void add_bodies(Draft& draft, std::vector<mesh::Mesh> meshes) {
         }
         auto& X = draft.plan.model.X.values();
         X.insert(X.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
-        draft.exterior.push_back(mesh::exterior_facets(body.mesh));
+        body.exterior = mesh::exterior_facets(body.mesh);
         draft.plan.model.bodies.push_back(std::move(body));
     }
     if (draft.faults.empty()) add_rigid_bodies(draft);

@@ -114,7 +114,7 @@ private:
     /// Faces that meet those of the next sector are ends, with all their nodes.
     bool covers_ends(const model::Set& slave, const model::Set& master, double within) {
         const model::Body& body = draft_.plan.model.bodies[static_cast<std::size_t>(ring_.body)];
-        const std::vector<mesh::Facet>& facets = draft_.exterior[static_cast<std::size_t>(ring_.body)];
+        const std::vector<mesh::Facet>& facets = body.exterior;
         std::set<Index> known(slave.nodes.begin(), slave.nodes.end());
         known.insert(master.nodes.begin(), master.nodes.end());
         std::vector<Vec3> centres, turned, normals;

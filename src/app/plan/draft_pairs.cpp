@@ -38,8 +38,9 @@ void add_pairs(Draft& draft) {
         if (broken) continue;
         const ScopedTimer timer(draft.timings, Part::patches);
         try {
-            draft.plan.model.pairs.push_back(make_contact_pair(draft.scene, name, spec, draft.plan.model, slave, master,
-                                                               loose, paths ? &draft.exterior[master.body] : nullptr));
+            draft.plan.model.pairs.push_back(
+                make_contact_pair(draft.scene, name, spec, draft.plan.model, slave, master, loose,
+                                  paths ? &draft.plan.model.bodies[master.body].exterior : nullptr));
         } catch (const std::runtime_error& error) {
             draft.faults.push_back(fault(key + ".master.set", "an oriented manifold surface", error.what()));
         }
@@ -86,8 +87,7 @@ void add_general_contact(Draft& draft) {
     const ScopedTimer timer(draft.timings, Part::patches);
     keep_rigid_bodies_from_themselves(draft.scene);
     try {
-        draft.plan.model.general =
-            make_general_contact(draft.scene, draft.plan.model, draft.exterior, draft.outer_skins, dynamic);
+        draft.plan.model.general = make_general_contact(draft.scene, draft.plan.model, draft.outer_skins, dynamic);
     } catch (const std::runtime_error& error) {
         draft.faults.push_back(
             fault("contact.general", "bodies whose outer surfaces are oriented manifolds", error.what()));

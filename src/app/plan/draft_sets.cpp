@@ -71,11 +71,8 @@ void add_surface_sets(Draft& draft) {
     model::Model& m = draft.plan.model;
     for (const model::RigidBody& rigid : m.rigid) {
         if (!rigid.shape) continue;
-        model::Set all{surface_set(rigid.name), rigid.body, rigid.nodes,
-                       draft.exterior[static_cast<std::size_t>(rigid.body)]};
-        for (mesh::Facet& facet : all.facets)
-            for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += rigid.nodes.front();
-        m.sets.push_back(std::move(all));
+        m.sets.push_back({surface_set(rigid.name), rigid.body, rigid.nodes,
+                          model::exterior_facets(m.bodies[static_cast<std::size_t>(rigid.body)])});
     }
 }
 } // namespace
@@ -84,7 +81,7 @@ void add_sets(Draft& draft) {
     for (const auto& [name, spec] : draft.scene.sets) {
         const Index b = draft.body_index(spec.body);
         const mesh::Mesh& m = draft.plan.model.bodies[b].mesh;
-        const auto& exterior = draft.exterior[b];
+        const auto& exterior = draft.plan.model.bodies[b].exterior;
         const std::size_t before = draft.faults.size();
         const Vec3& o = draft.plan.model.origin;
         const mesh::Region region = std::visit(

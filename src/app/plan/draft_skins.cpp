@@ -86,7 +86,7 @@ void add_skins(Draft& draft) {
     if (!draft.scene.general) return;
     for (std::size_t b = 0; b < draft.plan.model.bodies.size(); ++b) {
         if (draft.scene.bodies[b].second.rigid_surface) continue;
-        const model::Set outer = outer_surface(draft.scene, draft.plan.model, static_cast<Index>(b), draft.exterior[b]);
+        const model::Set outer = outer_surface(draft.scene, draft.plan.model, static_cast<Index>(b));
         if (auto skin = maker.skin(outer, "contact.general"))
             draft.outer_skins.emplace(static_cast<Index>(b), std::move(*skin));
     }

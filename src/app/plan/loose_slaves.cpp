@@ -20,9 +20,8 @@ std::map<Index, Vec3> loose_slaves(const Draft& draft, const std::string& name) 
     for (const Index node : set.nodes)
         if (!std::ranges::binary_search(covered, node)) area.emplace(node, Vec3::Zero());
     if (area.empty()) return {};
-    const Index first = draft.plan.model.bodies[static_cast<std::size_t>(set.body)].first_node;
-    for (mesh::Facet facet : draft.exterior[static_cast<std::size_t>(set.body)]) {
-        for (int c = 0; c < facet.count; ++c) facet.nodes[static_cast<std::size_t>(c)] += first;
+    for (const mesh::Facet& facet :
+         model::exterior_facets(draft.plan.model.bodies[static_cast<std::size_t>(set.body)])) {
         if (std::none_of(facet.begin(), facet.end(), [&](Index node) { return area.contains(node); })) continue;
         const auto share = fe::tributary_areas(facet, draft.plan.model.X);
         const Vec3 normal = mesh::facet_normal(facet, draft.plan.model.X);

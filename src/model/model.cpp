@@ -342,17 +342,18 @@ void add_centrifugal_force(const Body& body, const Vec3& point, const Vec3& axis
 }
 
 Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index b, const State& state,
-                                                      std::span<const char> chosen) {
+                                                      const std::optional<BodyPart>& part) {
     const Body& body = model.bodies[static_cast<std::size_t>(b)];
     std::size_t history = history_place(model.bodies, static_cast<std::size_t>(b)).first;
-    Eigen::Matrix<double, Eigen::Dynamic, 6> stress = decltype(stress)::Zero(body.nodes(), 6);
+    const Index points = part ? part->points : body.nodes();
+    Eigen::Matrix<double, Eigen::Dynamic, 6> stress = decltype(stress)::Zero(points, 6);
     if (body.rigid) return stress;
-    Vector weight = Vector::Zero(body.nodes());
+    Vector weight = Vector::Zero(points);
     Matrix element_stress;
     std::size_t number = 0;
     for_each_element(body, [&](const Element& one) {
         const auto& [kernel, density, element, X] = one;
-        if (!chosen.empty() && chosen[number++] == 0) {
+        if (part && part->elements[number++] == 0) {
             history += kernel.history_size();
             return;
         }
@@ -364,11 +365,13 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index 
         const double volume = kernel.volume(X);
         for (int i = 0; i < kernel.nodes(); ++i) {
             const Index local = element[static_cast<std::size_t>(i)] - body.first_node;
-            stress.row(local) += volume * element_stress.col(i).transpose();
-            weight(local) += volume;
+            const Index point = part ? part->point[static_cast<std::size_t>(local)] : local;
+            if (point < 0) continue;
+            stress.row(point) += volume * element_stress.col(i).transpose();
+            weight(point) += volume;
         }
     });
-    for (Index i = 0; i < body.nodes(); ++i)
+    for (Index i = 0; i < points; ++i)
         if (weight(i) > 0) stress.row(i) /= weight(i);
     return stress;
 }

@@ -28,7 +28,7 @@ public:
         double pressing = 0, area = 0, largest = 0;
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const auto node = static_cast<std::size_t>(nodes_[i]);
-            const Vec3 &f = contact[node].force, &x = snapshot.x()[node];
+            const Vec3 &f = contact[node].force, x = snapshot.x(nodes_[i]);
             force += f;
             moment += (x - point_).cross(f);
             if (f.isZero(0)) continue;

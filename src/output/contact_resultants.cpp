@@ -29,7 +29,7 @@ ContactResultants contact_resultants(const Snapshot& snapshot, Index pair) {
         sum.force += whole;
         // at the contact point of an edge; elsewhere at the node
         const Vec3 at = term.slaves().edges ? Vec3(evaluation.point(j).foot + contact.gap * contact.normal)
-                                            : snapshot.x()[term.slaves().node[j]];
+                                            : snapshot.x(term.slaves().node[j]);
         sum.moment += at.cross(whole);
         sum.normal += p_N;
         sum.friction += (whole - p_N * contact.normal).norm();
@@ -70,7 +70,7 @@ std::vector<BodyResultants> body_resultants(const Snapshot& snapshot) {
                 const bool own = model::body_index(model, node) == surfaces[static_cast<std::size_t>(slave)].body;
                 BodyResultants& sum = sums[static_cast<std::size_t>(own ? slave : master)];
                 sum.force += force;
-                sum.moment += snapshot.x()[static_cast<std::size_t>(node)].cross(force);
+                sum.moment += snapshot.x(node).cross(force);
             });
         }
     }

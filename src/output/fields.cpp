@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 namespace osculate::output {
 
@@ -19,13 +20,31 @@ void append(Values& values, const Vec3& v) {
     values.insert(values.end(), v.data(), v.data() + 3);
 }
 
+void append(Values& values, double number) {
+    values.push_back(number);
+}
+
+/// Number of points of a body, or of its piece, that have values.
+std::size_t points(const Snapshot& snapshot, Index body) {
+    const Piece* piece = snapshot.piece(body);
+    return piece != nullptr ? piece->nodes.size() : static_cast<std::size_t>(snapshot.model().bodies[body].nodes());
+}
+
+/// Values of a body, point by point. @param value  of a node of the model
+template <class Value> Values at_points(const Snapshot& snapshot, Index body, int components, Value&& value) {
+    const Index first = snapshot.model().bodies[body].first_node;
+    const Piece* piece = snapshot.piece(body);
+    Values values;
+    values.reserve(static_cast<std::size_t>(components) * points(snapshot, body));
+    for (std::size_t i = 0; i < points(snapshot, body); ++i)
+        append(values, value(first + (piece != nullptr ? piece->nodes[i] : static_cast<Index>(i))));
+    return values;
+}
+
 /// Nodal vectors of one body.
 Values of_body(const Snapshot& snapshot, Index body, const std::vector<Vec3>& nodal) {
-    const model::Body& part = snapshot.model().bodies[body];
-    Values values;
-    values.reserve(3 * static_cast<std::size_t>(part.nodes()));
-    for (Index i = 0; i < part.nodes(); ++i) append(values, nodal[part.first_node + i]);
-    return values;
+    return at_points(snapshot, body, 3,
+                     [&](Index node) -> const Vec3& { return nodal[static_cast<std::size_t>(node)]; });
 }
 
 /// f(slave, contact state, whether it is closed) for every slave node of a pair.
@@ -41,7 +60,7 @@ Values displacement(const Snapshot& snapshot, Index body) {
 
 /// Nodal vectors that a state may lack: zero.
 Values of_body_if_any(const Snapshot& snapshot, Index body, const std::vector<Vec3>& nodal) {
-    if (nodal.empty()) return Values(3 * static_cast<std::size_t>(snapshot.model().bodies[body].nodes()), 0.0);
+    if (nodal.empty()) return Values(3 * points(snapshot, body), 0.0);
     return of_body(snapshot, body, nodal);
 }
 
@@ -54,7 +73,7 @@ Values acceleration(const Snapshot& snapshot, Index body) {
 }
 
 Values reaction(const Snapshot& snapshot, Index body) {
-    return of_body(snapshot, body, snapshot.reactions());
+    return at_points(snapshot, body, 3, [&](Index node) { return snapshot.reactions()[node]; });
 }
 
 Values out_of_balance(const Snapshot& snapshot, Index body) {
@@ -62,27 +81,24 @@ Values out_of_balance(const Snapshot& snapshot, Index body) {
 }
 
 Values penetration(const Snapshot& snapshot, Index body) {
-    const model::Body& part = snapshot.model().bodies[body];
-    Values values(static_cast<std::size_t>(part.nodes()), 0.0);
+    const model::Body& whole = snapshot.model().bodies[body];
+    const Piece* piece = snapshot.piece(body);
+    Values values(points(snapshot, body), 0.0);
     if (snapshot.audit() == nullptr) return values;
-    for (const auto& [node, excess] : snapshot.audit()->nodes)
-        if (node >= part.first_node && node < part.first_node + part.nodes())
-            values[static_cast<std::size_t>(node - part.first_node)] = excess;
+    for (const auto& [node, excess] : snapshot.audit()->nodes) {
+        if (node < whole.first_node || node >= whole.first_node + whole.nodes()) continue;
+        const auto own = static_cast<std::size_t>(node - whole.first_node);
+        const Index point = piece != nullptr ? piece->point[own] : static_cast<Index>(own);
+        if (point >= 0) values[static_cast<std::size_t>(point)] = excess;
+    }
     return values;
-}
-
-void append(Values& values, double number) {
-    values.push_back(number);
 }
 
 /// What contact does to the nodes of one body. @param what  of a node
 template <class What> Values contact_of_body(const Snapshot& snapshot, Index body, What&& what) {
-    const model::Body& part = snapshot.model().bodies[body];
-    Values values;
-    values.reserve(sizeof(what({})) / sizeof(double) * static_cast<std::size_t>(part.nodes()));
-    for (Index i = 0; i < part.nodes(); ++i)
-        append(values, what(snapshot.nodal_contact()[static_cast<std::size_t>(part.first_node + i)]));
-    return values;
+    const NodalContact& contact = snapshot.nodal_contact();
+    return at_points(snapshot, body, sizeof(what({})) / sizeof(double),
+                     [&](Index node) { return what(contact[static_cast<std::size_t>(node)]); });
 }
 
 Values all_contact_force(const Snapshot& snapshot, Index body) {
@@ -108,6 +124,7 @@ Values contact_slip(const Snapshot& snapshot, Index body) {
 Values stress(const Snapshot& snapshot, Index body) {
     const Snapshot::Stress& sigma = snapshot.stress(body);
     Values values;
+    values.reserve(static_cast<std::size_t>(sigma.size()));
     for (Index i = 0; i < sigma.rows(); ++i)
         for (int c = 0; c < 6; ++c) values.push_back(sigma(i, c));
     return values;
@@ -140,21 +157,21 @@ template <int k> Values principal(const Snapshot& snapshot, Index body) {
 
 Values strain(const Snapshot& snapshot, Index body) {
     const model::Body& part = snapshot.model().bodies[body];
-    if (part.rigid) return Values(6 * static_cast<std::size_t>(part.nodes()), 0.0);
-    return nodal_strain(snapshot.model().bodies[body], snapshot.state().u, snapshot.elements(body));
+    if (part.rigid) return Values(6 * points(snapshot, body), 0.0);
+    return nodal_strain(snapshot.model().bodies[body], snapshot.state().u, snapshot.part(body));
 }
 
 Values energy_density(const Snapshot& snapshot, Index body) {
     const model::Body& part = snapshot.model().bodies[body];
-    if (part.rigid) return Values(static_cast<std::size_t>(part.nodes()), 0.0);
-    return nodal_energy_density(snapshot.model(), body, snapshot.state(), snapshot.elements(body));
+    if (part.rigid) return Values(points(snapshot, body), 0.0);
+    return nodal_energy_density(snapshot.model(), body, snapshot.state(), snapshot.part(body));
 }
 
 /// Equivalent, 0 in elastic bodies.
 Values plastic_strain(const Snapshot& snapshot, Index body) {
     const model::Body& part = snapshot.model().bodies[body];
-    if (part.rigid) return Values(static_cast<std::size_t>(part.nodes()), 0.0);
-    return nodal_plastic_strain(snapshot.model(), body, snapshot.state(), snapshot.elements(body));
+    if (part.rigid) return Values(points(snapshot, body), 0.0);
+    return nodal_plastic_strain(snapshot.model(), body, snapshot.state(), snapshot.part(body));
 }
 
 Values gap(const Snapshot& snapshot, Index pair) {
@@ -274,24 +291,34 @@ Values master_contact_force(const Snapshot& snapshot, Index pair) {
 Values master_normal_stress(const Snapshot& snapshot, Index pair) {
     const model::ContactPair& term = *snapshot.model().pairs[pair];
     const std::vector<Vec3> force = forces_on_master(snapshot, pair);
-    std::vector<Vec3> normal(snapshot.model().X.size(), Vec3::Zero()); // area vectors, at current positions
-    std::vector<double> area(snapshot.model().X.size(), 0);
+    struct Vertex {
+        Vec3 normal = Vec3::Zero(); ///< sum of area vectors, at current positions, m^2
+        double area = 0;            ///< m^2
+    };
+    std::unordered_map<Index, Vertex> vertices;
     for (const mesh::Facet& facet : term.surface().facets()) {
         if (!is_own(snapshot, facet)) continue;
         const auto shares = fe::tributary_areas(facet, snapshot.model().X);
-        const Vec3 n = mesh::facet_area_vector(facet, snapshot.x());
+        mesh::Facet corners;
+        std::vector<Vec3> x;
+        for (const Index node : facet) {
+            corners.nodes[static_cast<std::size_t>(corners.count)] = corners.count;
+            ++corners.count;
+            x.push_back(snapshot.x(node));
+        }
+        const Vec3 n = mesh::facet_area_vector(corners, x);
         for (int c = 0; c < facet.count; ++c) {
             const auto k = static_cast<std::size_t>(c);
-            area[static_cast<std::size_t>(facet.nodes[k])] += shares[k];
-            normal[static_cast<std::size_t>(facet.nodes[k])] += n;
+            Vertex& vertex = vertices[facet.nodes[k]];
+            vertex.area += shares[k];
+            vertex.normal += n;
         }
     }
     Values values;
     for (std::size_t i = 0; i < force.size(); ++i) {
-        const Index node = term.master_nodes()[i];
-        const auto k = static_cast<std::size_t>(node);
-        const bool known = node < snapshot.model().nodes() && area[k] > 0 && normal[k].norm() > 0;
-        values.push_back(known ? -force[i].dot(normal[k].normalized()) / area[k] : 0);
+        const auto found = vertices.find(term.master_nodes()[i]);
+        const bool known = found != vertices.end() && found->second.area > 0 && found->second.normal.norm() > 0;
+        values.push_back(known ? -force[i].dot(found->second.normal.normalized()) / found->second.area : 0);
     }
     return values;
 }

@@ -28,16 +28,6 @@ Array displacement_of(const std::vector<Index>& nodes, const std::vector<Vec3>& 
     return array;
 }
 
-/// The values of some points.
-Array at(const std::vector<Index>& points, const Array& all) {
-    Array some{all.name, all.components, {}, all.integer, all.unit};
-    const auto n = static_cast<std::ptrdiff_t>(all.components);
-    some.values.reserve(points.size() * static_cast<std::size_t>(n));
-    for (const Index point : points)
-        some.values.insert(some.values.end(), all.values.begin() + n * point, all.values.begin() + n * (point + 1));
-    return some;
-}
-
 } // namespace
 
 Frames::Frames(fs::path directory, const FrameFields& fields, const model::Model& model, bool beside,
@@ -136,10 +126,7 @@ void Frames::take_values(File& one, const Snapshot& snapshot) const {
             one.arrays.push_back(evaluate(*f, snapshot, one.surface->pair));
         return;
     }
-    for (const OutputField* f : body_fields_) {
-        Array values = evaluate(*f, snapshot, one.number);
-        one.arrays.push_back(one.piece == nullptr ? std::move(values) : at(one.piece->nodes, values));
-    }
+    for (const OutputField* f : body_fields_) one.arrays.push_back(evaluate(*f, snapshot, one.number));
 }
 
 void Frames::write(const Snapshot& snapshot, long number) {

@@ -117,8 +117,8 @@ std::vector<Cell> History::cells(const Snapshot& snapshot, const linear::Constra
         const auto r = static_cast<std::size_t>(rigid.reference);
         append(cells, snapshot.state().u[r]);
         append(cells, snapshot.state().rigid[k].rotation);
-        append(cells, snapshot.reactions()[r]);
-        append(cells, Vec3(rigid.radius * snapshot.reactions()[r + 1]));
+        append(cells, snapshot.reactions()[rigid.reference]);
+        append(cells, Vec3(rigid.radius * snapshot.reactions()[rigid.rotation()]));
     }
     if (ledger && energies_now != nullptr) {
         for (const EnergyColumn& energy : energies) cells.emplace_back(energies_now->*energy.value);

@@ -12,11 +12,18 @@ namespace {
 /// Adds up values times volumes of the elements around each node.
 class NodalMean {
 public:
-    NodalMean(Index nodes, int components) : sum_(Matrix::Zero(components, nodes)), volume_(Vector::Zero(nodes)) {}
+    NodalMean(const model::Body& body, const std::optional<model::BodyPart>& part, int components) : part_(part) {
+        const Index points = part ? part->points : body.nodes();
+        sum_.setZero(components, points);
+        volume_.setZero(points);
+    }
 
+    /// Of a node of the body.
     template <class Value> void add(Index node, const Value& value, double volume) {
-        sum_.col(node) += volume * value;
-        volume_(node) += volume;
+        const Index point = part_ ? part_->point[static_cast<std::size_t>(node)] : node;
+        if (point < 0) return;
+        sum_.col(point) += volume * value;
+        volume_(point) += volume;
     }
     [[nodiscard]] std::vector<double> values() {
         for (Index i = 0; i < volume_.size(); ++i)
@@ -25,9 +32,14 @@ public:
     }
 
 private:
+    const std::optional<model::BodyPart>& part_;
     Matrix sum_;
     Vector volume_;
 };
+
+std::span<const char> elements_of(const std::optional<model::BodyPart>& part) {
+    return part ? part->elements : std::span<const char>{};
+}
 
 /// Of an element type: natural gradients of its shape functions at the points of its quadrature rule, and the extrapolation from
 /// there to its nodes (nodes x points).
@@ -62,9 +74,9 @@ Matrix element_strain(const StrainPoints& points, const Eigen::Matrix3Xd& X, con
 
 } // namespace
 
-std::vector<double> nodal_strain(const model::Body& body, const Field& u, std::span<const char> chosen) {
-    NodalMean mean(body.nodes(), 6);
-    for_each_element(body, chosen, [&](const ElementOf& element) {
+std::vector<double> nodal_strain(const model::Body& body, const Field& u, const std::optional<model::BodyPart>& part) {
+    NodalMean mean(body, part, 6);
+    for_each_element(body, elements_of(part), [&](const ElementOf& element) {
         const auto block = static_cast<std::size_t>(element.block);
         const fe::ElementKernel& kernel = *body.kernels[block];
         const std::vector<Index> nodes = nodes_of(body, element);
@@ -78,10 +90,10 @@ std::vector<double> nodal_strain(const model::Body& body, const Field& u, std::s
 }
 
 std::vector<double> nodal_plastic_strain(const model::Model& model, Index b, const model::State& state,
-                                         std::span<const char> chosen) {
+                                         const std::optional<model::BodyPart>& part) {
     const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
-    NodalMean mean(body.nodes(), 1);
-    for_each_element(body, chosen, [&](const ElementOf& element) {
+    NodalMean mean(body, part, 1);
+    for_each_element(body, elements_of(part), [&](const ElementOf& element) {
         const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(element.block)];
         const std::vector<Index> nodes = nodes_of(body, element);
         const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, state.u);
@@ -95,10 +107,10 @@ std::vector<double> nodal_plastic_strain(const model::Model& model, Index b, con
 }
 
 std::vector<double> nodal_energy_density(const model::Model& model, Index b, const model::State& state,
-                                         std::span<const char> chosen) {
+                                         const std::optional<model::BodyPart>& part) {
     const model::Body& body = model.bodies[static_cast<std::size_t>(b)];
-    NodalMean mean(body.nodes(), 1);
-    for_each_element(body, chosen, [&](const ElementOf& element) {
+    NodalMean mean(body, part, 1);
+    for_each_element(body, elements_of(part), [&](const ElementOf& element) {
         const fe::ElementKernel& kernel = *body.kernels[static_cast<std::size_t>(element.block)];
         const std::vector<Index> nodes = nodes_of(body, element);
         const Eigen::Matrix3Xd X = positions_of(body, nodes), ue = displacements_of(body, nodes, state.u);

@@ -51,14 +51,14 @@ Piece piece_of(const model::Body& body, const Share& share) {
         piece.around.push_back(
             std::ranges::any_of(nodes, [&](Index node) { return is_here[static_cast<std::size_t>(node)] != 0; }));
     });
-    std::vector<Index> point(is_here.size(), -1);
+    piece.point.assign(is_here.size(), -1);
     for (Index node = 0; node < body.nodes(); ++node)
         if (is_here[static_cast<std::size_t>(node)] != 0) {
-            point[static_cast<std::size_t>(node)] = static_cast<Index>(piece.nodes.size());
+            piece.point[static_cast<std::size_t>(node)] = static_cast<Index>(piece.nodes.size());
             piece.nodes.push_back(node);
         }
     for (mesh::ElementBlock& block : piece.blocks)
-        for (Index& node : block.connectivity) node = point[static_cast<std::size_t>(node)];
+        for (Index& node : block.connectivity) node = piece.point[static_cast<std::size_t>(node)];
     for (std::size_t rank = 0; rank < has_one.size(); ++rank)
         if (has_one[rank] != 0) piece.processes.push_back(static_cast<int>(rank));
     return piece;

@@ -5,34 +5,21 @@
 namespace osculate::output {
 
 Snapshot::Snapshot(const model::Model& model, const model::State& state, const model::ContactEvaluations& contact,
-                   std::vector<Vec3> reactions, std::vector<Vec3> out_of_balance, double dt,
-                   const contact::AuditResult* audit)
-    : model_(model), state_(state), contact_(contact),
-      reactions_(std::make_shared<const std::vector<Vec3>>(std::move(reactions))),
+                   Reactions reactions, std::vector<Vec3> out_of_balance, double dt, const contact::AuditResult* audit)
+    : model_(model), state_(state), contact_(contact), reactions_(std::move(reactions)),
       out_of_balance_(std::make_shared<const std::vector<Vec3>>(std::move(out_of_balance))), dt_(dt), audit_(audit) {}
 
-const Field& Snapshot::x() const {
-    if (x_.empty()) x_ = sum(model_.X, state_.u);
-    return x_;
-}
-
 Snapshot Snapshot::of_pieces(const std::vector<Piece>& pieces) const {
-    Snapshot part(model_, state_, contact_, {}, {}, dt_, audit_);
-    part.reactions_ = reactions_;
+    Snapshot part(model_, state_, contact_, reactions_, {}, dt_, audit_);
     part.out_of_balance_ = out_of_balance_;
     part.pieces_ = &pieces;
     return part;
 }
 
-std::span<const char> Snapshot::elements(Index body) const {
-    if (pieces_ == nullptr) return {};
-    return (*pieces_)[static_cast<std::size_t>(body)].around;
-}
-
 const Snapshot::Stress& Snapshot::stress(Index body) const {
     auto known = stress_.find(body);
     if (known == stress_.end())
-        known = stress_.emplace(body, model::nodal_stress(model_, body, state_, elements(body))).first;
+        known = stress_.emplace(body, model::nodal_stress(model_, body, state_, part(body))).first;
     return known->second;
 }
 

@@ -284,6 +284,7 @@ void StageRun::commit(StepAttempt& attempt) {
     const double moved = context_.model.general ? largest_distance(attempt.next.u, progress_.state.u).value : 0;
     attempt.next.scope = progress_.state.scope;
     progress_.state = attempt.next; // in place: its arrays stay where they are for whoever looks at them
+    attempt.next = {};              // not held twice while files are written
     progress_.counts.stabilised_steps += attempt.result.stabilised_solves > 0 ? 1 : 0;
     progress_.counts.held_geometry_steps += attempt.result.held_geometry ? 1 : 0;
     const double left = attempt.result.residual * attempt.result.reference_force;

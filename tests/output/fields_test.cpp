@@ -3,6 +3,7 @@
 #include "osculate/output/nodal_contact.hpp"
 #include "output/two_blocks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gmock/gmock.h>
 #include <set>
@@ -131,6 +132,20 @@ TEST(Fields, MasterForcesAnswerTheSlaves) {
     }
     EXPECT_NEAR(force.norm(), 0, 1e-10);
     EXPECT_NEAR(moment.norm(), 0, 1e-10);
+}
+
+TEST(Fields, StressOnTheMasterIsItsForceOverTheAreaAroundAVertex) {
+    const TwoBlocks blocks; // the base's top: two squares of 1 m in a row, at z = 1
+    const Snapshot snapshot = blocks.snapshot();
+    const std::vector<double> force = values(FieldPlace::master, "contact_force", snapshot, 0),
+                              stress = values(FieldPlace::master, "normal_stress", snapshot, 0);
+    const std::vector<Index>& vertices = blocks.model.pairs[0]->master_nodes();
+    ASSERT_EQ(stress.size(), vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const double area = blocks.model.X[vertices[i]].x() == 1 ? 0.5 : 0.25;
+        EXPECT_NEAR(stress[i], -force[3 * i + 2] / area, 1e-10) << i;
+    }
+    EXPECT_GT(*std::ranges::max_element(stress), 100) << "pressed";
 }
 
 } // namespace

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -210,9 +211,16 @@ struct State {
     [[nodiscard]] BodyStep at_rest() const { return {u, u, material}; }
 };
 
+/// Some nodes of a body, for which means over the elements around them are wanted. Views.
+struct BodyPart {
+    std::span<const char> elements; ///< (elements of the body) whether one has a node of the part
+    std::span<const Index> point;   ///< (nodes of the body) its number in the part; -1: not in it
+    Index points = 0;
+};
+
 /// Nodal stress of one body (nodes x 6, Pa, Voigt): averages of element values, weighted by element volumes.
-/// @param chosen  (elements of the body) those that take part; nodes that have others as well must not be read; empty: all
+/// @param part  (points x 6) those of its nodes alone; not given: all
 [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> nodal_stress(const Model& model, Index body, const State& state,
-                                                                    std::span<const char> chosen = {});
+                                                                    const std::optional<BodyPart>& part = std::nullopt);
 
 } // namespace osculate::model

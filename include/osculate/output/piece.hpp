@@ -14,7 +14,10 @@ struct Piece {
     std::vector<mesh::ElementBlock> blocks; ///< as those of the body; connectivity in points
     std::vector<char>
         around; ///< (elements of the body) whether one has a node here: they give the mean values of these nodes
+    std::vector<Index> point;   ///< (nodes of the body) where it is in `nodes`; -1: elsewhere
     std::vector<int> processes; ///< those that have a piece of this body, ascending
+
+    [[nodiscard]] model::BodyPart part() const { return {around, point, static_cast<Index>(nodes.size())}; }
 };
 
 /// Piece of the calling process. O(elements)

@@ -6,11 +6,11 @@
 #include "osculate/model/model.hpp"
 #include "osculate/output/nodal_contact.hpp"
 #include "osculate/output/piece.hpp"
+#include "osculate/output/reactions.hpp"
 
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace osculate::output {
@@ -21,30 +21,39 @@ public:
     using Stress = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
     /// @param contact         at the state; empty if no contact data is needed
-    /// @param reactions       (nodes) forces of supports and driven motions on each node, N; empty: not needed
+    /// @param reactions       of the step; what they refer to must outlive this object, too
     /// @param out_of_balance  (nodes) unbalanced forces, N, of an iterate that is no equilibrium; empty: none
     /// @param dt              of the step that ended in the state, s; 0: no step
     /// @param audit           of the state; null: none
     Snapshot(const model::Model& model, const model::State& state, const model::ContactEvaluations& contact,
-             std::vector<Vec3> reactions, std::vector<Vec3> out_of_balance = {}, double dt = 0,
+             Reactions reactions, std::vector<Vec3> out_of_balance = {}, double dt = 0,
              const contact::AuditResult* audit = nullptr);
 
-    /// The same for one process of several: what means over elements give is right at the nodes of its pieces alone. Pieces
+    /// The same for one process of several: fields of bodies have values at the points of their pieces alone. Pieces
     /// must outlive it. @param pieces  (bodies)
     [[nodiscard]] Snapshot of_pieces(const std::vector<Piece>& pieces) const;
-    /// (elements of the body) Whether means at nodes are to be taken of it; empty: of all.
-    [[nodiscard]] std::span<const char> elements(Index body) const;
+    /// Piece of a body that fields are of; null: the whole body.
+    [[nodiscard]] const Piece* piece(Index body) const {
+        return pieces_ == nullptr ? nullptr : &(*pieces_)[static_cast<std::size_t>(body)];
+    }
+    /// The same for means over elements.
+    [[nodiscard]] std::optional<model::BodyPart> part(Index body) const {
+        return pieces_ == nullptr ? std::nullopt : std::optional(piece(body)->part());
+    }
 
     [[nodiscard]] const model::Model& model() const { return model_; }
     [[nodiscard]] const model::State& state() const { return state_; }
-    [[nodiscard]] const std::vector<Vec3>& reactions() const { return *reactions_; }
+    [[nodiscard]] const Reactions& reactions() const { return reactions_; }
     /// Empty if the state is an equilibrium.
     [[nodiscard]] const std::vector<Vec3>& out_of_balance() const { return *out_of_balance_; }
     [[nodiscard]] double dt() const { return dt_; }
     [[nodiscard]] const contact::AuditResult* audit() const { return audit_; }
-    /// Current positions x = X + u of all nodes, m; computed at the first call.
-    [[nodiscard]] const Field& x() const;
-    /// Nodal stress of a body (nodes x 6), Pa; computed at the first call.
+    /// Current position x = X + u of a node, m.
+    [[nodiscard]] Vec3 x(Index node) const {
+        const auto i = static_cast<std::size_t>(node);
+        return model_.X[i] + state_.u[i];
+    }
+    /// Nodal stress of a body or its piece (points x 6), Pa; computed at the first call.
     [[nodiscard]] const Stress& stress(Index body) const;
     /// Frees the stress of all bodies.
     void forget_stress() const { stress_.clear(); }
@@ -63,11 +72,11 @@ private:
     const model::Model& model_;
     const model::State& state_;
     const model::ContactEvaluations& contact_;
-    std::shared_ptr<const std::vector<Vec3>> reactions_, out_of_balance_; ///< those of pieces are the same
+    Reactions reactions_;
+    std::shared_ptr<const std::vector<Vec3>> out_of_balance_; ///< that of pieces is the same
     double dt_;
     const contact::AuditResult* audit_;
     const std::vector<Piece>* pieces_ = nullptr; ///< null: whole bodies
-    mutable Field x_;
     mutable std::map<Index, Stress> stress_;
     mutable std::optional<NodalContact> nodal_contact_;
 };

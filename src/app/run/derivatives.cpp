@@ -155,8 +155,7 @@ void Derivatives::accepted(const time::AcceptedStep& step, const std::vector<std
     const auto snapshot_of = [&](const Plan& plan, const model::State& state,
                                  const equilibrium::Equilibrium& equilibrium) {
         return output::Snapshot(plan.model, state, equilibrium.contact(),
-                                output::nodal_reactions(equilibrium.constraints(), equilibrium.unbalanced()), {},
-                                step.dt);
+                                {equilibrium.constraints(), equilibrium.unbalanced()}, {}, step.dt);
     };
     const auto history_of = [&](const Plan& plan, const output::Snapshot& snapshot,
                                 const equilibrium::Equilibrium& equilibrium, const time::Ledger* ledger) {

@@ -62,10 +62,6 @@ RunRecorder::RunRecorder(const scene::Scene& scene, const Plan& plan, const time
     const scene::Output& out = scene.output;
     const fs::path& folder = directory();
     const bool reactions = out.history_reactions && !plan.constrained_sets.empty();
-    history_reactions_ = reactions || !plan.model.rigid.empty();
-    frame_reactions_ = std::ranges::count(out.body_fields, "reaction") > 0;
-    probe_reactions_ =
-        std::ranges::any_of(plan.probes, [](const PlannedProbe& probe) { return probe.probe->reads("reaction"); });
     describe_plan();
     on_disk(timings_, [&] {
         output::OutputFolder& files = *settings_.folder;
@@ -200,9 +196,7 @@ void RunRecorder::write_initial_frame() {
             (void)initial_gaps(evaluation, plan_.model.X, timings_, settings_.threads);
     on_disk(timings_, [&] {
         settings_.folder->claim(frames_->files(0));
-        std::vector<Vec3> none;
-        if (frame_reactions_) none.assign(plan_.model.X.size(), Vec3::Zero());
-        frames_->write({plan_.model, stepper_.state(), contact, std::move(none)}, 0);
+        frames_->write({plan_.model, stepper_.state(), contact, output::Reactions()}, 0);
     });
 }
 
@@ -227,11 +221,8 @@ void RunRecorder::accepted(const time::AcceptedStep& step) {
         const int every = scene_.output.frame_every;
         const bool last = step.state.time >= stepper_.end_time() * (1 - 1e-12);
         const bool frame = frames_ && (summary_.steps.accepted % every == 0 || last);
-        std::vector<Vec3> reactions;
-        if (history_reactions_ || probe_reactions_ || (frame && frame_reactions_))
-            reactions = output::nodal_reactions(constraints, step.equilibrium.unbalanced());
-        const output::Snapshot snapshot(plan_.model, step.state, step.equilibrium.contact(), std::move(reactions), {},
-                                        step.dt, step.audit);
+        const output::Snapshot snapshot(plan_.model, step.state, step.equilibrium.contact(),
+                                        {constraints, step.equilibrium.unbalanced()}, {}, step.dt, step.audit);
         history_->row(snapshot, constraints, step.dt, step.iterations, step.ledger);
         if (frame) {
             settings_.folder->claim(frames_->files(summary_.steps.accepted));

@@ -96,7 +96,6 @@ private:
     const time::Stepper& stepper_;
     Timings& timings_;
     Settings settings_;
-    bool history_reactions_ = false, frame_reactions_ = false, probe_reactions_ = false;
     output::Summary summary_;
     std::string post_mortem_;
     std::unique_ptr<output::CsvTable> steps_, iterations_;

@@ -64,12 +64,14 @@ def heads(lines):
 
 
 def worst(cells):
-    """Of cells "a / b", with the ! of any."""
+    """Of cells "a / b", with the ! of any, and what others say in words."""
     pairs = [[float(x) for x in re.sub("!", "", cell).split("/")] for cell in cells if "/" in cell]
+    words = dict.fromkeys(cell for cell in cells if cell and "/" not in cell)
     if not pairs:
-        return ", ".join(dict.fromkeys(cell for cell in cells if cell)) or "not run"
-    return " / ".join(f"{max(column):.0e}".replace("e-0", "e-").replace("e+00", "") for column in zip(*pairs)) + (
+        return ", ".join(words) or "not run"
+    numbers = " / ".join(f"{max(column):.0e}".replace("e-0", "e-").replace("e+00", "") for column in zip(*pairs)) + (
         " !" if any("!" in cell for cell in cells) else "")
+    return ", ".join([numbers, *words])
 
 
 def with_processes(lines, ranks):

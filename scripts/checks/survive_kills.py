@@ -104,7 +104,11 @@ def killed_after(seconds, command, chance, stuck):
                 code = process.wait(PATIENCE)
             except subprocess.TimeoutExpired:
                 ended = process.args[0] == "mpirun" and all_ended(process)
-                process.kill()
+                process.terminate()  # mpirun takes those with it that have not ended
+                try:
+                    process.wait(10)
+                except subprocess.TimeoutExpired:
+                    process.kill()
                 if not ended:
                     raise SystemExit(f"after one was killed, the others did not end: {' '.join(command)}") from None
                 stuck.append(command)
